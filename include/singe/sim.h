@@ -1,0 +1,198 @@
+/// Singe: a simulation and what can be read from it.
+///
+/// One thread at a time may call into one simulation; different simulations are independent.
+/// Particles are numbered over all sheets: first every vertex of every sheet (the corner or blue
+/// layer) in the order added, then one particle for every cell (the centre or green layer).
+#ifndef SINGE_SIM_H
+#define SINGE_SIM_H
+
+#include "singe/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct SingeSim SingeSim;
+
+/// Makes an empty simulation. On failure *sim is NULL and *error (may be NULL) says why.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_create(const SingeSimDef *def, SingeSim **sim, SingeError *error);
+
+/// Frees a simulation; NULL is allowed.
+SINGE_API void singe_sim_destroy(SingeSim *sim);
+
+/// The last failure of a call on this simulation. Valid until the next call; never NULL.
+SINGE_API const SingeError *singe_sim_error(const SingeSim *sim);
+
+/// Adds a sheet. Sheets are added before singe_sim_commit. SINGE_ERROR_MESH names the cell or vertex.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id);
+
+/// Builds the shell (springs, strands, families) and every buffer a step needs. After it no sheet
+/// can be added. Sources, pins and colliders are added, moved and removed at any time after it.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_commit(SingeSim *sim);
+
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *def, SingeSourceId *id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id);
+/// Sets the callback of a callback source, as is needed after a load.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxFn *callback, void *context);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *def, SingeColliderId *id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *def, SingePinId *id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id);
+/// Replaces the path of a source, collider or pin. Times are the simulation's own.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t path_count, const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t path_count, const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count, const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *def);
+
+/// One step of length time_step: heat, burn, ablate, dynamics. Allocates nothing. On failure the
+/// simulation is as it was before the call and the error names stage and element.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
+
+/// Flags of a particle, spring or cell.
+enum {
+    SINGE_ALIVE = 1,   ///< still part of the shell
+    SINGE_PINNED = 2,  ///< particle held by a pin
+};
+
+/// Read-only arrays of the shell. Pointers stay valid until the simulation is destroyed; contents
+/// change with each step. `topology_version` grows whenever something is removed.
+typedef struct SingeView {
+    double time;                        ///< s
+    uint64_t step;                      ///< steps done
+    uint64_t topology_version;
+    uint32_t particle_count, vertex_count, cell_count;
+    uint32_t spring_count[SINGE_COLOUR_COUNT];
+    const float (*position)[4];         ///< [particle_count] m; fourth is unused
+    const float (*velocity)[4];         ///< [particle_count] m/s
+    const float (*rest_position)[4];    ///< [particle_count] m
+    const float (*uv)[2];               ///< [particle_count], centres at the mean of their corners
+    const float *area;                  ///< [particle_count] m2 at rest, of the particle's own layer
+    const float *mass;                  ///< [particle_count] fraction of the initial mass
+    const float *temperature;           ///< [particle_count] K
+    const float *burn_rate;             ///< [particle_count] 1/s, mass fraction lost per second
+    const float *time_ignited;          ///< [particle_count] s, -1 before
+    const float *time_burnt;            ///< [particle_count] s, -1 before
+    const int32_t *piece;               ///< [particle_count] id of its connected piece, -1 if gone
+    const uint8_t *particle_flags;      ///< [particle_count]
+    const uint8_t *cell_flags;          ///< [cell_count]
+    const uint32_t (*cells)[4];         ///< [cell_count] corners
+    const uint32_t (*springs[SINGE_COLOUR_COUNT])[2]; ///< [spring_count[c]] ends
+    const float *spring_length[SINGE_COLOUR_COUNT];   ///< [spring_count[c]] m, target length, eq 6
+    const float *spring_rest[SINGE_COLOUR_COUNT];     ///< [spring_count[c]] m, initial length
+    const uint8_t *spring_flags[SINGE_COLOUR_COUNT];  ///< [spring_count[c]]
+} SingeView;
+
+/// The view of a committed simulation.
+SINGE_API SingeView singe_sim_view(const SingeSim *sim);
+
+typedef enum SingeEventKind {
+    SINGE_EVENT_IGNITED = 0,     ///< element is the particle
+    SINGE_EVENT_HOLE_OPENED = 1, ///< element is the particle that burnt through first
+    SINGE_EVENT_PIECE_FREED = 2, ///< element is the new piece's id
+} SingeEventKind;
+
+typedef struct SingeEvent {
+    SingeEventKind kind;
+    int32_t element;
+    double time;       ///< s
+    float position[3]; ///< m
+} SingeEvent;
+
+/// What happened in the last step. Valid until the next step.
+SINGE_API const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count);
+
+typedef enum SingeStage {
+    SINGE_STAGE_HEAT = 0,
+    SINGE_STAGE_BURN = 1,
+    SINGE_STAGE_ABLATE = 2,
+    SINGE_STAGE_DYNAMICS = 3,
+    SINGE_STAGE_COUNT = 4
+} SingeStage;
+
+/// Seconds and work per stage since the commit (or load).
+typedef struct SingeTimers {
+    double seconds[SINGE_STAGE_COUNT];
+    uint64_t steps;
+    uint64_t heat_iterations;   ///< of the implicit diffusion
+    uint64_t strands_projected;
+    uint64_t contacts;
+} SingeTimers;
+
+SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);
+
+/// Numbers about the present state, computed when asked for.
+typedef struct SingeStats {
+    double time;
+    uint32_t particles, springs, cells; ///< alive
+    uint32_t pieces;
+    double mass;                   ///< kg, of what is left
+    double mass_initial;           ///< kg
+    double mass_burnt;             ///< kg, gone as gas, eq 4
+    double mass_removed;           ///< kg, of removed particles
+    double burnt_fraction;         ///< mass_burnt + mass_removed over mass_initial
+    float temperature_max;         ///< K
+    double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations.md
+    double ledger_error;           ///< |in + combustion - lost - stored| over the largest of them
+    double mass_ledger_error;      ///< |initial - left - burnt - removed| / initial
+    double strain_mean, strain_p99, strain_max; ///< |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part
+    uint32_t inverted_cells;       ///< whose centre has crossed to the other side of its corners
+    double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
+    float thickening;              ///< F in use, largest over the sheets
+} SingeStats;
+
+SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
+
+/// What a committed simulation consists of.
+typedef struct SingeCensus {
+    uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
+    double mean_strand_length;  ///< springs per strand
+    float cell_size;            ///< m, median edge
+    size_t memory;              ///< bytes held
+} SingeCensus;
+
+SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
+
+/// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
+/// (eq 7, Fig 6). All arrays belong to the surface.
+typedef struct SingeSurface {
+    uint32_t vertex_count, triangle_count;
+    float (*position)[3];      ///< m
+    float (*normal)[3];        ///< unit, area-weighted
+    float (*uv)[2];
+    float (*velocity)[3];      ///< m/s
+    float (*rest_position)[3]; ///< m
+    float *temperature;        ///< K
+    float *mass;               ///< fraction
+    float *burn_rate;          ///< 1/s
+    float *burn;               ///< char: burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
+    float *time_ignited;       ///< s, -1 never
+    int32_t *piece;            ///< id
+    int32_t *source_vertex;    ///< vertex of the input mesh (numbered over all sheets), -1 for a new one
+    int32_t *sheet;            ///< index of the sheet, in the order added
+    uint32_t (*triangles)[3];
+    uint32_t vertex_capacity, triangle_capacity; ///< allocated
+    SingeAllocator allocator;  ///< that the arrays come from
+} SingeSurface;
+
+/// Draws the present state into *surface, which is zeroed before its first use and grows as needed.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface);
+
+/// Frees a surface's arrays and zeroes it.
+SINGE_API void singe_surface_free(SingeSurface *surface);
+
+/// Saves the whole simulation. *bytes comes from the simulation's allocator; free it with
+/// singe_sim_free_bytes. Versioned and checksummed; the byte order is the machine's.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size);
+SINGE_API void singe_sim_free_bytes(SingeSim *sim, uint8_t *bytes, size_t size);
+
+/// Makes a simulation from saved bytes; it then steps bitwise as the saved one would have. Hooks and
+/// thread count come from `hooks`, all else from the bytes. Handles keep their values.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **sim, SingeError *error);
+
+/// A second simulation in the same state, with the same hooks.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_clone(SingeSim *sim, SingeSim **copy);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

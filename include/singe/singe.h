@@ -1,0 +1,9 @@
+/// Singe burns cloth and paper: one header for the whole library.
+#ifndef SINGE_SINGE_H
+#define SINGE_SINGE_H
+
+#include "singe/base.h"
+#include "singe/types.h"
+#include "singe/sim.h"
+
+#endif

@@ -1,0 +1,273 @@
+/// Singe: the Defs that describe a simulation. Each has a `singe_default_...()` that fills it with
+/// values that work; change what you need and pass it on. The simulation copies everything it is
+/// given, so a Def and the arrays it points to may be freed after the call.
+#ifndef SINGE_TYPES_H
+#define SINGE_TYPES_H
+
+#include "singe/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A grey picture over the uv square. Rows run from the top (v = 1) to the bottom (v = 0); sampled
+/// bilinearly, clamped at the border.
+typedef struct SingePicture {
+    int width, height;   ///< pixels, at least 1 each
+    const float *values; ///< [height * width], 0 black to 1 white
+} SingePicture;
+
+/// Seeded value noise in [0, 1], evaluated at the rest position.
+typedef struct SingeNoise {
+    float scale;    ///< m, the size of its largest features, > 0
+    int octaves;    ///< 1 to 8, each half the size and half the strength of the one before
+    uint32_t seed;  ///< any
+} SingeNoise;
+
+/// A named value per vertex of a sheet's mesh.
+typedef struct SingeAttribute {
+    const char *name;
+    const float *values; ///< [vertex_count]
+} SingeAttribute;
+
+typedef enum SingeFieldKind {
+    SINGE_FIELD_NONE = 0,
+    SINGE_FIELD_PICTURE = 1,
+    SINGE_FIELD_ATTRIBUTE = 2,
+    SINGE_FIELD_NOISE = 3,
+} SingeFieldKind;
+
+/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, the
+/// straight line between (and beyond, for an attribute outside [0, 1]). Without a field: `value`.
+/// Centres of cells take a picture or noise at their own place and the mean of their corners'
+/// attributes.
+typedef struct SingeParam {
+    float value;
+    float to;
+    SingeFieldKind field;
+    SingePicture picture;
+    const char *attribute; ///< the name of one of the sheet's attributes
+    SingeNoise noise;
+} SingeParam;
+
+/// A parameter with the same value everywhere.
+SINGE_API SingeParam singe_param(float value);
+
+/// One moment of a key-framed motion; linear in between, held before the first and after the last.
+typedef struct SingePoseKey {
+    float time;        ///< s
+    float position[3]; ///< m
+    float rotation[4]; ///< unit quaternion x, y, z, w; {0,0,0,1} is none
+} SingePoseKey;
+
+/// One moment of a key-framed number.
+typedef struct SingeValueKey {
+    float time; ///< s
+    float value;
+} SingeValueKey;
+
+/// The discrete Laplacian of the heat equation.
+typedef enum SingeHeatOperator {
+    SINGE_HEAT_SURFACE = 0,  ///< finite volumes in each layer and a conductance through the thickness
+    SINGE_HEAT_UMBRELLA = 1, ///< the paper's scale-dependent umbrella over all springs, eq 3
+} SingeHeatOperator;
+
+/// Spring colours of the body-centred square, in the paper's order.
+typedef enum SingeColour {
+    SINGE_RED = 0,    ///< centre to corner
+    SINGE_GREEN = 1,  ///< centre to centre
+    SINGE_BLUE = 2,   ///< corner to corner along the mesh's edges
+    SINGE_YELLOW = 3, ///< the diagonals of a cell
+    SINGE_COLOUR_COUNT = 4
+} SingeColour;
+
+/// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt.
+typedef struct SingeMaterialDef {
+    size_t struct_size;
+
+    // body
+    float grammage;          ///< kg/m2, > 0
+    float specific_heat;     ///< J/(kg K), > 0
+    SingeParam thickness;    ///< m, between the two layers of the model, > 0; sets the wrinkles' size
+
+    // heat, eq 1 to 3
+    SingeHeatOperator heat_operator;
+    SingeParam diffusivity;  ///< m2/s, alpha of eq 2, >= 0
+    float layer_exchange;    ///< 1/s, rate at which the two layers' temperatures even out, >= 0 (surface operator)
+    float convection;        ///< W/(m2 K) a side, >= 0
+    float emissivity;        ///< 0 to 1
+    float loss_mass_floor;   ///< the losses' rate is divided by max(mass, this), > 0 to 1
+    float thickening;        ///< front thickening F >= 1, or 0 for the smallest that the cells need
+    SingeParam temperature;  ///< K, at the start, > 0
+
+    // burning, eq 1 and 4 to 6
+    SingeParam ignition_temperature; ///< K, > 0
+    SingeParam heating;              ///< K per unit of mass fraction burnt, eta of eq 1, >= 0
+    SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
+    SingeParam ash_exponent;         ///< p >= 0; eq 4 times ((m - m_min)/(1 - m_min))^p; 0 is the paper
+    SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
+    SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
+    SingeParam ash_density;          ///< rho at m_min over rho_init, > 0
+    SingeParam shrink_front;         ///< how much of eq 6's shrinkage the corner layer takes, 0 to 2
+    SingeParam shrink_back;          ///< the same for the centre layer; unequal values curl the sheet
+    bool ablate;                     ///< false: nothing is removed (Fig 4 b)
+
+    // mechanics, eq 8 to 19
+    SingeParam weight[SINGE_COLOUR_COUNT]; ///< W of eq 19 by colour, 0 to 1
+    float compliance[SINGE_COLOUR_COUNT];  ///< m/N per spring, >= 0
+    float char_weight;                     ///< factor on the weight of what is burnt to m_min, 0 to 1
+    float drag;                            ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
+    float damping;                         ///< 1/s, of all velocities, >= 0
+} SingeMaterialDef;
+
+/// 80 g/m2 office paper at its real pace.
+SINGE_API SingeMaterialDef singe_default_material(void);
+
+/// A sheet: a quad mesh and its material. Cells are counter-clockwise seen from the front; the centre
+/// layer lies `thickness` from the corner layer, on the side of the normal (the front).
+typedef struct SingeSheetDef {
+    size_t struct_size;
+    const char *name;          ///< for messages; NULL is "sheet"
+    uint32_t vertex_count;
+    const float *positions;    ///< [3 * vertex_count] m
+    uint32_t cell_count;
+    const uint32_t *cells;     ///< [4 * cell_count], vertex indices
+    const float *uv;           ///< [2 * vertex_count] or NULL (then pictures are refused)
+    uint32_t attribute_count;
+    const SingeAttribute *attributes;
+    SingeMaterialDef material;
+    float velocity[3];         ///< m/s at the start
+    float drop_pieces_below;   ///< m2; loose pieces smaller than this vanish; 0 keeps all
+} SingeSheetDef;
+
+SINGE_API SingeSheetDef singe_default_sheet(void);
+
+typedef enum SingeSourceKind {
+    SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats what is near it
+    SINGE_SOURCE_PICTURE = 1,  ///< a flux over uv, black none, white full
+    SINGE_SOURCE_SPOT = 2,     ///< a disc of flux fixed in space, on from `start` to `end`
+    SINGE_SOURCE_PLUME = 3,    ///< hot gas rising from whatever burns
+    SINGE_SOURCE_CALLBACK = 4, ///< the caller's own
+} SingeSourceKind;
+
+struct SingeView;
+
+/// A caller's heat source: add to the arrays, one entry a particle, over view->particle_count.
+/// Heat flux into a layer is flux + conductance * (temperature - T) in W/m2, where
+/// `conductance_temperature` sums conductance * temperature. Must not depend on call order.
+typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flux, float *conductance,
+                         float *conductance_temperature);
+
+/// Something that heats. Ball and spot: conductance towards `temperature`, full within `radius`,
+/// falling smoothly to nothing at `radius + falloff`.
+typedef struct SingeSourceDef {
+    size_t struct_size;
+    SingeSourceKind kind;
+    float start, end;          ///< s, when it acts; end may be INFINITY
+    float temperature;         ///< K, of ball and spot, > 0
+    float conductance;         ///< W/(m2 K), of ball and spot, >= 0
+    float radius, falloff;     ///< m, of ball and spot, >= 0
+    uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
+    const SingePoseKey *path;  ///< positions only
+    SingePicture picture;      ///< picture source
+    float flux;                ///< W/m2 where the picture is white
+    uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
+    const SingeValueKey *strength;
+    float plume_share;         ///< share of the heat of combustion that the plume carries, 0 to 1
+    float plume_height;        ///< m, over which the plume's heat falls to 1/e, > 0
+    float plume_conductance;   ///< W/(m2 K) from gas to sheet, >= 0
+    SingeFluxFn *callback;     ///< not saved: set it again after a load
+    void *callback_context;
+} SingeSourceDef;
+
+SINGE_API SingeSourceDef singe_default_source(void);
+
+typedef enum SingeColliderKind {
+    SINGE_COLLIDER_PLANE = 0,   ///< through `position`, normal = local z
+    SINGE_COLLIDER_SPHERE = 1,
+    SINGE_COLLIDER_BOX = 2,     ///< half_size along the local axes
+    SINGE_COLLIDER_CAPSULE = 3, ///< along local z, `height` between the centres of its caps
+} SingeColliderKind;
+
+/// A rigid primitive that sheets rest on and slide over.
+typedef struct SingeColliderDef {
+    size_t struct_size;
+    SingeColliderKind kind;
+    float radius;             ///< m, sphere and capsule, > 0
+    float half_size[3];       ///< m, box, > 0
+    float height;             ///< m, capsule, >= 0
+    float friction;           ///< Coulomb's coefficient, >= 0
+    float offset;             ///< m, distance kept from the surface, >= 0
+    float temperature;        ///< K, > 0; only used when conductance > 0
+    float conductance;        ///< W/(m2 K) in contact, 0 for none
+    float contact_distance;   ///< m, how near counts as contact for heat, >= 0
+    uint32_t path_count;      ///< at least 1
+    const SingePoseKey *path;
+} SingeColliderDef;
+
+SINGE_API SingeColliderDef singe_default_collider(void);
+
+/// Holds particles of one sheet: those within `radius` of any of the points (rest position) and the
+/// listed vertices. They follow the path, taken relative to its pose at the time the pin is added.
+typedef struct SingePinDef {
+    size_t struct_size;
+    SingeSheetId sheet;
+    uint32_t point_count;
+    const float *points;      ///< [3 * point_count] m
+    float radius;             ///< m, >= 0; 0 pins the nearest vertex of each point
+    uint32_t vertex_count;
+    const uint32_t *vertices; ///< of the sheet's mesh
+    uint32_t path_count;      ///< 0: held still
+    const SingePoseKey *path;
+} SingePinDef;
+
+SINGE_API SingePinDef singe_default_pin(void);
+
+/// The air's motion: a mean and seeded gusts that vary over time and space.
+typedef struct SingeWindDef {
+    size_t struct_size;
+    float velocity[3]; ///< m/s
+    float gust;        ///< m/s, amplitude, >= 0
+    float gust_time;   ///< s, how long a gust lasts, > 0
+    float gust_size;   ///< m, how far it reaches, > 0
+    uint32_t seed;
+} SingeWindDef;
+
+SINGE_API SingeWindDef singe_default_wind(void);
+
+/// The strand projection (docs/equations.md).
+typedef struct SingeSolverDef {
+    size_t struct_size;
+    int substeps;                              ///< per step, >= 1
+    SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
+    float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
+    float height_min;                          ///< smallest height of a centre over its corners, in thicknesses; 0 is off
+    float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
+} SingeSolverDef;
+
+SINGE_API SingeSolverDef singe_default_solver(void);
+
+/// A simulation.
+typedef struct SingeSimDef {
+    size_t struct_size;
+    SingeAllocator allocator;
+    SingeLog log;
+    SingeTasks tasks;
+    int thread_count;           ///< of the simulation's own pool, 1 to 64
+    uint64_t seed;              ///< for everything that is random
+    float time_step;            ///< s, h of the paper, > 0
+    float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
+    float gravity[3];           ///< m/s2
+    float ambient_temperature;  ///< K, > 0
+    float air_density;          ///< kg/m3, >= 0
+    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0
+    SingeWindDef wind;
+    SingeSolverDef solver;
+} SingeSimDef;
+
+SINGE_API SingeSimDef singe_default_sim(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
