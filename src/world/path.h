@@ -1,0 +1,32 @@
+// Key-framed motion.
+#ifndef WORLD_PATH_H
+#define WORLD_PATH_H
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/vec.h"
+#include "singe/types.h"
+
+typedef struct Path {
+    uint32_t count;
+    SingePoseKey *keys; ///< in order of time
+} Path;
+
+typedef struct Pose {
+    Vec position;
+    float rotation[4];
+} Pose;
+
+/// Copies keys after checking them: finite, times increasing, rotations not zero (normalised here).
+SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error);
+void path_free(Path *path, Memory *memory);
+
+/// The pose at a time; linear position, normalised linear rotation, held beyond the ends. An empty
+/// path is at the origin.
+Pose path_pose(const Path *path, double time);
+
+/// local → world and back.
+static inline Vec pose_apply(const Pose *pose, Vec local) { return vec_add(pose->position, quat_rotate(pose->rotation, local)); }
+static inline Vec pose_unapply(const Pose *pose, Vec world) { return quat_unrotate(pose->rotation, vec_sub(world, pose->position)); }
+
+#endif

@@ -1,0 +1,12 @@
+// The air's velocity at a place and time.
+#ifndef WORLD_WIND_H
+#define WORLD_WIND_H
+
+#include "base/error.h"
+#include "base/vec.h"
+#include "singe/types.h"
+
+SingeResult wind_check(const SingeWindDef *def, SingeError *error);
+Vec wind_velocity(const SingeWindDef *def, Vec position, double time);
+
+#endif

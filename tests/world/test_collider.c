@@ -1,0 +1,134 @@
+// Signed distances: against hand values, and normals against numeric gradients at random points.
+#include "support/support.h"
+
+#include "world/collider.h"
+
+#include <string.h>
+
+static uint32_t random_state = 1;
+static float any(float scale) {
+    random_state = random_state * 1664525u + 1013904223u;
+    return ((float)(random_state >> 8) / 16777216.0f - 0.5f) * 2 * scale;
+}
+
+static SingeColliderDef make(SingeColliderKind kind) {
+    SingeColliderDef def = singe_default_collider();
+    def.kind = kind;
+    def.radius = 0.7f;
+    def.half_size[0] = 0.5f, def.half_size[1] = 1, def.half_size[2] = 1.5f;
+    def.height = 2;
+    return def;
+}
+
+static double distance(const SingeColliderDef *def, Vec p) {
+    Vec normal;
+    return (double)collider_distance(def, p, &normal);
+}
+
+static void normals_are_gradients(void **state) {
+    (void)state;
+    const float e = 1e-3f;
+    for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
+        SingeColliderDef def = make((SingeColliderKind)kind);
+        int checked = 0;
+        for (int i = 0; i < 5000; i++) {
+            Vec p = vec(any(3), any(3), any(3)), normal;
+            double d = (double)collider_distance(&def, p, &normal);
+            assert_true(isfinite(d) && fabsf(vec_length(normal) - 1) < 1e-5f);
+            double gradient[3] = {
+                (distance(&def, vec(p.x + e, p.y, p.z)) - distance(&def, vec(p.x - e, p.y, p.z))) / (2 * (double)e),
+                (distance(&def, vec(p.x, p.y + e, p.z)) - distance(&def, vec(p.x, p.y - e, p.z))) / (2 * (double)e),
+                (distance(&def, vec(p.x, p.y, p.z + e)) - distance(&def, vec(p.x, p.y, p.z - e))) / (2 * (double)e),
+            };
+            double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+            if (length < 0.99) continue; // on the medial axis
+            checked++;
+            double off = fabs(gradient[0] - (double)normal.x) + fabs(gradient[1] - (double)normal.y) + fabs(gradient[2] - (double)normal.z);
+            if (off > 0.02) fail_msg("kind %d at (%g, %g, %g): the normal is off by %g", kind, (double)p.x, (double)p.y, (double)p.z, off);
+            // one step of the distance along the normal ends on the surface
+            Vec surface = vec_mad(p, normal, -(float)d);
+            assert_true(fabs(distance(&def, surface)) < 1e-5);
+        }
+        assert_true(checked > 4800);
+    }
+}
+
+static void expect(SingeColliderKind kind, Vec p, float d, Vec n) {
+    SingeColliderDef def = make(kind);
+    Vec normal;
+    float found = collider_distance(&def, p, &normal);
+    if (fabsf(found - d) > 1e-6f || vec_length(vec_sub(normal, n)) > 1e-6f)
+        fail_msg("kind %d: %g (%g, %g, %g)", (int)kind, (double)found, (double)normal.x, (double)normal.y, (double)normal.z);
+}
+
+static void hand_values(void **state) {
+    (void)state;
+    expect(SINGE_COLLIDER_PLANE, vec(5, -7, 0.25f), 0.25f, vec(0, 0, 1));
+    expect(SINGE_COLLIDER_PLANE, vec(5, -7, -2), -2, vec(0, 0, 1));
+    expect(SINGE_COLLIDER_SPHERE, vec(0, -1, 0), 0.3f, vec(0, -1, 0));
+    expect(SINGE_COLLIDER_SPHERE, vec(0.1f, 0, 0), -0.6f, vec(1, 0, 0));
+    expect(SINGE_COLLIDER_SPHERE, vec(0, 0, 0), -0.7f, vec(0, 0, 1));
+    expect(SINGE_COLLIDER_BOX, vec(0.75f, 0, 0), 0.25f, vec(1, 0, 0));
+    expect(SINGE_COLLIDER_BOX, vec(0, -0.9f, 0), -0.1f, vec(0, -1, 0));
+    expect(SINGE_COLLIDER_BOX, vec(-0.45f, 0.5f, 1), -0.05f, vec(-1, 0, 0));
+    expect(SINGE_COLLIDER_BOX, vec(3.5f, 5, 0), 5, vec(0.6f, 0.8f, 0));
+    expect(SINGE_COLLIDER_BOX, vec(0.5f + 1, -1 - 2, 1.5f + 2), 3, vec(1 / 3.0f, -2 / 3.0f, 2 / 3.0f));
+    expect(SINGE_COLLIDER_CAPSULE, vec(1, 0, 0.9f), 0.3f, vec(1, 0, 0));
+    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0, 2), 0.3f, vec(0, 0, 1));
+    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0, -2), 0.3f, vec(0, 0, -1));
+    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0.6f, 1.8f), 0.3f, vec(0, 0.6f, 0.8f));
+}
+
+static void surfaces_are_round_inside(void **state) {
+    (void)state;
+    SingeColliderDef def = make(SINGE_COLLIDER_BOX);
+    Vec normal;
+    assert_true(collider_distance(&def, vec(0.5f, 1, 1.5f), &normal) == 0); // a corner
+    assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+    def = make(SINGE_COLLIDER_CAPSULE);
+    assert_true(collider_distance(&def, vec(0, 0, 0.3f), &normal) == -0.7f); // on the axis
+    assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+}
+
+typedef void Spoil(SingeColliderDef *def);
+static void spoil_kind(SingeColliderDef *def) { def->kind = (SingeColliderKind)9; }
+static void spoil_kind_negative(SingeColliderDef *def) { def->kind = (SingeColliderKind)-1; }
+static void spoil_radius(SingeColliderDef *def) { def->radius = 0; }
+static void spoil_radius_nan(SingeColliderDef *def) { def->radius = NAN; }
+static void spoil_half(SingeColliderDef *def) { def->kind = SINGE_COLLIDER_BOX, def->half_size[2] = -1; }
+static void spoil_height(SingeColliderDef *def) { def->kind = SINGE_COLLIDER_CAPSULE, def->height = -1; }
+static void spoil_friction(SingeColliderDef *def) { def->friction = -0.1f; }
+static void spoil_offset(SingeColliderDef *def) { def->offset = INFINITY; }
+static void spoil_conductance(SingeColliderDef *def) { def->conductance = -1; }
+static void spoil_distance(SingeColliderDef *def) { def->contact_distance = NAN; }
+static void spoil_temperature(SingeColliderDef *def) { def->conductance = 1, def->temperature = 0; }
+static void spoil_path(SingeColliderDef *def) { def->path_count = 0; }
+
+static void bad_fields_are_named(void **state) {
+    (void)state;
+    static const struct {
+        Spoil *spoil;
+        const char *word;
+    } cases[] = {{spoil_kind, "kind"},         {spoil_kind_negative, "kind"}, {spoil_radius, "radius"},          {spoil_radius_nan, "radius"},
+                 {spoil_half, "half_size"},    {spoil_height, "height"},      {spoil_friction, "friction"},      {spoil_offset, "offset"},
+                 {spoil_conductance, "conductance"}, {spoil_distance, "contact_distance"}, {spoil_temperature, "temperature"}, {spoil_path, "path"}};
+    SingeError error;
+    SingeColliderDef good = make(SINGE_COLLIDER_SPHERE);
+    good.path_count = 1;
+    assert_int_equal(collider_check(&good, &error), SINGE_OK);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        SingeColliderDef def = good;
+        cases[i].spoil(&def);
+        assert_int_equal(collider_check(&def, &error), SINGE_ERROR_ARGUMENT);
+        assert_string_equal(error.stage, "collider");
+        assert_non_null(strstr(error.message, cases[i].word));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(normals_are_gradients), cmocka_unit_test(hand_values), cmocka_unit_test(surfaces_are_round_inside),
+        cmocka_unit_test(bad_fields_are_named),
+    };
+    return cmocka_run_group_tests_name("world_collider", tests, NULL, NULL);
+}

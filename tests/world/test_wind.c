@@ -1,0 +1,93 @@
+// Wind: the mean, the gusts' bound, seed and smoothness.
+#include "support/support.h"
+
+#include "world/wind.h"
+
+#include <string.h>
+
+static Vec at(const SingeWindDef *def, int i) { return wind_velocity(def, vec((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037); }
+
+static void no_gust_is_uniform(void **state) {
+    (void)state;
+    SingeWindDef def = singe_default_wind();
+    def.velocity[0] = 1, def.velocity[1] = -2, def.velocity[2] = 0.5f;
+    for (int i = 0; i < 100; i++) {
+        Vec v = at(&def, i);
+        assert_true(v.x == 1 && v.y == -2 && v.z == 0.5f);
+    }
+}
+
+static void mean_and_bound(void **state) {
+    (void)state;
+    SingeWindDef def = singe_default_wind();
+    def.velocity[0] = 3;
+    def.gust = 2;
+    enum { COUNT = 50000 };
+    double mean[3] = {0}, square = 0;
+    for (int i = 0; i < COUNT; i++) {
+        Vec v = at(&def, i);
+        assert_true(fabsf(v.x - 3) <= 2 && fabsf(v.y) <= 2 && fabsf(v.z) <= 2);
+        mean[0] += (double)v.x / COUNT, mean[1] += (double)v.y / COUNT, mean[2] += (double)v.z / COUNT;
+        square += (double)(v.y * v.y) / COUNT;
+    }
+    assert_true(fabs(mean[0] - 3) < 0.1 && fabs(mean[1]) < 0.1 && fabs(mean[2]) < 0.1);
+    assert_true(sqrt(square) > 0.3 && sqrt(square) < 1.2); // it does blow
+}
+
+static void seeded(void **state) {
+    (void)state;
+    SingeWindDef a = singe_default_wind();
+    a.gust = 1;
+    SingeWindDef b = a;
+    int equal = 0;
+    for (int i = 0; i < 1000; i++) {
+        Vec v = at(&a, i), w = at(&b, i);
+        assert_memory_equal(&v, &w, sizeof v);
+    }
+    b.seed++;
+    for (int i = 0; i < 1000; i++) equal += at(&a, i).x == at(&b, i).x;
+    assert_true(equal < 5);
+}
+
+static void smooth_in_time_and_space(void **state) {
+    (void)state;
+    SingeWindDef def = singe_default_wind();
+    def.gust = 1;
+    for (int i = 0; i < 2000; i++) {
+        double time = i * 0.013;
+        Vec p = vec((float)i * 0.01f, 0.2f, 0.3f), v = wind_velocity(&def, p, time);
+        // slopes: the noise's is 2 * 15/8 per lattice cell and direction
+        Vec later = wind_velocity(&def, p, time + 1e-3), there = wind_velocity(&def, vec(p.x + 1e-3f, p.y, p.z), time);
+        assert_true(vec_length(vec_sub(later, v)) < 1.75f * 3.75f * 1.8f * 1e-3f / def.gust_time + 1e-4f);
+        assert_true(vec_length(vec_sub(there, v)) < 1.75f * 3.75f * 1e-3f / def.gust_size + 1e-4f);
+    }
+}
+
+static void bad_fields(void **state) {
+    (void)state;
+    SingeError error;
+    SingeWindDef good = singe_default_wind(), bad;
+    assert_int_equal(wind_check(&good, &error), SINGE_OK);
+#define BAD(field, value)                                                 \
+    bad = good;                                                           \
+    bad.field = (value);                                                  \
+    assert_int_equal(wind_check(&bad, &error), SINGE_ERROR_ARGUMENT);     \
+    assert_string_equal(error.stage, "wind")
+    BAD(velocity[1], NAN);
+    BAD(velocity[0], 1e6f);
+    BAD(gust, -1);
+    BAD(gust, INFINITY);
+    BAD(gust_time, 0);
+    BAD(gust_time, NAN);
+    BAD(gust_size, -1);
+    BAD(gust_size, INFINITY);
+#undef BAD
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_gust_is_uniform), cmocka_unit_test(mean_and_bound), cmocka_unit_test(seeded),
+        cmocka_unit_test(smooth_in_time_and_space), cmocka_unit_test(bad_fields),
+    };
+    return cmocka_run_group_tests_name("world_wind", tests, NULL, NULL);
+}
