@@ -1,0 +1,279 @@
+// The body-centred square of section 3.2: from quads to particles and springs of four colours.
+//
+//   blue    the mesh's edges                 about 2 N_c
+//   green   centres of cells that share one        2 N_c
+//   red     centre to corners                      4 N_c
+//   yellow  both diagonals                         2 N_c
+//
+// Which springs run on into which (the mates that strand.c follows): a green spring into the one across
+// the opposite side of the cell, a red one at the centre into that of the opposite corner, and at a vertex
+// each into the one opposite in the fan of cells, where there is one.
+#include "shell/family.h"
+#include "shell/measure.h"
+#include "shell/half_edge.h"
+#include "shell/strand.h"
+
+#include <string.h>
+
+enum { SHEET_LIMIT = UINT16_MAX };
+
+static SingeResult shell_count(const SheetSource *sources, uint32_t source_count, Shell *shell, SingeError *error) {
+    uint64_t vertices = 0, cells = 0;
+    for (uint32_t i = 0; i < source_count; i++) {
+        vertices += sources[i].sheet.vertex_count;
+        cells += sources[i].sheet.cell_count;
+    }
+    // indices of particles and of the 4 N_c red springs are also counted in int
+    if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX || cells > INT32_MAX / 4)
+        return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
+                         "%u sheets with %llu vertices and %llu cells are too many", source_count,
+                         (unsigned long long)vertices, (unsigned long long)cells);
+    *shell = (Shell){.vertex_count = (uint32_t)vertices, .cell_count = (uint32_t)cells, .sheet_count = source_count};
+    shell->particle_count = shell->vertex_count + shell->cell_count;
+    return SINGE_OK;
+}
+
+/// The per-particle float arrays of Matter.
+enum { MATTER_FLOATS = 3 + PARAM_COUNT };
+
+static void matter_fields(Matter *matter, float **fields[MATTER_FLOATS]) {
+    float **list[MATTER_FLOATS] = {
+        [PARAM_THICKNESS] = &matter->thickness,     [PARAM_DIFFUSIVITY] = &matter->diffusivity,
+        [PARAM_TEMPERATURE] = &matter->temperature, [PARAM_IGNITION] = &matter->ignition_temperature,
+        [PARAM_HEATING] = &matter->heating,         [PARAM_MASS_RATE] = &matter->mass_rate,
+        [PARAM_ASH_EXPONENT] = &matter->ash_exponent, [PARAM_MASS_MIN] = &matter->mass_min,
+        [PARAM_MASS_LOSS] = &matter->mass_loss,     [PARAM_ASH_DENSITY] = &matter->ash_density,
+        [PARAM_SHRINK] = &matter->shrink,           [PARAM_COUNT] = &matter->area,
+        [PARAM_COUNT + 1] = &matter->mass,          [PARAM_COUNT + 2] = &matter->capacity,
+    };
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) list[PARAM_WEIGHT + colour] = &matter->weight[colour];
+    memcpy(fields, list, sizeof list);
+}
+
+static bool shell_alloc(Memory *memory, Shell *shell) {
+    float **fields[MATTER_FLOATS];
+    matter_fields(&shell->matter, fields);
+    bool done = NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
+                NEW(memory, shell->rest_position, shell->particle_count) &&
+                NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
+                NEW(memory, shell->matter.sheet, shell->particle_count) &&
+                NEW(memory, shell->cell_order, shell->cell_count);
+    for (int f = 0; f < MATTER_FLOATS && done; f++) done = NEW(memory, *fields[f], shell->particle_count);
+    return done;
+}
+
+void shell_free(Memory *memory, Shell *shell) {
+    float **fields[MATTER_FLOATS];
+    matter_fields(&shell->matter, fields);
+    for (int f = 0; f < MATTER_FLOATS; f++) FREE(memory, *fields[f], shell->particle_count);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strand_free(memory, &shell->springs[colour]);
+    FREE(memory, shell->cells, shell->cell_count);
+    FREE(memory, shell->cell_springs, shell->cell_count);
+    FREE(memory, shell->rest_position, shell->particle_count);
+    FREE(memory, shell->uv, shell->particle_count);
+    FREE(memory, shell->sheets, shell->sheet_count);
+    FREE(memory, shell->matter.sheet, shell->particle_count);
+    FREE(memory, shell->cell_order, shell->cell_count);
+    FREE(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
+    *shell = (Shell){0};
+}
+
+/// Copies one sheet to its ranges, which begin at sheet->vertex_first and cell_first.
+static void place_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
+    const Sheet *sheet = &shell->sheets[index];
+    uint32_t total = sheet->vertex_count + sheet->cell_count, centre = shell_centre(shell, sheet->cell_first);
+    float **fields[MATTER_FLOATS];
+    matter_fields(&shell->matter, fields);
+    for (int p = 0; p < PARAM_COUNT; p++) {
+        const float *values = source->params + (size_t)p * total;
+        for (uint32_t v = 0; v < sheet->vertex_count; v++) (*fields[p])[sheet->vertex_first + v] = values[v];
+        for (uint32_t c = 0; c < sheet->cell_count; c++) (*fields[p])[centre + c] = values[sheet->vertex_count + c];
+    }
+    for (uint32_t v = 0; v < sheet->vertex_count; v++) {
+        uint32_t p = sheet->vertex_first + v;
+        for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
+        for (int k = 0; k < 2; k++) shell->uv[p][k] = source->uv[v][k];
+        shell->matter.sheet[p] = (uint16_t)index;
+    }
+    for (uint32_t c = 0; c < sheet->cell_count; c++) {
+        float *uv = shell->uv[centre + c];
+        for (int i = 0; i < 4; i++) {
+            uint32_t corner = sheet->vertex_first + source->cells[c][i];
+            shell->cells[sheet->cell_first + c][i] = corner;
+            for (int k = 0; k < 2; k++) uv[k] += shell->uv[corner][k] / 4;
+        }
+        shell->matter.sheet[centre + c] = (uint16_t)index;
+    }
+}
+
+static void place_sheets(Shell *shell, const SheetSource *sources) {
+    uint32_t vertex = 0, cell = 0;
+    for (uint32_t i = 0; i < shell->sheet_count; i++) {
+        memcpy(&shell->sheets[i], &sources[i].sheet, sizeof shell->sheets[i]);
+        shell->sheets[i].vertex_first = vertex;
+        shell->sheets[i].cell_first = cell;
+        place_sheet(shell, i, &sources[i]);
+        vertex += sources[i].sheet.vertex_count;
+        cell += sources[i].sheet.cell_count;
+    }
+}
+
+/// Ends of springs in the order of the numbers that cell_springs holds before the strands are known.
+static void list_ends(const Shell *shell, int colour, LooseSprings *loose) {
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *corner = shell->cells[c], centre = shell_centre(shell, c);
+        const CellSprings *springs = &shell->cell_springs[c];
+        for (int i = 0; i < 4; i++) {
+            uint32_t a = corner[i], b = corner[(i + 1) & 3], *ends;
+            if (colour == SINGE_RED) {
+                ends = loose->ends[springs->red[i]], ends[0] = centre, ends[1] = a;
+            } else if (colour == SINGE_BLUE) {
+                ends = loose->ends[springs->blue[i]], ends[0] = a < b ? a : b, ends[1] = a < b ? b : a;
+            } else if (colour == SINGE_GREEN && springs->neighbour[i] != SHELL_NONE && c < springs->neighbour[i]) {
+                ends = loose->ends[springs->green[i]];
+                ends[0] = centre, ends[1] = shell_centre(shell, springs->neighbour[i]);
+            } else if (colour == SINGE_YELLOW && i < 2) {
+                ends = loose->ends[springs->yellow[i]], ends[0] = a, ends[1] = corner[i + 2];
+            }
+        }
+    }
+}
+
+/// The end at its vertex of the spring of `colour` that belongs to a half-edge: the edge itself, the red
+/// spring to the corner or the diagonal from it.
+static uint32_t end_at_vertex(const Shell *shell, int colour, uint32_t half) {
+    const CellSprings *springs = &shell->cell_springs[half / 4];
+    uint32_t i = half & 3, corner = shell->cells[half / 4][i], next = shell->cells[half / 4][(i + 1) & 3];
+    if (colour == SINGE_RED) return 2 * springs->red[i] + 1;
+    if (colour == SINGE_YELLOW) return 2 * springs->yellow[i & 1] + (i >> 1);
+    return 2 * springs->blue[i] + (corner > next);
+}
+
+/// Mates the ends around a vertex, in turning order. Inside, an even number n of spokes pairs k with
+/// k + n/2 and an odd one pairs none; at the boundary k goes with k + 2, past the one spoke between them.
+static void join_fan(LooseSprings *loose, const uint32_t *ends, uint32_t count, bool inside) {
+    if (inside && count % 2 == 0)
+        for (uint32_t k = 0; k < count / 2; k++) strand_join(loose, ends[k], ends[k + count / 2]);
+    for (uint32_t k = 0; !inside && k + 2 < count; k++)
+        if (loose->mate[ends[k]] == SHELL_NONE) strand_join(loose, ends[k], ends[k + 2]);
+}
+
+static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *loose, uint32_t *ends) {
+    const Shell *shell = mesh->shell;
+    for (uint32_t v = 0; v < shell->vertex_count; v++) {
+        uint32_t half = mesh->fan_start[v], last = half, count = 0;
+        for (uint32_t k = 0; k < mesh->fan_size[v]; k++) {
+            ends[count++] = end_at_vertex(shell, colour, half);
+            last = half;
+            half = half_edge_turn(mesh, half);
+        }
+        bool inside = half_edge_is_inside(mesh, v);
+        if (colour == SINGE_BLUE && count && !inside) {
+            // the boundary's other edge comes in from the last cell's corner before
+            uint32_t before = half_edge_previous(last);
+            uint32_t other = shell->cells[before / 4][before & 3];
+            ends[count++] = 2 * shell->cell_springs[before / 4].blue[before & 3] + (v > other);
+        }
+        join_fan(loose, ends, count, inside);
+    }
+}
+
+static void join_in_cells(const Shell *shell, int colour, LooseSprings *loose) {
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const CellSprings *springs = &shell->cell_springs[c];
+        for (int i = 0; i < 2; i++) {
+            if (colour == SINGE_RED)
+                strand_join(loose, 2 * springs->red[i], 2 * springs->red[i + 2]);
+            else if (springs->green[i] != SHELL_NONE && springs->green[i + 2] != SHELL_NONE)
+                strand_join(loose, 2 * springs->green[i] + (c > springs->neighbour[i]),
+                            2 * springs->green[i + 2] + (c > springs->neighbour[i + 2]));
+        }
+    }
+}
+
+/// From loose numbers to the numbers along strands.
+static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        CellSprings *springs = &shell->cell_springs[c];
+        uint32_t *slot = colour == SINGE_RED     ? springs->red
+                         : colour == SINGE_GREEN ? springs->green
+                         : colour == SINGE_BLUE  ? springs->blue
+                                                 : springs->yellow;
+        for (int i = 0; i < (colour == SINGE_YELLOW ? 2 : 4); i++)
+            if (slot[i] != SHELL_NONE) slot[i] = number[slot[i]];
+    }
+}
+
+static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *shell, int colour, uint32_t count,
+                                 SingeError *error) {
+    LooseSprings loose = {.count = count};
+    uint32_t *number = NULL, *ends = NULL;
+    SingeResult result;
+    if (NEW(memory, loose.ends, count) && NEW(memory, loose.mate, (size_t)2 * count) && NEW(memory, number, count) &&
+        NEW(memory, ends, (size_t)mesh->fan_longest + 1)) {
+        for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;
+        list_ends(shell, colour, &loose);
+        if (colour != SINGE_GREEN) join_at_vertices(mesh, colour, &loose, ends);
+        if (colour == SINGE_GREEN || colour == SINGE_RED) join_in_cells(shell, colour, &loose);
+        result = strand_build(memory, shell->particle_count, &loose, &shell->springs[colour], number, error);
+        if (result == SINGE_OK) renumber_cells(shell, colour, number);
+    } else {
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for %u springs", count);
+    }
+    FREE(memory, loose.ends, count);
+    FREE(memory, loose.mate, (size_t)2 * count);
+    FREE(memory, number, count);
+    FREE(memory, ends, (size_t)mesh->fan_longest + 1);
+    return result;
+}
+
+static SingeResult build_springs(Memory *memory, Shell *shell, SingeError *error) {
+    HalfEdges mesh;
+    TRY(half_edge_build(memory, shell, &mesh, error));
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        for (uint32_t i = 0; i < 4; i++) shell->cell_springs[c].red[i] = 4 * c + i;
+        for (uint32_t i = 0; i < 2; i++) shell->cell_springs[c].yellow[i] = 2 * c + i;
+    }
+    uint32_t counts[SINGE_COLOUR_COUNT] = {[SINGE_RED] = 4 * shell->cell_count,
+                                           [SINGE_GREEN] = mesh.shared_count,
+                                           [SINGE_BLUE] = mesh.edge_count,
+                                           [SINGE_YELLOW] = 2 * shell->cell_count};
+    SingeResult result = SINGE_OK;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT && result == SINGE_OK; colour++)
+        result = spring_colour(memory, &mesh, shell, colour, counts[colour], error);
+    half_edge_free(memory, &mesh);
+    return result;
+}
+
+/// Families of cells without a common corner.
+static bool colour_cells(Memory *memory, Shell *shell) {
+    uint32_t count = shell->cell_count, *family = NULL, families = 0;
+    ItemNodes items = {.node_count = shell->vertex_count, .item_count = count, .nodes = count ? shell->cells[0] : NULL};
+    if (NEW(memory, items.first, (size_t)count + 1) && NEW(memory, family, count)) {
+        for (uint32_t c = 0; c <= count; c++) items.first[c] = 4 * c;
+        families = family_colour(memory, &items, family);
+    }
+    shell->cell_family_count = count ? families : 0;
+    bool done = families && NEW(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
+    if (done) family_sort(count, family, shell->cell_family_count, shell->cell_family_first, shell->cell_order);
+    FREE(memory, items.first, (size_t)count + 1);
+    FREE(memory, family, count);
+    return done;
+}
+
+SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t source_count, Shell *shell,
+                         SingeError *error) {
+    *shell = (Shell){0};
+    TRY(shell_count(sources, source_count, shell, error));
+    SingeResult result = SINGE_OK;
+    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), !colour_cells(memory, shell)))
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
+                           shell->cell_count);
+    if (result == SINGE_OK) result = build_springs(memory, shell, error);
+    if (result == SINGE_OK) {
+        measure_particles(shell);
+        result = measure_springs(shell, error);
+    }
+    if (result != SINGE_OK) shell_free(memory, shell);
+    return result;
+}

@@ -1,0 +1,36 @@
+// How the cells of a quad mesh meet.
+//
+// Half-edge 4 c + i is side i of cell c, from its corner i to corner i + 1. Its twin is the same edge
+// seen from the neighbour, which runs it the other way.
+#ifndef SHELL_HALF_EDGE_H
+#define SHELL_HALF_EDGE_H
+
+#include "shell/shell.h"
+
+typedef struct HalfEdges {
+    const Shell *shell;   ///< whose vertices and cells these are
+    uint32_t *twin;       ///< [4 * cell_count], or SHELL_NONE at the boundary
+    uint32_t *fan_start;  ///< [vertex_count] half-edge leaving the vertex, first in turning order
+    uint32_t *fan_size;   ///< [vertex_count] cells around the vertex
+    uint32_t fan_longest;
+    uint32_t edge_count;
+    uint32_t shared_count; ///< edges with two cells
+} HalfEdges;
+
+/// Matches the sides of the cells, checks that they form a manifold that is turned one way, and numbers
+/// edges: fills blue, green (one for each shared edge) and neighbour of shell->cell_springs.
+SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, SingeError *error);
+void half_edge_free(Memory *memory, HalfEdges *mesh);
+
+static inline uint32_t half_edge_next(uint32_t half) { return (half & ~3u) | ((half + 1) & 3); }
+static inline uint32_t half_edge_previous(uint32_t half) { return (half & ~3u) | ((half + 3) & 3); }
+
+/// The half-edge that leaves the same vertex one cell further counter-clockwise, or SHELL_NONE.
+static inline uint32_t half_edge_turn(const HalfEdges *mesh, uint32_t half) { return mesh->twin[half_edge_previous(half)]; }
+
+/// True where the cells around the vertex close into a circle.
+static inline bool half_edge_is_inside(const HalfEdges *mesh, uint32_t vertex) {
+    return mesh->fan_size[vertex] && mesh->twin[mesh->fan_start[vertex]] != SHELL_NONE;
+}
+
+#endif

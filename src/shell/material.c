@@ -1,0 +1,217 @@
+// The parameters of a sheet: a number, or a line between two numbers by a picture, attribute or noise.
+//
+//   value(x) = (1 - f) value + f to,   f = picture(u, v), attribute or noise(rest position)
+//
+// At a centre f is the picture at the mean uv, the mean of the corners' attribute, or the noise at the
+// mean of the corners.
+#include "shell/sheet.h"
+
+#include "base/random.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { AT_VERTICES = 1, AT_CENTRES = 2, AT_BOTH = 3 };
+
+/// Where a parameter stands in the material and what it may be.
+typedef struct ParamRule {
+    const char *name;
+    size_t offset;
+    int param;
+    int places;
+    float low, high;
+    bool low_open, high_open;
+    const char *range;
+} ParamRule;
+
+#define FIELD(member) #member, offsetof(SingeMaterialDef, member)
+#define POSITIVE POSITIVE_RANGE, "above 0"
+#define POSITIVE_RANGE 0, INFINITY, true, true
+#define NOT_NEGATIVE 0, INFINITY, false, true, "0 or more"
+#define BELOW_ONE 0, 1, false, true, "from 0 to below 1"
+#define UP_TO_TWO 0, 2, false, false, "from 0 to 2"
+#define UP_TO_ONE 0, 1, false, false, "from 0 to 1"
+
+static const ParamRule param_rules[] = {
+    {FIELD(thickness), PARAM_THICKNESS, AT_BOTH, POSITIVE},
+    {FIELD(diffusivity), PARAM_DIFFUSIVITY, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(temperature), PARAM_TEMPERATURE, AT_BOTH, POSITIVE},
+    {FIELD(ignition_temperature), PARAM_IGNITION, AT_BOTH, POSITIVE},
+    {FIELD(heating), PARAM_HEATING, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(mass_rate), PARAM_MASS_RATE, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(ash_exponent), PARAM_ASH_EXPONENT, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(mass_min), PARAM_MASS_MIN, AT_BOTH, BELOW_ONE},
+    {FIELD(mass_loss), PARAM_MASS_LOSS, AT_BOTH, BELOW_ONE},
+    {FIELD(ash_density), PARAM_ASH_DENSITY, AT_BOTH, POSITIVE},
+    {FIELD(shrink_front), PARAM_SHRINK, AT_VERTICES, UP_TO_TWO},
+    {FIELD(shrink_back), PARAM_SHRINK, AT_CENTRES, UP_TO_TWO},
+    {FIELD(weight[SINGE_RED]), PARAM_WEIGHT + SINGE_RED, AT_BOTH, UP_TO_ONE},
+    {FIELD(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, AT_BOTH, UP_TO_ONE},
+    {FIELD(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, AT_BOTH, UP_TO_ONE},
+    {FIELD(weight[SINGE_YELLOW]), PARAM_WEIGHT + SINGE_YELLOW, AT_BOTH, UP_TO_ONE},
+};
+enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
+
+/// A number of the material that is the same over the sheet.
+typedef struct ScalarRule {
+    const char *name;
+    size_t offset;
+    float low, high;
+    bool low_open, high_open;
+    const char *range;
+} ScalarRule;
+
+static const ScalarRule scalar_rules[] = {
+    {FIELD(grammage), POSITIVE},
+    {FIELD(specific_heat), POSITIVE},
+    {FIELD(layer_exchange), NOT_NEGATIVE},
+    {FIELD(convection), NOT_NEGATIVE},
+    {FIELD(emissivity), UP_TO_ONE},
+    {FIELD(loss_mass_floor), 0, 1, true, false, "above 0, to 1"},
+    {FIELD(compliance[SINGE_RED]), NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_GREEN]), NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_BLUE]), NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_YELLOW]), NOT_NEGATIVE},
+    {FIELD(char_weight), UP_TO_ONE},
+    {FIELD(drag), NOT_NEGATIVE},
+    {FIELD(damping), NOT_NEGATIVE},
+};
+
+/// NaN is outside every range, and so are infinities.
+static bool inside(float x, float low, float high, bool low_open, bool high_open) {
+    return isfinite(x) && (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+}
+
+SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error) {
+    for (size_t i = 0; i < sizeof scalar_rules / sizeof scalar_rules[0]; i++) {
+        const ScalarRule *rule = &scalar_rules[i];
+        float value;
+        memcpy(&value, (const char *)material + rule->offset, sizeof value);
+        if (!inside(value, rule->low, rule->high, rule->low_open, rule->high_open))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s must be %s", sheet,
+                             rule->name, rule->range);
+    }
+    if (material->thickening != 0 && !(isfinite(material->thickening) && material->thickening >= 1))
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
+                         sheet);
+    int heat_operator = (int)material->heat_operator;
+    if (heat_operator != SINGE_HEAT_SURFACE && heat_operator != SINGE_HEAT_UMBRELLA)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': there is no heat operator %d", sheet,
+                         heat_operator);
+    return SINGE_OK;
+}
+
+float shell_sample_picture(const SingePicture *picture, float u, float v) {
+    double limit[2] = {picture->width - 1.0, picture->height - 1.0};
+    double at[2] = {(double)u * picture->width - 0.5, (1 - (double)v) * picture->height - 0.5}, part[2];
+    size_t low[2], high[2];
+    for (int k = 0; k < 2; k++) {
+        at[k] = !(at[k] > 0) ? 0 : at[k] < limit[k] ? at[k] : limit[k];
+        low[k] = (size_t)at[k];
+        high[k] = at[k] < limit[k] ? low[k] + 1 : low[k];
+        part[k] = at[k] - (double)low[k];
+    }
+    const float *top = picture->values + low[1] * (size_t)picture->width;
+    const float *bottom = picture->values + high[1] * (size_t)picture->width;
+    double upper = (1 - part[0]) * (double)top[low[0]] + part[0] * (double)top[high[0]];
+    double lower = (1 - part[0]) * (double)bottom[low[0]] + part[0] * (double)bottom[high[0]];
+    return (float)((1 - part[1]) * upper + part[1] * lower);
+}
+
+/// What a parameter is evaluated on.
+typedef struct Field {
+    const SingeParam *param;
+    const float *attribute; ///< [vertex_count] or NULL
+    const SheetSource *source;
+} Field;
+
+static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, const char *what, SingeError *error) {
+    return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s %s", source->sheet.name, rule->name,
+                     what);
+}
+
+static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, Field *field, SingeError *error) {
+    const char *name = field->param->attribute;
+    if (!name) return field_fail(field->source, rule, "names no attribute", error);
+    for (uint32_t i = 0; i < def->attribute_count; i++)
+        if (strcmp(def->attributes[i].name, name) == 0) field->attribute = def->attributes[i].values;
+    if (!field->attribute)
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s: the mesh has no attribute '%s'",
+                         field->source->sheet.name, rule->name, name);
+    return SINGE_OK;
+}
+
+static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, Field *field, SingeError *error) {
+    const SingeParam *param = field->param;
+    switch ((int)param->field) {
+    case SINGE_FIELD_NONE: return SINGE_OK;
+    case SINGE_FIELD_PICTURE:
+        if (!def->uv) return field_fail(field->source, rule, "is a picture but the sheet has no uv", error);
+        if (param->picture.width < 1 || param->picture.height < 1 || !param->picture.values)
+            return field_fail(field->source, rule, "is an empty picture", error);
+        return SINGE_OK;
+    case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
+    case SINGE_FIELD_NOISE:
+        if (!inside(param->noise.scale, POSITIVE_RANGE))
+            return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
+        if (param->noise.octaves < 1 || param->noise.octaves > 8)
+            return field_fail(field->source, rule, "is noise of other than 1 to 8 octaves", error);
+        return SINGE_OK;
+    default: return field_fail(field->source, rule, "varies by an unknown kind of field", error);
+    }
+}
+
+/// The parameter at the mean of `count` vertices (1, or a cell's 4).
+static float field_value(const Field *field, const uint32_t *vertices, int count) {
+    double uv[2] = {0}, place[3] = {0}, f = 0;
+    for (int i = 0; i < count; i++) {
+        uint32_t v = vertices[i];
+        for (int k = 0; k < 2; k++) uv[k] += (double)field->source->uv[v][k] / count;
+        for (int k = 0; k < 3; k++) place[k] += (double)field->source->position[v][k] / count;
+        if (field->attribute) f += (double)field->attribute[v] / count;
+    }
+    const SingeParam *param = field->param;
+    if (param->field == SINGE_FIELD_NONE) return param->value;
+    if (param->field == SINGE_FIELD_PICTURE)
+        f = (double)shell_sample_picture(&param->picture, (float)uv[0], (float)uv[1]);
+    if (param->field == SINGE_FIELD_NOISE)
+        f = (double)random_fractal(&param->noise, (float)place[0], (float)place[1], (float)place[2]);
+    return (float)((1 - f) * (double)param->value + f * (double)param->to);
+}
+
+static SingeResult evaluate(const Field *field, const ParamRule *rule, SheetSource *source, SingeError *error) {
+    const Sheet *sheet = &source->sheet;
+    uint32_t total = sheet->vertex_count + sheet->cell_count;
+    float *values = source->params + (size_t)rule->param * total;
+    uint32_t begin = rule->places & AT_VERTICES ? 0 : sheet->vertex_count;
+    uint32_t end = rule->places & AT_CENTRES ? total : sheet->vertex_count;
+    for (uint32_t i = begin; i < end; i++) {
+        bool corner = i < sheet->vertex_count;
+        uint32_t element = corner ? i : i - sheet->vertex_count;
+        values[i] = corner ? field_value(field, &i, 1) : field_value(field, source->cells[element], 4);
+        if (!inside(values[i], rule->low, rule->high, rule->low_open, rule->high_open))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
+                             "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name,
+                             rule->range, corner ? "vertex" : "cell", element);
+    }
+    return SINGE_OK;
+}
+
+SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, SingeError *error) {
+    for (int r = 0; r < RULE_COUNT; r++) {
+        const ParamRule *rule = &param_rules[r];
+        const void *param = (const char *)&def->material + rule->offset;
+        Field field = {.param = param, .source = source};
+        TRY(field_open(def, rule, &field, error));
+        TRY(evaluate(&field, rule, source, error));
+    }
+    return SINGE_OK;
+}
+
+void material_forget_fields(SingeMaterialDef *material) {
+    for (int r = 0; r < RULE_COUNT; r++) {
+        SingeParam *param = (void *)((char *)material + param_rules[r].offset);
+        param->picture = (SingePicture){0};
+        param->attribute = NULL;
+    }
+}

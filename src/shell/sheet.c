@@ -1,0 +1,169 @@
+// A sheet's Def: read whatever its version, checked, copied.
+#include "shell/sheet.h"
+
+#include "shell/measure.h"
+
+#include <math.h>
+#include <string.h>
+
+/// A cell is degenerate when a side or its area is this small beside its longest side (squared).
+static const double thin = 1e-6;
+/// Coordinates (m) up to this size keep squared lengths within float.
+static const float place_max = 1e15f;
+/// Areas, masses and heat capacities within this range (and its inverse) stay normal floats.
+static const double measure_max = 1e30;
+
+static size_t least(size_t a, size_t b) { return a < b ? a : b; }
+
+/// Copies a Def of any version over the defaults. The material lies inside and has grown by itself, so
+/// the fields after it are found by the size that the caller's header gave it.
+static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
+    const size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
+    const char *bytes = (const char *)def;
+    size_t size = def->struct_size, inner;
+    *out = singe_default_sheet();
+    if (size < sizeof size) return false;
+    memcpy(out, bytes, least(size, head));
+    if (size > head) {
+        if (size - head < sizeof inner) return false;
+        memcpy(&inner, bytes + head, sizeof inner);
+        if (inner < sizeof inner || inner > size - head) return false;
+        memcpy(&out->material, bytes + head, least(inner, sizeof out->material));
+        memcpy((char *)out + tail, bytes + head + inner, least(size - head - inner, sizeof *out - tail));
+    }
+    out->struct_size = sizeof *out;
+    out->material.struct_size = sizeof out->material;
+    return true;
+}
+
+static SingeResult argument(const char *name, const char *what, SingeError *error) {
+    return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s", name, what);
+}
+
+/// Copies a name, cut between characters of UTF-8 where it is too long.
+static void copy_name(const char *name, char *copy, size_t size) {
+    size_t length = strlen(name);
+    if (length > size - 1) {
+        length = size - 1;
+        while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) length--;
+    }
+    memcpy(copy, name, length);
+    copy[length] = 0;
+}
+
+static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeError *error) {
+    if (def->vertex_count == 0 || def->cell_count == 0)
+        return error_set(error, SINGE_ERROR_MESH, "sheet", -1, "sheet '%s' has no cells", name);
+    if ((uint64_t)def->vertex_count + def->cell_count > INT32_MAX || def->cell_count > INT32_MAX / 4)
+        return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1, "sheet '%s': %u vertices and %u cells are too many",
+                         name, def->vertex_count, def->cell_count);
+    if (!def->positions || !def->cells) return argument(name, "positions or cells are NULL", error);
+    if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
+    for (uint32_t i = 0; i < def->attribute_count; i++)
+        if (!def->attributes[i].name || !def->attributes[i].values)
+            return argument(name, "an attribute has no name or no values", error);
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(def->velocity[k])) return argument(name, "velocity is not finite", error);
+    if (!(isfinite(def->drop_pieces_below) && def->drop_pieces_below >= 0))
+        return argument(name, "drop_pieces_below must be 0 or more", error);
+    return material_check_scalars(&def->material, name, error);
+}
+
+/// A fault of a vertex or cell; `what` is the end of a sentence that begins with it.
+static SingeResult element_fail(const char *name, const char *kind, uint32_t element, const char *what,
+                                SingeError *error) {
+    return error_set(error, SINGE_ERROR_MESH, "sheet", element, "sheet '%s': %s %u %s", name, kind, element, what);
+}
+
+static SingeResult check_vertices(const SingeSheetDef *def, const char *name, SingeError *error) {
+    for (uint32_t v = 0; v < def->vertex_count; v++) {
+        for (size_t k = 0; k < 3; k++)
+            if (!(fabsf(def->positions[3 * (size_t)v + k]) <= place_max))
+                return element_fail(name, "vertex", v, "has a position that is not finite or beyond 1e15 m", error);
+        for (size_t k = 0; k < 2 && def->uv; k++)
+            if (!isfinite(def->uv[2 * (size_t)v + k]))
+                return element_fail(name, "vertex", v, "has a uv that is not finite", error);
+    }
+    return SINGE_OK;
+}
+
+static bool in_float(double x) { return x >= 1 / measure_max && x <= measure_max; }
+
+/// Why a cell with valid corners cannot be used, or NULL.
+static const char *shape_fault(const SingeSheetDef *def, const uint32_t *corners) {
+    const float *p[4];
+    for (int i = 0; i < 4; i++) p[i] = def->positions + 3 * (size_t)corners[i];
+    CellShape shape = cell_shape(p);
+    if (!(shape.shortest > thin * shape.longest)) return "has a side without length";
+    if (!(shape.vector_area > thin * shape.longest * shape.longest)) return "has no area";
+    double mass = shape.area * (double)def->material.grammage;
+    if (!in_float(shape.area) || !in_float(mass) || !in_float(mass * (double)def->material.specific_heat))
+        return "has an area, mass or heat capacity outside 1e-30 to 1e30";
+    return NULL;
+}
+
+static SingeResult check_cells(const SingeSheetDef *def, const char *name, SingeError *error) {
+    for (uint32_t c = 0; c < def->cell_count; c++) {
+        const uint32_t *corners = def->cells + 4 * (size_t)c;
+        for (int i = 0; i < 4; i++) {
+            if (corners[i] >= def->vertex_count)
+                return error_set(error, SINGE_ERROR_MESH, "sheet", c, "sheet '%s': cell %u uses vertex %u of %u", name,
+                                 c, corners[i], def->vertex_count);
+            for (int j = 0; j < i; j++)
+                if (corners[i] == corners[j])
+                    return error_set(error, SINGE_ERROR_MESH, "sheet", c, "sheet '%s': cell %u uses vertex %u twice",
+                                     name, c, corners[i]);
+        }
+        const char *fault = shape_fault(def, corners);
+        if (fault) return element_fail(name, "cell", c, fault, error);
+    }
+    return SINGE_OK;
+}
+
+static bool source_alloc(Memory *memory, SheetSource *source) {
+    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
+    source->params = NULL;
+    return NEW(memory, source->position, source->sheet.vertex_count) &&
+           NEW(memory, source->cells, source->sheet.cell_count) &&
+           NEW(memory, source->uv, source->sheet.vertex_count) &&
+           (source->params = memory_new(memory, total, PARAM_COUNT * sizeof(float)));
+}
+
+SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
+    SingeSheetDef def;
+    memset(source, 0, sizeof *source);
+    if (!given || !read_def(given, &def))
+        return argument("sheet", "struct_size is not set; start from singe_default_sheet()", error);
+    Sheet *sheet = &source->sheet;
+    copy_name(def.name ? def.name : "sheet", sheet->name, sizeof sheet->name);
+    TRY(check_def(&def, sheet->name, error));
+    TRY(check_vertices(&def, sheet->name, error));
+    TRY(check_cells(&def, sheet->name, error));
+
+    sheet->vertex_count = def.vertex_count;
+    sheet->cell_count = def.cell_count;
+    sheet->drop_pieces_below = def.drop_pieces_below;
+    memcpy(sheet->velocity, def.velocity, sizeof sheet->velocity);
+    memcpy(&sheet->material, &def.material, sizeof sheet->material);
+    material_forget_fields(&sheet->material);
+    if (!source_alloc(memory, source)) {
+        SingeResult result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", sheet->name);
+        sheet_source_free(memory, source);
+        return result;
+    }
+    memcpy(source->position, def.positions, sizeof *source->position * def.vertex_count);
+    memcpy(source->cells, def.cells, sizeof *source->cells * def.cell_count);
+    if (def.uv) memcpy(source->uv, def.uv, sizeof *source->uv * def.vertex_count);
+    SingeResult result = material_evaluate(&def, source, error);
+    if (result != SINGE_OK) sheet_source_free(memory, source);
+    return result;
+}
+
+void sheet_source_free(Memory *memory, SheetSource *source) {
+    size_t vertices = source->sheet.vertex_count, cells = source->sheet.cell_count;
+    FREE(memory, source->position, vertices);
+    FREE(memory, source->cells, cells);
+    FREE(memory, source->uv, vertices);
+    memory_free(memory, (void *)&source->params, vertices + cells, PARAM_COUNT * sizeof(float));
+    memset(source, 0, sizeof *source);
+}

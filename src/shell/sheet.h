@@ -1,0 +1,17 @@
+// A sheet's Def and its material, checked.
+#ifndef SHELL_SHEET_H
+#define SHELL_SHEET_H
+
+#include "shell/shell.h"
+
+/// Checks the numbers that are the same over the sheet.
+SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error);
+
+/// Evaluates every parameter at every particle into source->params and checks its range; the source's
+/// mesh, uv and sheet are in place.
+SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, SingeError *error);
+
+/// Clears the caller's pointers from a copied material.
+void material_forget_fields(SingeMaterialDef *material);
+
+#endif

@@ -1,0 +1,192 @@
+// The shell: the body-centred square of section 3.2, what it is made of, and its state.
+//
+// Particles: vertex v is particle v (corner, blue layer); cell c is particle vertex_count + c
+// (centre, green layer). A Shell never changes once built; everything that does is in State.
+#ifndef SHELL_SHELL_H
+#define SHELL_SHELL_H
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "singe/sim.h"
+
+#define SHELL_NONE UINT32_MAX
+
+/// Springs of one colour, numbered along their strands: strand s is the springs
+/// [strand_first[s], strand_first[s + 1]), spring k of it runs from node k to node k + 1, so
+/// ends[k][1] == ends[k + 1][0]. A ring's last node is its first. Within a strand no particle occurs
+/// twice (but for a ring's closure). Family f is the strands [family_first[f], family_first[f + 1]);
+/// strands of one family share no particle.
+typedef struct SpringSet {
+    uint32_t count;
+    uint32_t (*ends)[2];
+    float *rest; ///< m, initial length
+    uint32_t strand_count;
+    uint32_t *strand_first;
+    uint8_t *strand_ring; ///< 1 where the strand is a ring
+    uint32_t family_count;
+    uint32_t *family_first;
+    uint32_t longest; ///< springs in the longest strand
+} SpringSet;
+
+/// The springs and neighbours of a cell with corners 0..3; side i joins corner i and (i + 1) % 4.
+typedef struct CellSprings {
+    uint32_t red[4];       ///< centre to corner i
+    uint32_t blue[4];      ///< along side i
+    uint32_t green[4];     ///< across side i, or SHELL_NONE at the boundary
+    uint32_t yellow[2];    ///< corners 0-2, corners 1-3
+    uint32_t neighbour[4]; ///< cell across side i, or SHELL_NONE
+} CellSprings;
+
+/// Material of each particle (its own layer: half the sheet's mass). Area, mass and capacity of a vertex
+/// without cells are 0; it never lives.
+typedef struct Matter {
+    float *area;               ///< m2 at rest
+    float *mass;               ///< kg, initial
+    float *capacity;           ///< J/K, of the unburnt particle
+    float *thickness;          ///< m
+    float *diffusivity;        ///< m2/s
+    float *ignition_temperature; ///< K
+    float *heating;            ///< K per mass fraction
+    float *mass_rate;          ///< 1/(K s)
+    float *ash_exponent;
+    float *mass_min;
+    float *mass_loss;
+    float *ash_density;
+    float *shrink;             ///< of its own layer
+    float *weight[SINGE_COLOUR_COUNT];
+    float *temperature;        ///< K, initial
+    uint16_t *sheet;
+} Matter;
+
+/// One sheet's own numbers and ranges.
+typedef struct Sheet {
+    char name[64];
+    uint32_t vertex_first, vertex_count, cell_first, cell_count;
+    float cell_size;           ///< m, median edge
+    SingeMaterialDef material; ///< for its scalars; its pictures and attributes are gone
+    float velocity[3];
+    float drop_pieces_below;   ///< m2
+} Sheet;
+
+typedef struct Shell {
+    uint32_t particle_count, vertex_count, cell_count, sheet_count;
+    uint32_t (*cells)[4];
+    CellSprings *cell_springs;
+    float (*rest_position)[4];
+    float (*uv)[2];
+    SpringSet springs[SINGE_COLOUR_COUNT];
+    Matter matter;
+    Sheet *sheets;
+    uint32_t cell_family_count;    ///< cells coloured so that cells of one family share no corner
+    uint32_t *cell_family_first;
+    uint32_t *cell_order;          ///< [cell_count] cells, family by family
+} Shell;
+
+/// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
+/// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.
+typedef struct SheetSource {
+    Sheet sheet;
+    float (*position)[3];  ///< [vertex_count]
+    uint32_t (*cells)[4];  ///< [cell_count], of this sheet's vertices
+    float (*uv)[2];        ///< [vertex_count], zero without
+    /// Evaluated parameters: [PARAM_COUNT][vertex_count + cell_count], vertices first.
+    float *params;
+} SheetSource;
+
+/// The parameters that vary over a sheet, in the order of SheetSource.params.
+typedef enum ShellParam {
+    PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEATING, PARAM_MASS_RATE,
+    PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY, PARAM_SHRINK,
+    PARAM_WEIGHT, // four, by colour
+    PARAM_COUNT = PARAM_WEIGHT + SINGE_COLOUR_COUNT
+} ShellParam;
+
+/// Checks a sheet's Def, copies its mesh (sheet.c) and evaluates its material (material.c). Errors name the
+/// sheet's own vertex or cell.
+SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
+void sheet_source_free(Memory *memory, SheetSource *source);
+
+/// The picture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
+float shell_sample_picture(const SingePicture *picture, float u, float v);
+
+/// Builds the shell of all sheets (bcs.c, strand.c). Errors: SINGE_ERROR_MESH for a non-manifold or
+/// inconsistently turned edge or a vertex whose cells are not one fan, naming the sheet and element;
+/// SINGE_ERROR_LIMIT for more than the index types hold.
+SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t source_count, Shell *shell,
+                         SingeError *error);
+void shell_free(Memory *memory, Shell *shell);
+
+// ---------------------------------------------------------------------------------------------------
+// State: what changes from step to step. Each stage writes its own part only.
+
+typedef struct HeatState {
+    float *temperature; ///< [particles] K
+    double heat_in, heat_lost, heat_of_combustion; ///< J, cumulative
+} HeatState;
+
+typedef struct BurnState {
+    float *mass;          ///< [particles] fraction of the initial
+    float *burn_rate;     ///< [particles] 1/s of the step just done
+    float *time_ignited;  ///< [particles] s, -1 before
+    float *time_burnt;    ///< [particles] s, -1 before; when m fell below m_loss
+    float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
+    double mass_burnt;    ///< kg gone as gas
+} BurnState;
+
+typedef struct AblateState {
+    uint8_t *particle_flags;  ///< SINGE_ALIVE (SINGE_PINNED is the dynamics')
+    uint8_t *cell_flags;      ///< SINGE_ALIVE while any of its triangles is
+    uint8_t *spring_flags[SINGE_COLOUR_COUNT];
+    uint16_t *degree;         ///< [particles] springs alive at the particle
+    int32_t *piece;           ///< [particles] id, -1 when gone
+    uint32_t next_piece, piece_count;
+    uint64_t topology_version;
+    double heat_removed;      ///< J, enthalpy that left with removed particles
+    double mass_removed;      ///< kg
+} AblateState;
+
+typedef struct DynamicsState {
+    float (*position)[4]; ///< m
+    float (*velocity)[4]; ///< m/s
+    uint8_t *pinned;      ///< [particles] number of pins that hold it
+} DynamicsState;
+
+typedef struct State {
+    double time;   ///< s
+    uint64_t step;
+    HeatState heat;
+    BurnState burn;
+    AblateState ablate;
+    DynamicsState dynamics;
+    void *arena;   ///< all arrays above lie in one block
+    size_t arena_size;
+} State;
+
+/// Events of one step; capacity is fixed, what exceeds it is dropped and counted.
+typedef struct EventList {
+    SingeEvent *items;
+    size_t count, capacity, dropped;
+} EventList;
+
+static inline void event_push(EventList *list, SingeEventKind kind, int32_t element, double time,
+                              const float *position) {
+    if (list->count == list->capacity) { list->dropped++; return; }
+    list->items[list->count++] = (SingeEvent){kind, element, time, {position[0], position[1], position[2]}};
+}
+
+/// Lays out a State for the shell and fills it with the start: rest positions, initial temperatures,
+/// mass 1, all alive, target lengths = rest lengths (state.c).
+SingeResult state_create(Memory *memory, const Shell *shell, State *state);
+void state_free(Memory *memory, State *state);
+
+/// Points the arrays of `state` into an arena of state->arena_size bytes laid out for this shell.
+void state_rebase(const Shell *shell, State *state, void *arena);
+
+/// Makes `to` equal to `from`; both were created for this shell. Keeps the arena of `to`.
+void state_copy(const Shell *shell, State *to, const State *from);
+
+/// True where vertex v of the shell belongs to some cell (degree > 0 at the start).
+static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
+static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
+
+#endif

@@ -1,0 +1,105 @@
+// The State of a simulation lies in one block, so that saving, restoring and copying it is one memcpy.
+#include "shell/shell.h"
+
+#include <string.h>
+
+enum { SLICE = 64 }; // bytes; a cache line, and the widest vector register
+
+/// Takes `count` elements from the block; with a NULL base only the size is counted.
+static void *take(char *base, size_t *used, size_t count, size_t element_size) {
+    void *slice = base ? base + *used : NULL;
+    *used += (count * element_size + SLICE - 1) / SLICE * SLICE;
+    return slice;
+}
+
+#define TAKE(pointer, count) ((pointer) = take(base, &used, (count), sizeof *(pointer)))
+
+/// Points the arrays into the block at `base` and returns the block's size.
+static size_t lay_out(const Shell *shell, State *state, char *base) {
+    size_t used = 0, particles = shell->particle_count;
+    TAKE(state->dynamics.position, particles);
+    TAKE(state->dynamics.velocity, particles);
+    TAKE(state->heat.temperature, particles);
+    TAKE(state->burn.mass, particles);
+    TAKE(state->burn.burn_rate, particles);
+    TAKE(state->burn.time_ignited, particles);
+    TAKE(state->burn.time_burnt, particles);
+    TAKE(state->ablate.piece, particles);
+    TAKE(state->ablate.degree, particles);
+    TAKE(state->ablate.particle_flags, particles);
+    TAKE(state->ablate.cell_flags, shell->cell_count);
+    TAKE(state->dynamics.pinned, particles);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
+        TAKE(state->ablate.spring_flags[colour], shell->springs[colour].count);
+    }
+    return used;
+}
+
+void state_rebase(const Shell *shell, State *state, void *arena) {
+    state->arena = arena;
+    lay_out(shell, state, arena);
+}
+
+void state_copy(const Shell *shell, State *to, const State *from) {
+    void *arena = to->arena;
+    if (to == from) return;
+    memcpy(arena, from->arena, from->arena_size);
+    *to = *from;
+    state_rebase(shell, to, arena);
+}
+
+static void start_springs(const Shell *shell, State *state) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *set = &shell->springs[colour];
+        for (uint32_t s = 0; s < set->count; s++) {
+            state->burn.spring_length[colour][s] = set->rest[s];
+            state->ablate.spring_flags[colour][s] = SINGE_ALIVE;
+            for (int k = 0; k < 2; k++) state->ablate.degree[set->ends[s][k]]++;
+        }
+    }
+}
+
+static void start_particles(const Shell *shell, State *state) {
+    for (uint32_t p = 0; p < shell->particle_count; p++) {
+        const Sheet *sheet = &shell->sheets[shell->matter.sheet[p]];
+        bool alive = state->ablate.degree[p] > 0;
+        for (int k = 0; k < 3; k++) {
+            state->dynamics.position[p][k] = shell->rest_position[p][k];
+            state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
+        }
+        state->heat.temperature[p] = shell->matter.temperature[p];
+        state->burn.mass[p] = 1;
+        state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
+        state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
+        state->ablate.piece[p] = alive ? 0 : -1;
+    }
+    for (uint32_t c = 0; c < shell->cell_count; c++) state->ablate.cell_flags[c] = SINGE_ALIVE;
+}
+
+/// Bytes before an aligned block, the last of which say how far it lies from its allocation's start.
+enum { LEAD = SLICE };
+
+SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
+    *state = (State){0};
+    state->arena_size = lay_out(shell, state, NULL);
+    char *block = memory_new(memory, state->arena_size + LEAD, 1);
+    if (!block) {
+        *state = (State){0};
+        return SINGE_ERROR_MEMORY;
+    }
+    size_t lead = SLICE - (uintptr_t)block % SLICE; // 1 to 64
+    block[lead - 1] = (char)lead;
+    state_rebase(shell, state, block + lead);
+    start_springs(shell, state);
+    start_particles(shell, state);
+    return SINGE_OK;
+}
+
+void state_free(Memory *memory, State *state) {
+    if (state->arena) {
+        char *arena = state->arena, *block = arena - arena[-1];
+        FREE(memory, block, state->arena_size + LEAD);
+    }
+    *state = (State){0};
+}

@@ -1,0 +1,160 @@
+// Every spring lies in exactly one strand: a chain through mated ends, started where an end has no mate,
+// or a ring where all have one. A strand that would touch a particle twice is cut before it does, so that
+// its Newton matrix J M^-1 J^T is tridiagonal; one that comes back to its own start becomes a ring, whose
+// matrix has two more corner entries. Rings have three springs at least: two would share both ends.
+#include "shell/strand.h"
+
+#include "shell/family.h"
+
+/// Strands in the order in which they are found. Step 2 s + k crosses spring s from its end k.
+typedef struct Trace {
+    const LooseSprings *springs;
+    uint32_t strand_count;
+    uint32_t length;    ///< steps written
+    uint32_t *steps;    ///< [springs]
+    uint32_t *first;    ///< [springs + 1]
+    uint8_t *ring;      ///< [springs]
+    uint8_t *done;      ///< [springs] spring is in a strand
+    uint32_t *visitor;  ///< [particles] last strand to touch it, SHELL_NONE before
+} Trace;
+
+static uint32_t step_from(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][step & 1]; }
+static uint32_t step_to(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][~step & 1]; }
+
+static bool trace_alloc(Memory *memory, uint32_t particle_count, Trace *trace) {
+    uint32_t count = trace->springs->count;
+    if (!NEW(memory, trace->steps, count) || !NEW(memory, trace->first, (size_t)count + 1) ||
+        !NEW(memory, trace->ring, count) || !NEW(memory, trace->done, count) ||
+        !NEW(memory, trace->visitor, particle_count))
+        return false;
+    for (uint32_t p = 0; p < particle_count; p++) trace->visitor[p] = SHELL_NONE;
+    return true;
+}
+
+static void trace_free(Memory *memory, uint32_t particle_count, Trace *trace) {
+    uint32_t count = trace->springs->count;
+    FREE(memory, trace->steps, count);
+    FREE(memory, trace->first, (size_t)count + 1);
+    FREE(memory, trace->ring, count);
+    FREE(memory, trace->done, count);
+    FREE(memory, trace->visitor, particle_count);
+}
+
+static void begin_strand(Trace *trace, uint32_t particle) {
+    trace->first[trace->strand_count] = trace->length;
+    trace->visitor[particle] = trace->strand_count;
+}
+
+static void end_strand(Trace *trace) { trace->first[++trace->strand_count] = trace->length; }
+
+/// Follows mates from `step` until there is none or the spring it leads to is done.
+static void trace_from(Trace *trace, uint32_t step) {
+    const LooseSprings *springs = trace->springs;
+    begin_strand(trace, step_from(springs, step));
+    for (;;) {
+        uint32_t next = step_to(springs, step), start = trace->first[trace->strand_count];
+        bool closes = trace->length - start >= 2 && next == step_from(springs, trace->steps[start]);
+        if (trace->visitor[next] == trace->strand_count && !closes) {
+            end_strand(trace);
+            begin_strand(trace, step_from(springs, step));
+        }
+        trace->steps[trace->length++] = step;
+        trace->done[step / 2] = 1;
+        trace->visitor[next] = trace->strand_count;
+        uint32_t mate = springs->mate[step ^ 1];
+        bool goes_on = mate != SHELL_NONE && !trace->done[mate / 2];
+        if (closes) trace->ring[trace->strand_count] = 1;
+        if (closes || !goes_on) end_strand(trace);
+        if (!goes_on) return;
+        if (closes) begin_strand(trace, next);
+        step = mate;
+    }
+}
+
+static void trace_all(Trace *trace) {
+    const LooseSprings *springs = trace->springs;
+    for (uint32_t end = 0; end < 2 * springs->count; end++)
+        if (springs->mate[end] == SHELL_NONE && !trace->done[end / 2]) trace_from(trace, end);
+    for (uint32_t s = 0; s < springs->count; s++)
+        if (!trace->done[s]) trace_from(trace, 2 * s);
+}
+
+/// The particles of every strand.
+static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_count, ItemNodes *items) {
+    *items = (ItemNodes){.node_count = particle_count, .item_count = trace->strand_count};
+    if (!NEW(memory, items->first, (size_t)trace->strand_count + 1)) return false;
+    if (!NEW(memory, items->nodes, (size_t)trace->length + trace->strand_count)) return false;
+    uint32_t total = 0;
+    for (uint32_t s = 0; s < trace->strand_count; s++) {
+        items->first[s] = total;
+        for (uint32_t k = trace->first[s]; k < trace->first[s + 1]; k++)
+            items->nodes[total++] = step_from(trace->springs, trace->steps[k]);
+        if (!trace->ring[s]) items->nodes[total++] = step_to(trace->springs, trace->steps[trace->first[s + 1] - 1]);
+    }
+    items->first[trace->strand_count] = total;
+    return true;
+}
+
+/// Numbers strands and springs family by family.
+static void renumber(const Trace *trace, const uint32_t *sorted, SpringSet *set, uint32_t *number) {
+    uint32_t next = 0;
+    for (uint32_t s = 0; s < set->strand_count; s++) {
+        uint32_t begin = trace->first[sorted[s]], end = trace->first[sorted[s] + 1];
+        set->strand_first[s] = next;
+        set->strand_ring[s] = trace->ring[sorted[s]];
+        if (end - begin > set->longest) set->longest = end - begin;
+        for (uint32_t k = begin; k < end; k++, next++) {
+            set->ends[next][0] = step_from(trace->springs, trace->steps[k]);
+            set->ends[next][1] = step_to(trace->springs, trace->steps[k]);
+            number[trace->steps[k] / 2] = next;
+        }
+    }
+    set->strand_first[set->strand_count] = next;
+}
+
+/// Colours the traced strands and writes the set. False when out of memory.
+static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace, SpringSet *set, uint32_t *number) {
+    uint32_t strands = trace->strand_count, families = 0, *family = NULL, *sorted = NULL;
+    ItemNodes items = {0};
+    if (NEW(memory, family, strands) && NEW(memory, sorted, strands) &&
+        list_nodes(memory, trace, particle_count, &items))
+        families = family_colour(memory, &items, family);
+    FREE(memory, items.nodes, (size_t)trace->length + strands);
+    FREE(memory, items.first, (size_t)strands + 1);
+    set->strand_count = strands;
+    set->family_count = strands ? families : 0;
+    bool done = families && NEW(memory, set->ends, set->count) && NEW(memory, set->rest, set->count) &&
+                NEW(memory, set->strand_first, (size_t)strands + 1) && NEW(memory, set->strand_ring, strands) &&
+                NEW(memory, set->family_first, (size_t)set->family_count + 1);
+    if (done) {
+        family_sort(strands, family, set->family_count, set->family_first, sorted);
+        renumber(trace, sorted, set, number);
+    }
+    FREE(memory, family, strands);
+    FREE(memory, sorted, strands);
+    return done;
+}
+
+SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSprings *springs, SpringSet *set,
+                         uint32_t *number, SingeError *error) {
+    Trace trace = {.springs = springs};
+    *set = (SpringSet){.count = springs->count};
+    bool done = trace_alloc(memory, particle_count, &trace);
+    if (done) {
+        trace_all(&trace);
+        done = arrange(memory, particle_count, &trace, set, number);
+    }
+    trace_free(memory, particle_count, &trace);
+    if (done) return SINGE_OK;
+    strand_free(memory, set);
+    return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the strands of %u springs", springs->count);
+}
+
+void strand_free(Memory *memory, SpringSet *set) {
+    FREE(memory, set->ends, set->count);
+    FREE(memory, set->rest, set->count);
+    FREE(memory, set->strand_first, (size_t)set->strand_count + 1);
+    FREE(memory, set->strand_ring, set->strand_count);
+    FREE(memory, set->family_first, (size_t)set->family_count + 1);
+    *set = (SpringSet){0};
+}

@@ -1,0 +1,349 @@
+// Parameters by number, picture, attribute and noise; ranges; Defs of other versions.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "meshes.h"
+
+/// A unit square of n x n cells with uv = (x, y).
+typedef struct Square {
+    QuadMesh mesh;
+    float (*uv)[2];
+    SingeSheetDef def;
+} Square;
+
+static Square square_make(uint32_t n) {
+    Square square = {.mesh = mesh_grid(n, n, 1.0f / (float)n, 1.0f / (float)n)};
+    square.uv = malloc(square.mesh.vertex_count * sizeof *square.uv);
+    assert_non_null(square.uv);
+    for (uint32_t v = 0; v < square.mesh.vertex_count; v++)
+        memcpy(square.uv[v], square.mesh.position[v], sizeof *square.uv);
+    square.def = mesh_sheet(&square.mesh);
+    square.def.uv = square.uv[0];
+    return square;
+}
+
+static void square_free(Square *square) {
+    mesh_release(&square->mesh);
+    free(square->uv);
+}
+
+static SheetSource evaluate(Memory *memory, const SingeSheetDef *def) {
+    SheetSource source;
+    SingeError error = {0};
+    if (sheet_source_create(memory, def, &source, &error)) fail_msg("%s", error.message);
+    return source;
+}
+
+static void refuse(const SingeSheetDef *def, int64_t element, const char *says) {
+    Memory memory = memory_make((SingeAllocator){0});
+    SheetSource source;
+    SingeError error = {0};
+    assert_int_equal(sheet_source_create(&memory, def, &source, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(error.element, element);
+    if (!strstr(error.message, says)) fail_msg("%s", error.message);
+    assert_int_equal(memory.held, 0);
+}
+
+#define AT(member) offsetof(SingeMaterialDef, member)
+
+/// Particle i of parameter p: vertices, then cells.
+static float param_at(const SheetSource *source, int p, uint32_t i) {
+    return source->params[(size_t)p * (source->sheet.vertex_count + source->sheet.cell_count) + i];
+}
+
+static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) {
+    uv[0] = uv[1] = 0;
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 2; k++) uv[k] += square->uv[square->mesh.cells[cell][i]][k] / 4;
+    return uv;
+}
+
+// Every parameter goes to its own place, front and back of shrinkage each to its layer, and through the
+// shell into Matter.
+static void test_numbers(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(2);
+    SingeMaterialDef *m = &square.def.material;
+    SingeParam *params[] = {&m->thickness, &m->diffusivity, &m->temperature, &m->ignition_temperature, &m->heating,
+                            &m->mass_rate, &m->ash_exponent, &m->mass_min, &m->mass_loss, &m->ash_density};
+    for (int k = 0; k < 10; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
+    m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
+    for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
+    SheetSource source = evaluate(&memory, &square.def);
+    Shell shell;
+    assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+    const Matter *matter = &shell.matter;
+    const float *fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
+                             matter->heating, matter->mass_rate, matter->ash_exponent, matter->mass_min,
+                             matter->mass_loss, matter->ash_density};
+    for (uint32_t p = 0; p < shell.particle_count; p++) {
+        for (int k = 0; k < 10; k++) assert_true(fields[k][p] == 0.01f * (float)(k + 1));
+        assert_true(matter->shrink[p] == (p < 9 ? 1.25f : 0.75f));
+        for (int k = 0; k < 4; k++) assert_true(matter->weight[k][p] == 0.5f + 0.1f * (float)k);
+    }
+    for (int k = 0; k < 10; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
+    shell_free(&memory, &shell);
+    sheet_source_free(&memory, &source);
+    square_free(&square);
+}
+
+// The top row of the file is at v = 1; between pixel centres the value is linear, beyond them held.
+static void test_sample(void **state) {
+    (void)state;
+    static const float values[] = {0, 1, 2, 3, 4, 5};
+    SingePicture picture = {3, 2, values};
+    static const float expected[][3] = {
+        {1.0f / 6, 0.75f, 0}, {0.5f, 0.75f, 1}, {5.0f / 6, 0.25f, 5}, {0.5f, 0.5f, 2.5f}, {0, 1, 0}, {1, 1, 2},
+        {0, 0, 3}, {1, 0, 5}, {-7, 9, 0}, {9, -7, 5}, {1.0f / 3, 0.75f, 0.5f}, {1e38f, -1e38f, 5},
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
+        assert_float_equal(shell_sample_picture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
+    SingePicture dot = {1, 1, values + 4};
+    assert_float_equal(shell_sample_picture(&dot, 0.3f, 0.8f), 4, 0);
+}
+
+// A picture that is linear in u between its two pixels.
+static void test_picture(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(8);
+    static const float values[] = {0, 1};
+    square.def.material.thickness =
+        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, values}};
+    SheetSource source = evaluate(&memory, &square.def);
+    for (uint32_t i = 0; i < 81 + 64; i++) {
+        float uv[2], u = i < 81 ? square.uv[i][0] : centre_uv(&square, i - 81, uv)[0];
+        float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
+        assert_float_equal(param_at(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
+    }
+    assert_null(source.sheet.material.thickness.picture.values);
+    sheet_source_free(&memory, &source);
+
+    square.def.uv = NULL;
+    refuse(&square.def, -1, "no uv");
+    square.def.uv = square.uv[0];
+    square.def.material.thickness.picture.width = 0;
+    refuse(&square.def, -1, "empty picture");
+    static const float broken[] = {0, NAN};
+    square.def.material.thickness.picture = (SingePicture){2, 1, broken};
+    refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
+    square_free(&square);
+}
+
+// Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
+static void test_attribute(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(3);
+    float values[16];
+    for (int v = 0; v < 16; v++) values[v] = 0.25f * (float)v;
+    SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
+    attributes[0].values = values;
+    square.def.attribute_count = 2, square.def.attributes = attributes;
+    square.def.material.heating =
+        (SingeParam){.value = 100, .to = 200, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
+    SheetSource source = evaluate(&memory, &square.def);
+    for (uint32_t v = 0; v < 16; v++)
+        assert_float_equal(param_at(&source, PARAM_HEATING, v), 100 + 25 * (float)v, 1e-3f);
+    for (uint32_t c = 0; c < 9; c++) {
+        float mean = 0;
+        for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
+        assert_float_equal(param_at(&source, PARAM_HEATING, 16 + c), 100 + mean, 1e-3f);
+    }
+    assert_null(source.sheet.material.heating.attribute);
+    sheet_source_free(&memory, &source);
+
+    values[6] = -5; // -400 K
+    refuse(&square.def, 6, "heating must be 0 or more, which it is not at vertex 6");
+    values[6] = NAN;
+    refuse(&square.def, 6, "vertex 6");
+    square.def.material.heating.attribute = "char";
+    refuse(&square.def, -1, "no attribute 'char'");
+    square.def.material.heating.attribute = NULL;
+    refuse(&square.def, -1, "names no attribute");
+    square_free(&square);
+}
+
+// Noise lies between the two values, varies, and depends on the seed and on the place alone.
+static void test_noise(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(24);
+    square.def.material.weight[SINGE_BLUE] =
+        (SingeParam){.value = 0.2f, .to = 1, .field = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
+    SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
+    square.def.material.weight[SINGE_BLUE].noise.seed = 6;
+    SheetSource c = evaluate(&memory, &square.def);
+    uint32_t total = 25 * 25 + 24 * 24, different = 0;
+    float low = 1, high = 0;
+    for (uint32_t i = 0; i < total; i++) {
+        float x = param_at(&a, PARAM_WEIGHT + SINGE_BLUE, i);
+        assert_true(x >= 0.2f && x <= 1);
+        assert_true(x == param_at(&b, PARAM_WEIGHT + SINGE_BLUE, i));
+        different += x != param_at(&c, PARAM_WEIGHT + SINGE_BLUE, i);
+        low = fminf(low, x), high = fmaxf(high, x);
+    }
+    assert_true(high - low > 0.4f);
+    assert_true(different > total / 2);
+    sheet_source_free(&memory, &a);
+    sheet_source_free(&memory, &b);
+    sheet_source_free(&memory, &c);
+    square.def.material.weight[SINGE_BLUE].noise.scale = 0;
+    refuse(&square.def, -1, "scale");
+    square.def.material.weight[SINGE_BLUE].noise = (SingeNoise){.scale = 1, .octaves = 9};
+    refuse(&square.def, -1, "octaves");
+    square.def.material.weight[SINGE_BLUE].field = (SingeFieldKind)7;
+    refuse(&square.def, -1, "unknown kind");
+    square_free(&square);
+}
+
+// The ends of every range: the last number that is allowed and the first that is not.
+static void test_ranges(void **state) {
+    (void)state;
+    enum { ABOVE_0, FROM_0, TO_1, BELOW_1, TO_2 };
+    static const float good[][2] = {{1e-6f, 1e6f}, {0, 1e6f}, {0, 1}, {0, 0.999f}, {0, 2}};
+    static const float bad[][2] = {{0, -1}, {-1e-6f, -INFINITY}, {-1e-6f, 1.0001f}, {-1e-6f, 1}, {-1e-6f, 2.0001f}};
+    static const struct { size_t offset; int range; } params[] = {
+        {AT(thickness), ABOVE_0},
+        {AT(diffusivity), FROM_0},
+        {AT(temperature), ABOVE_0},
+        {AT(ignition_temperature), ABOVE_0},
+        {AT(heating), FROM_0},
+        {AT(mass_rate), FROM_0},
+        {AT(ash_exponent), FROM_0},
+        {AT(mass_min), BELOW_1},
+        {AT(mass_loss), BELOW_1},
+        {AT(ash_density), ABOVE_0},
+        {AT(shrink_front), TO_2},
+        {AT(shrink_back), TO_2},
+        {AT(weight[SINGE_RED]), TO_1},
+        {AT(weight[SINGE_GREEN]), TO_1},
+        {AT(weight[SINGE_BLUE]), TO_1},
+        {AT(weight[SINGE_YELLOW]), TO_1},
+    };
+    static const struct { size_t offset; int range; } scalars[] = {
+        {AT(grammage), ABOVE_0},
+        {AT(specific_heat), ABOVE_0},
+        {AT(layer_exchange), FROM_0},
+        {AT(convection), FROM_0},
+        {AT(emissivity), TO_1},
+        {AT(compliance[0]), FROM_0},
+        {AT(compliance[3]), FROM_0},
+        {AT(char_weight), TO_1},
+        {AT(drag), FROM_0},
+        {AT(damping), FROM_0},
+    };
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(1);
+    size_t param_count = sizeof params / sizeof params[0], scalar_count = sizeof scalars / sizeof scalars[0];
+    for (size_t i = 0; i < param_count + scalar_count; i++) {
+        bool param = i < param_count;
+        int range = param ? params[i].range : scalars[i - param_count].range;
+        size_t offset = param ? params[i].offset : scalars[i - param_count].offset;
+        for (int k = 0; k < 6; k++) {
+            SingeSheetDef def = square.def;
+            float value = k < 2 ? good[range][k] : k < 4 ? bad[range][k - 2] : k == 4 ? NAN : INFINITY;
+            SingeParam filled = singe_param(value);
+            memcpy((char *)&def.material + offset, param ? (const void *)&filled : (const void *)&value,
+                   param ? sizeof filled : sizeof value);
+            if (k < 2) {
+                SheetSource source = evaluate(&memory, &def);
+                sheet_source_free(&memory, &source);
+            } else {
+                // a parameter fails at the first particle it is for: vertex 0 or, for the back, cell 0
+                refuse(&def, param ? 0 : -1, "must be");
+            }
+        }
+    }
+    static const float thickening[] = {0.5f, -1, NAN, INFINITY}, floors[] = {0, 1.01f, -1};
+    for (int k = 0; k < 4; k++) {
+        SingeSheetDef def = square.def;
+        def.material.thickening = thickening[k];
+        refuse(&def, -1, "thickening");
+    }
+    for (int k = 0; k < 3; k++) {
+        SingeSheetDef def = square.def;
+        def.material.loss_mass_floor = floors[k];
+        refuse(&def, -1, "loss_mass_floor");
+    }
+    SingeSheetDef def = square.def;
+    def.material.heat_operator = (SingeHeatOperator)2;
+    refuse(&def, -1, "heat operator");
+    square_free(&square);
+}
+
+// A caller's header had fewer fields in the material and in the sheet: the rest take their defaults, and
+// the sheet's fields after the material are found where that caller has them.
+static void test_old_def(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(1);
+    square.def.material.grammage = 0.2f;
+    square.def.material.damping = 77; // beyond the older material
+    square.def.velocity[0] = 3;
+    const size_t head = offsetof(SingeSheetDef, material), inner = offsetof(SingeMaterialDef, damping);
+    const size_t cut = inner & ~(sizeof(void *) - 1), tail = sizeof(float[3]);
+    unsigned char *old = malloc(head + cut + tail); // exactly: reading more is an error
+    assert_non_null(old);
+    square.def.struct_size = head + cut + tail;
+    square.def.material.struct_size = cut;
+    memcpy(old, &square.def, head + cut);
+    memcpy(old + head + cut, square.def.velocity, tail);
+    SheetSource source = evaluate(&memory, (const SingeSheetDef *)(const void *)old);
+    assert_true(source.sheet.material.grammage == 0.2f);
+    assert_true(source.sheet.material.damping == singe_default_material().damping);
+    assert_true(source.sheet.velocity[0] == 3);
+    assert_true(source.sheet.drop_pieces_below == singe_default_sheet().drop_pieces_below);
+    assert_true(source.sheet.material.struct_size == sizeof(SingeMaterialDef));
+    sheet_source_free(&memory, &source);
+
+    // without a material at all
+    old = realloc(old, head);
+    assert_non_null(old);
+    memcpy(old, &head, sizeof head);
+    source = evaluate(&memory, (const SingeSheetDef *)(const void *)old);
+    assert_true(source.sheet.material.grammage == singe_default_material().grammage);
+    sheet_source_free(&memory, &source);
+
+    // and one that claims more than there is
+    square.def.struct_size = sizeof square.def;
+    square.def.material.struct_size = sizeof square.def;
+    refuse(&square.def, -1, "struct_size");
+    free(old);
+    square_free(&square);
+}
+
+// Long names are cut at a character, and the sheet keeps a copy.
+static void test_name(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(1);
+    char name[80];
+    memset(name, 'a', sizeof name);
+    memcpy(name + 62, "\xC3\xA9\xC3\xA9", 5);
+    square.def.name = name;
+    SheetSource source = evaluate(&memory, &square.def);
+    assert_int_equal(strlen(source.sheet.name), 62);
+    sheet_source_free(&memory, &source);
+    square.def.name = NULL;
+    source = evaluate(&memory, &square.def);
+    assert_string_equal(source.sheet.name, "sheet");
+    sheet_source_free(&memory, &source);
+    square_free(&square);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers),   cmocka_unit_test(test_sample), cmocka_unit_test(test_picture),
+        cmocka_unit_test(test_attribute), cmocka_unit_test(test_noise),  cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_old_def),   cmocka_unit_test(test_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,280 @@
+// Springs, strands and families on meshes whose numbers are known.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "meshes.h"
+
+/// What a shell must have, by colour in the order red, green, blue, yellow; 0 families is any number.
+typedef struct Expected {
+    uint32_t springs[4], strands[4], rings[4], families[4], cell_families;
+} Expected;
+
+static void expect(QuadMesh *mesh, const char *name, Expected expected) {
+    Memory memory = memory_make((SingeAllocator){0});
+    Shell shell = mesh_shell(&memory, mesh);
+    check_shell(&shell);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *set = &shell.springs[colour];
+        print_message("%-16s colour %d: %5u springs %4u strands %3u rings %2u families, longest %u\n", name, colour,
+                      set->count, set->strand_count, count_rings(set), set->family_count, set->longest);
+        assert_int_equal(set->count, expected.springs[colour]);
+        assert_int_equal(set->strand_count, expected.strands[colour]);
+        assert_int_equal(count_rings(set), expected.rings[colour]);
+        if (expected.families[colour]) assert_int_equal(set->family_count, expected.families[colour]);
+    }
+    print_message("%-16s %u families of cells\n", name, shell.cell_family_count);
+    if (expected.cell_families) assert_int_equal(shell.cell_family_count, expected.cell_families);
+    shell_free(&memory, &shell);
+    assert_int_equal(memory.held, 0);
+    mesh_release(mesh);
+}
+
+/// n x m: n (m + 1) + m (n + 1) edges in n + m + 2 lines, and n + m - 1 diagonals each way.
+static Expected grid_expected(uint32_t n, uint32_t m) {
+    uint32_t diagonals = 2 * (n + m - 1), green = (m > 1 ? n : 0) + (n > 1 ? m : 0);
+    return (Expected){.springs = {4 * n * m, n * (m - 1) + m * (n - 1), n * (m + 1) + m * (n + 1), 2 * n * m},
+                      .strands = {diagonals, green, n + m + 2, diagonals},
+                      .families = {2, green == n + m ? 2 : green > 0, 2, n * m > 1 ? 2 : 1},
+                      .cell_families = n > 1 && m > 1 ? 4 : n * m > 1 ? 2 : 1};
+}
+
+static void test_grid(void **state) {
+    (void)state;
+    static const uint32_t sizes[][2] = {{1, 1}, {2, 2}, {3, 2}, {7, 5}, {5, 7}, {20, 20}, {31, 8}, {1, 9}, {9, 1}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        uint32_t n = sizes[i][0], m = sizes[i][1];
+        QuadMesh mesh = mesh_grid(n, m, 0.01f, 0.02f);
+        expect(&mesh, "grid", grid_expected(n, m));
+    }
+}
+
+// The families do not depend on how vertices and cells are numbered.
+static void test_shuffled_grid(void **state) {
+    (void)state;
+    for (uint32_t seed = 1; seed < 4; seed++) {
+        QuadMesh mesh = mesh_grid(14, 11, 0.01f, 0.01f);
+        mesh_shuffle(&mesh, seed);
+        Expected expected = grid_expected(14, 11);
+        expected.cell_families = 0;
+        expect(&mesh, "shuffled grid", expected);
+    }
+}
+
+static uint32_t gcd(uint32_t a, uint32_t b) { return b ? gcd(b, a % b) : a; }
+
+// All strands are rings: n + m lines, and gcd(n, m) diagonals each way.
+static void test_torus(void **state) {
+    (void)state;
+    static const uint32_t sizes[][2] = {{12, 8}, {9, 9}, {13, 7}, {3, 3}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        uint32_t n = sizes[i][0], m = sizes[i][1], d = 2 * gcd(n, m), cells = n * m;
+        QuadMesh mesh = mesh_torus(n, m);
+        expect(&mesh, "torus", (Expected){.springs = {4 * cells, 2 * cells, 2 * cells, 2 * cells},
+                                          .strands = {d, n + m, n + m, d},
+                                          .rings = {d, n + m, n + m, d},
+                                          .families = {2, 2, 2, 2}});
+    }
+}
+
+// Two cells around: green rings of two springs between the same centres are cut open into two strands.
+static void test_two_around(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    QuadMesh mesh = {0};
+    static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (int i = 0; i < 4; i++) mesh_add_vertex(&mesh, square[i][0], square[i][1], 0);
+    mesh_add_cell(&mesh, 0, 1, 2, 3);
+    mesh_add_cell(&mesh, 0, 3, 2, 1);
+    Shell shell = mesh_shell(&memory, &mesh);
+    check_shell(&shell);
+    assert_int_equal(shell.springs[SINGE_GREEN].count, 4);
+    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 4);
+    assert_int_equal(shell.springs[SINGE_GREEN].family_count, 4);
+    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 1); // the square's outline
+    assert_int_equal(count_rings(&shell.springs[SINGE_BLUE]), 1);
+    assert_int_equal(shell.springs[SINGE_BLUE].family_count, 1);
+    shell_free(&memory, &shell);
+    mesh_release(&mesh);
+}
+
+static void test_cylinder(void **state) {
+    (void)state;
+    QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
+    // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
+    expect(&mesh, "cylinder", (Expected){.springs = {240, 12 * 4 + 12 * 5, 12 * 6 + 12 * 5, 120},
+                                         .strands = {24, 12 + 5, 12 + 6, 24},
+                                         .rings = {0, 5, 6, 0},
+                                         .families = {2, 2, 2, 2}});
+    mesh = mesh_cylinder(9, 1, 0.1f, 0.02f);
+    expect(&mesh, "ring strip", (Expected){.springs = {36, 9, 27, 18},
+                                           .strands = {18, 1, 9 + 2, 18},
+                                           .rings = {0, 1, 2, 0},
+                                           .families = {0, 1, 2, 0}});
+}
+
+// Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.
+static void test_sphere(void **state) {
+    (void)state;
+    for (uint32_t n = 1; n <= 8; n++) {
+        QuadMesh mesh = mesh_sphere(n);
+        assert_int_equal(mesh.vertex_count, 6 * n * n + 2);
+        Memory memory = memory_make((SingeAllocator){0});
+        Shell shell = mesh_shell(&memory, &mesh);
+        check_shell(&shell);
+        const SpringSet *green = &shell.springs[SINGE_GREEN], *blue = &shell.springs[SINGE_BLUE];
+        assert_int_equal(green->count, 12 * n * n);
+        assert_int_equal(green->strand_count, 3 * n);
+        assert_int_equal(count_rings(green), 3 * n);
+        assert_int_equal(green->longest, 4 * n);
+        assert_int_equal(green->family_count, 3); // three ways round, each crosses both others
+        assert_int_equal(blue->count, 12 * n * n);
+        assert_int_equal(blue->strand_count, 3 * (n - 1) + 12);
+        assert_int_equal(count_rings(blue), 3 * (n - 1));
+        print_message("sphere %u: families R %u G %u B %u Y %u cells %u\n", n, shell.springs[0].family_count,
+                      shell.springs[1].family_count, shell.springs[2].family_count, shell.springs[3].family_count,
+                      shell.cell_family_count);
+        shell_free(&memory, &shell);
+        assert_int_equal(memory.held, 0);
+        mesh_release(&mesh);
+    }
+}
+
+// Around a vertex of odd valence all ends; of even valence lines go through.
+static void test_polygon(void **state) {
+    (void)state;
+    const uint32_t n = 6;
+    QuadMesh mesh = mesh_polygon(5, n);
+    Memory memory = memory_make((SingeAllocator){0});
+    Shell shell = mesh_shell(&memory, &mesh);
+    check_shell(&shell);
+    const SpringSet *blue = &shell.springs[SINGE_BLUE], *green = &shell.springs[SINGE_GREEN];
+    assert_int_equal(blue->strand_count, 5 + 5 * (n - 1) + 5); // spokes, lines across, sides
+    assert_int_equal(green->strand_count, 5 * n);
+    assert_int_equal(count_rings(blue) + count_rings(green), 0);
+    print_message("pentagon: families R %u G %u B %u Y %u cells %u\n", shell.springs[0].family_count,
+                  green->family_count, blue->family_count, shell.springs[3].family_count, shell.cell_family_count);
+    shell_free(&memory, &shell);
+    mesh_release(&mesh);
+
+    mesh = mesh_polygon(6, n);
+    shell = mesh_shell(&memory, &mesh);
+    check_shell(&shell);
+    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 3 + 6 * (n - 1) + 6);
+    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 6 * n);
+    shell_free(&memory, &shell);
+    mesh_release(&mesh);
+}
+
+// The inner corner has three cells: both boundary lines run on into the mesh.
+static void test_ell(void **state) {
+    (void)state;
+    const uint32_t n = 4;
+    QuadMesh mesh = mesh_ell(n);
+    uint32_t cells = 3 * n * n;
+    Memory memory = memory_make((SingeAllocator){0});
+    Shell shell = mesh_shell(&memory, &mesh);
+    check_shell(&shell);
+    assert_int_equal(shell.springs[SINGE_RED].count, 4 * cells);
+    assert_int_equal(shell.springs[SINGE_BLUE].strand_count, 2 * (2 * n + 1));
+    assert_int_equal(shell.springs[SINGE_BLUE].count, 2 * ((n + 1) * 2 * n + n * n));
+    assert_int_equal(shell.springs[SINGE_BLUE].longest, 2 * n);
+    assert_int_equal(shell.springs[SINGE_GREEN].strand_count, 4 * n);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        assert_int_equal(shell.springs[colour].family_count, 2);
+        assert_int_equal(count_rings(&shell.springs[colour]), 0);
+    }
+    shell_free(&memory, &shell);
+    mesh_release(&mesh);
+}
+
+static void test_components(void **state) {
+    (void)state;
+    QuadMesh mesh = mesh_grid(5, 4, 0.01f, 0.01f);
+    mesh_append_grid(&mesh, 3, 6, 1, 1);
+    Expected a = grid_expected(5, 4), b = grid_expected(3, 6);
+    for (int colour = 0; colour < 4; colour++) {
+        a.springs[colour] += b.springs[colour];
+        a.strands[colour] += b.strands[colour];
+    }
+    expect(&mesh, "two components", a);
+}
+
+// Two sheets are numbered as one shell: all vertices, then all cells.
+static void test_sheets(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    QuadMesh a = mesh_grid(4, 3, 0.01f, 0.01f), b = mesh_grid(2, 5, 0.03f, 0.03f);
+    SingeSheetDef defs[2] = {mesh_sheet(&a), mesh_sheet(&b)};
+    defs[0].name = "first", defs[1].name = "second";
+    SheetSource sources[2];
+    Shell shell;
+    SingeError error;
+    for (int i = 0; i < 2; i++) assert_int_equal(sheet_source_create(&memory, &defs[i], &sources[i], &error), SINGE_OK);
+    assert_int_equal(shell_create(&memory, sources, 2, &shell, &error), SINGE_OK);
+    check_shell(&shell);
+    assert_int_equal(shell.vertex_count, 20 + 18);
+    assert_int_equal(shell.cell_count, 12 + 10);
+    assert_int_equal(shell.particle_count, 60);
+    assert_string_equal(shell.sheets[1].name, "second");
+    assert_int_equal(shell.sheets[1].vertex_first, 20);
+    assert_int_equal(shell.sheets[1].cell_first, 12);
+    assert_int_equal(shell.cells[12][0], 20 + b.cells[0][0]);
+    for (uint32_t p = 0; p < 60; p++) assert_int_equal(shell.matter.sheet[p], p < 38 ? p >= 20 : p >= 38 + 12);
+    assert_float_equal(shell.sheets[0].cell_size, 0.01f, 1e-8f);
+    assert_float_equal(shell.sheets[1].cell_size, 0.03f, 1e-8f);
+    for (int colour = 0; colour < 4; colour++) assert_int_equal(shell.springs[colour].family_count, 2);
+    shell_free(&memory, &shell);
+    for (int i = 0; i < 2; i++) sheet_source_free(&memory, &sources[i]);
+    mesh_release(&a);
+    mesh_release(&b);
+    assert_int_equal(memory.held, 0);
+}
+
+// General meshes: valences from 3 to 8 or so, strands that cross themselves.
+static void test_random(void **state) {
+    (void)state;
+    for (uint32_t seed = 1; seed <= 12; seed++) {
+        Memory memory = memory_make((SingeAllocator){0});
+        QuadMesh mesh = mesh_random(seed, seed);
+        if (seed % 2) mesh_shuffle(&mesh, seed);
+        Shell shell = mesh_shell(&memory, &mesh);
+        check_shell(&shell);
+        if (seed == 12)
+            for (int colour = 0; colour < 4; colour++)
+                print_message("random colour %d: %u springs %u strands %u rings %u families, longest %u\n", colour,
+                              shell.springs[colour].count, shell.springs[colour].strand_count,
+                              count_rings(&shell.springs[colour]), shell.springs[colour].family_count,
+                              shell.springs[colour].longest);
+        shell_free(&memory, &shell);
+        mesh_release(&mesh);
+        assert_int_equal(memory.held, 0);
+    }
+}
+
+// A hub of 201 cells: more strands meet than one word of families holds.
+static void test_hub(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    QuadMesh mesh = mesh_polygon(201, 1);
+    Shell shell = mesh_shell(&memory, &mesh);
+    check_shell(&shell);
+    assert_int_equal(shell.springs[SINGE_BLUE].family_count, 201);
+    assert_int_equal(shell.springs[SINGE_YELLOW].family_count, 201);
+    assert_int_equal(shell.cell_family_count, 201);
+    shell_free(&memory, &shell);
+    mesh_release(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_grid),       cmocka_unit_test(test_shuffled_grid), cmocka_unit_test(test_torus),
+        cmocka_unit_test(test_two_around), cmocka_unit_test(test_cylinder),      cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_polygon),    cmocka_unit_test(test_ell),           cmocka_unit_test(test_components),
+        cmocka_unit_test(test_sheets),     cmocka_unit_test(test_random),        cmocka_unit_test(test_hub),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
