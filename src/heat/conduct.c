@@ -1,0 +1,169 @@
+// Implicit diffusion, eq 2 by backward Euler:
+//
+//   (D + dt L) T = D T*,   (L T)_i = sum c_ij (T_i - T_j)
+//
+// D, c  capacities and conductances of operator.c
+// T*    K  temperature after sources, combustion and losses
+// dt    s  of fire
+//
+// Solved for the correction e = T - T*, (D + dt L) e = -dt L T*, by conjugate gradients with the diagonal as
+// preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Differences of temperature
+// are formed before anything is summed, so that the kelvins do not eat the digits. Stops when the residual,
+// in the norm of the inverse diagonal, is below `tolerance` times that of D (T* - T_amb).
+//
+// The new temperature is then T = T* - dt D^-1 L (T* + e). What flows from i to j is minus what flows from j to i to
+// the last bit, so that sum D T is kept whatever the tolerance. Adding what is smaller than a float's last
+// digit would lose it, always on the same side; rounding up or down at random, with the odds of the digits
+// cut off, loses nothing in the mean. The random numbers depend on particle and step alone.
+//
+// The umbrella keeps sum D T, not the heat sum C T. The difference, sum C_i dt (L T)_i / D_i, is heat that the operator
+// itself makes or destroys; it is counted as heat brought in, so that the ledger tells the truth about eq 3.
+#include <math.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "heat/plan.h"
+
+enum { CONDUCT_ITERATIONS = 200, CONDUCT_SEED = 0x68656174 };
+
+/// sum c_ij (x_j - x_i)
+static inline float conduct_inflow(const HeatMatrix *matrix, const float *x, uint32_t i) {
+    float sum = 0, here = x[i];
+    for (uint32_t k = matrix->first[i]; k < matrix->first[i + 1]; k++)
+        sum += matrix->value[k] * (x[matrix->column[k]] - here);
+    return sum;
+}
+
+static void conduct_start(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    float ambient = plan->settings.ambient_temperature;
+    for (int block = begin; block < end; block++) {
+        double residual = 0, whole = 0;
+        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
+            float diagonal = plan->measure[i] + pass->dt * plan->matrix.sum[i];
+            float inverse = diagonal > 0 && plan->alive[i] ? 1 / diagonal : 0;
+            float r = pass->dt * conduct_inflow(&plan->matrix, plan->star, i);
+            float b = plan->measure[i] * (plan->star[i] - ambient);
+            plan->inverse_diagonal[i] = inverse;
+            plan->residual[i] = r;
+            plan->correction[i] = 0;
+            plan->search[i] = 0;
+            residual += (double)r * r * inverse;
+            whole += (double)b * b * inverse;
+        }
+        plan->partial[block][0] = residual;
+        plan->partial[block][1] = whole;
+    }
+}
+
+static void conduct_direction(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    float *restrict search = plan->search;
+    const float *residual = plan->residual, *inverse = plan->inverse_diagonal;
+    uint32_t last = heat_block_end(plan, end - 1);
+    for (uint32_t i = (uint32_t)begin * POOL_BLOCK; i < last; i++)
+        search[i] = residual[i] * inverse[i] + pass->direction * search[i];
+}
+
+static void conduct_product(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    for (int block = begin; block < end; block++) {
+        double sum = 0;
+        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
+            float inflow = conduct_inflow(&plan->matrix, plan->search, i);
+            plan->product[i] = plan->measure[i] * plan->search[i] - pass->dt * inflow;
+            sum += (double)plan->product[i] * plan->search[i];
+        }
+        plan->partial[block][0] = sum;
+    }
+}
+
+static void conduct_advance(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    for (int block = begin; block < end; block++) {
+        double sum = 0;
+        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
+            plan->correction[i] += pass->step_length * plan->search[i];
+            float r = plan->residual[i] -= pass->step_length * plan->product[i];
+            sum += (double)r * r * plan->inverse_diagonal[i];
+        }
+        plan->partial[block][0] = sum;
+    }
+}
+
+static void conduct_settle(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    uint32_t last = heat_block_end(plan, end - 1);
+    for (uint32_t i = (uint32_t)begin * POOL_BLOCK; i < last; i++) plan->star[i] += plan->correction[i];
+}
+
+/// A float next to x, the upper or the lower with the odds that make it right in the mean.
+static inline float conduct_round(double x, uint32_t hash) {
+    float near = (float)x;
+    if ((double)near == x || !(x > 1e-30 && x < 1e30)) return near;
+    uint32_t bits;
+    memcpy(&bits, &near, sizeof bits);
+    bits = (bits & 0x7f800000u) - (23u << 23); // one unit of the last digit
+    float unit;
+    memcpy(&unit, &bits, sizeof unit);
+    return (float)(x + unit * (((double)(hash >> 8) + 0.5) / 16777216.0 - 0.5));
+}
+
+static void conduct_finish(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    const float *temperature = pass->state->heat.temperature;
+    const Matter *matter = &pass->shell->matter;
+    uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
+    for (int block = begin; block < end; block++) {
+        double made = 0, bad = -1;
+        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
+            plan->next[i] = temperature[i];
+            if (!plan->alive[i]) continue;
+            double rise = (double)pass->dt * conduct_inflow(&plan->matrix, plan->star, i) / plan->measure[i];
+            double change = plan->delta[i] + rise;
+            if (change != 0)
+                plan->next[i] = conduct_round(temperature[i] + change, random_hash(i, low, high, CONDUCT_SEED));
+            if (bad < 0 && !(plan->next[i] > 0 && plan->next[i] < INFINITY)) bad = i;
+            if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
+                made += matter->capacity[i] * rise;
+        }
+        plan->partial[block][0] = made;
+        plan->partial[block][1] = bad;
+    }
+}
+
+SingeResult heat_conduct(HeatPass *pass, uint64_t *iterations, double *made, SingeError *error) {
+    HeatPlan *plan = pass->plan;
+    heat_blocks(pass, conduct_start);
+    double residual = heat_sum(plan, 0), tolerance = plan->settings.tolerance;
+    double enough = tolerance * tolerance * heat_sum(plan, 1);
+    pass->direction = 0;
+    for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough; k++) {
+        heat_blocks(pass, conduct_direction);
+        heat_blocks(pass, conduct_product);
+        double curvature = heat_sum(plan, 0);
+        if (!(curvature > 0)) break;
+        pass->step_length = (float)(residual / curvature);
+        heat_blocks(pass, conduct_advance);
+        double before = residual;
+        residual = heat_sum(plan, 0);
+        pass->direction = (float)(residual / before);
+        ++*iterations;
+    }
+    heat_blocks(pass, conduct_settle);
+    heat_blocks(pass, conduct_finish);
+    *made = heat_sum(plan, 0);
+    for (int block = 0; block < plan->blocks; block++) {
+        double bad = plan->partial[block][1];
+        if (bad >= 0)
+            return error_set(error, SINGE_ERROR_DIVERGED, "heat", (int64_t)bad,
+                             "the temperature of particle %lld is not a positive finite number", (long long)bad);
+    }
+    return SINGE_OK;
+}

@@ -1,0 +1,103 @@
+// Eq 1, with the losses that it lacks:
+//
+//   T*  = T + eta (-dm) + dt (q + g (Ts - T*))/C''
+//   T** : dT/dt = -[h_c (T - Ta) + eps sigma (T^4 - Ta^4)]/(C'' max(m, floor) F)
+//
+// T      K         temperature; Ta ambient, Ts of a source
+// eta    K         heat of combustion per mass fraction; -dm = burn_rate h, what eq 4 took in the last step
+// q, g   W/m2, W/(m2 K)  flux and conductance of the sources
+// C''    J/(m2 K)  capacity per area of a layer, unburnt
+// h_c    W/(m2 K)  convection; eps emissivity; sigma Stefan and Boltzmann's constant. Each layer owns one side
+// m      mass fraction; F front thickening (thicken.c)
+// h, dt  s         scene time; fire time dt = h pace
+//
+// Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the
+// end of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. Losses are implicit too,
+// with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
+//   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/F.
+//
+// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C eta (-dm), with the unburnt
+// capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
+#include "heat/plan.h"
+
+static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
+
+void heat_blocks(HeatPass *pass, SingeTaskFn *run) { pool_for(pass->pool, pass->plan->blocks, 1, run, pass); }
+
+double heat_sum(const HeatPlan *plan, int column) {
+    double sum = 0;
+    for (int block = 0; block < plan->blocks; block++) sum += plan->partial[block][column];
+    return sum;
+}
+
+/// Combustion, sources and losses of particles [i, end) of one sheet; adds to the block's ledger.
+static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, double ledger[4]) {
+    HeatPlan *plan = pass->plan;
+    const Matter *matter = &pass->shell->matter;
+    uint32_t sheet = matter->sheet[i];
+    const SingeMaterialDef *material = &pass->shell->sheets[sheet].material;
+    const float *temperature = pass->state->heat.temperature, *mass = pass->state->burn.mass;
+    const float *burn_rate = pass->state->burn.burn_rate;
+    float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
+    float radiation = material->emissivity * STEFAN_BOLTZMANN, convection = material->convection;
+    float floor_mass = material->loss_mass_floor, slower = 1 / plan->thickening[sheet];
+    for (; i < end; i++) {
+        float T = temperature[i];
+        if (!plan->alive[i]) {
+            plan->star[i] = T, plan->delta[i] = 0;
+            continue;
+        }
+        float combustion = matter->heating[i] * burn_rate[i] * h;
+        float T1 = T + combustion;
+        float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
+        float g = plan->source_conductance[i];
+        float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
+        float T2 = T1 + warmth * flux;
+        float burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
+        float exchange = convection + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
+        float rate = warmth * exchange / burnt * slower; // dt K
+        float loss = rate * (T2 - ambient) / (1 + rate);
+        plan->star[i] = T2 - loss;
+        plan->delta[i] = combustion + warmth * flux - loss;
+        ledger[0] += (double)flux * matter->area[i] * dt;
+        ledger[1] += (double)loss * matter->capacity[i];
+        ledger[2] += (double)combustion * matter->capacity[i];
+    }
+}
+
+static void heat_exchange(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    const uint16_t *sheet = pass->shell->matter.sheet;
+    for (int block = begin; block < end; block++) {
+        double *ledger = plan->partial[block];
+        ledger[0] = ledger[1] = ledger[2] = 0;
+        uint32_t last = heat_block_end(plan, block);
+        for (uint32_t i = (uint32_t)block * POOL_BLOCK, run; i < last; i = run) {
+            for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
+            heat_exchange_run(pass, i, run, ledger);
+        }
+    }
+}
+
+SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
+                      const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
+                      uint64_t *iterations, SingeError *error) {
+    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .pool = pool, .h = h, .dt = h * plan->settings.pace};
+    double made = 0;
+    heat_matrix_follow(plan, shell, &state->ablate);
+
+    // eq 1: sources, combustion, losses
+    heat_gather(&pass, sources, colliders, view);
+    heat_blocks(&pass, heat_exchange);
+    double in = heat_sum(plan, 0), lost = heat_sum(plan, 1), combustion = heat_sum(plan, 2);
+
+    // eq 2 and 3: diffusion
+    TRY(heat_conduct(&pass, iterations, &made, error));
+
+    for (uint32_t i = 0; i < plan->particles; i++) heat->temperature[i] = plan->next[i];
+    heat->heat_in += in + made;
+    heat->heat_lost += lost;
+    heat->heat_of_combustion += combustion;
+    return SINGE_OK;
+}

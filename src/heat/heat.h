@@ -1,0 +1,53 @@
+// Heat: sources, losses, combustion and diffusion (eq 1 to 3).
+#ifndef HEAT_HEAT_H
+#define HEAT_HEAT_H
+
+#include "base/pool.h"
+#include "shell/shell.h"
+#include "world/collider.h"
+
+/// A heat source of the simulation. Pictures are evaluated once, at every particle.
+typedef struct Source {
+    uint32_t generation; ///< 0: the slot is free
+    SingeSourceDef def;  ///< its pointers (path, picture, strength) are not used
+    Path path;
+    uint32_t strength_count;
+    SingeValueKey *strength;
+    float *picture;      ///< [particle_count] or NULL
+} Source;
+
+typedef struct SourceList {
+    uint32_t count, capacity;
+    Source *items;
+} SourceList;
+
+/// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell.
+SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source, SingeError *error);
+void source_free(Memory *memory, const Shell *shell, Source *source);
+
+/// What the stage needs and does not change while it runs.
+typedef struct HeatSettings {
+    float ambient_temperature; ///< K
+    float tolerance;           ///< relative residual of the diffusion
+    float pace;
+    float up[3];               ///< unit, against gravity: where hot gas goes
+} HeatSettings;
+
+/// Operators and scratch of the stage, built once.
+typedef struct HeatPlan HeatPlan;
+SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan);
+void heat_plan_free(Memory *memory, HeatPlan *plan);
+
+/// The front thickening F used for a sheet (thicken.c).
+float heat_thickening(const HeatPlan *plan, uint32_t sheet);
+/// That factor from a material's numbers at its mean parameters and the cell size.
+float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, float mass_rate, float heating,
+                          float ignition_temperature, float ambient_temperature, float cell_size);
+
+/// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is
+/// &state->heat). `view` is handed to callback sources. Returns SINGE_ERROR_DIVERGED with the
+/// particle when a temperature is not finite. *iterations counts the solver's.
+SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources, const ColliderList *colliders,
+                      const SingeView *view, Pool *pool, float h, HeatState *heat, uint64_t *iterations, SingeError *error);
+
+#endif

@@ -1,0 +1,87 @@
+// Memory of the stage.
+#include "heat/plan.h"
+
+/// Means of a sheet's parameters over its particles, for the front thickening.
+static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
+    const Sheet *sheet = &shell->sheets[s];
+    const Matter *matter = &shell->matter;
+    double diffusivity = 0, rate = 0, heating = 0, ignition = 0, count = 0;
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
+        diffusivity += matter->diffusivity[i];
+        rate += matter->mass_rate[i];
+        heating += matter->heating[i];
+        ignition += matter->ignition_temperature[i];
+        count++;
+    }
+    if (count == 0) return 1;
+    return heat_thickening_for(&sheet->material, (float)(diffusivity / count), (float)(rate / count),
+                               (float)(heating / count),
+                               (float)(ignition / count), ambient, sheet->cell_size);
+}
+
+static bool plan_allocate(Memory *memory, HeatPlan *plan) {
+    size_t n = plan->particles, springs = plan->springs;
+    return NEW(memory, plan->thickening, plan->sheets) && NEW(memory, plan->measure, n) &&
+           NEW(memory, plan->conductance, springs) && NEW(memory, plan->spring_alive, springs) &&
+           NEW(memory, plan->alive, n) && NEW(memory, plan->dead, n) && NEW(memory, plan->flux, n) &&
+           NEW(memory, plan->source_conductance, n) && NEW(memory, plan->source_temperature, n) &&
+           NEW(memory, plan->plume.power, PLUME_CELLS) && NEW(memory, plan->plume.rising, PLUME_CELLS) &&
+           NEW(memory, plan->star, n) && NEW(memory, plan->delta, n) && NEW(memory, plan->correction, n) &&
+           NEW(memory, plan->residual, n) && NEW(memory, plan->search, n) && NEW(memory, plan->product, n) &&
+           NEW(memory, plan->inverse_diagonal, n) && NEW(memory, plan->next, n) &&
+           NEW(memory, plan->partial, (size_t)plan->blocks);
+}
+
+SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **out) {
+    *out = NULL;
+    HeatPlan *plan;
+    if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+    plan->settings = *settings;
+    plan->particles = shell->particle_count;
+    plan->sheets = shell->sheet_count;
+    plan->blocks = pool_blocks((int)shell->particle_count);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        plan->spring_first[c + 1] = plan->spring_first[c] + shell->springs[c].count;
+    plan->springs = plan->spring_first[SINGE_COLOUR_COUNT];
+    SingeResult result = plan_allocate(memory, plan) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    if (!result) {
+        for (uint32_t s = 0; s < plan->sheets; s++)
+            plan->thickening[s] = plan_thickening(shell, s, settings->ambient_temperature);
+        heat_operator(plan, shell);
+        heat_plume_frame(&plan->plume, settings->up);
+        result = heat_matrix_create(memory, plan, shell);
+    }
+    if (result) heat_plan_free(memory, plan);
+    else *out = plan;
+    return result;
+}
+
+void heat_plan_free(Memory *memory, HeatPlan *plan) {
+    if (!plan) return;
+    size_t n = plan->particles, springs = plan->springs;
+    heat_matrix_free(memory, plan);
+    FREE(memory, plan->thickening, plan->sheets);
+    FREE(memory, plan->measure, n);
+    FREE(memory, plan->conductance, springs);
+    FREE(memory, plan->spring_alive, springs);
+    FREE(memory, plan->alive, n);
+    FREE(memory, plan->dead, n);
+    FREE(memory, plan->flux, n);
+    FREE(memory, plan->source_conductance, n);
+    FREE(memory, plan->source_temperature, n);
+    FREE(memory, plan->plume.power, PLUME_CELLS);
+    FREE(memory, plan->plume.rising, PLUME_CELLS);
+    FREE(memory, plan->star, n);
+    FREE(memory, plan->delta, n);
+    FREE(memory, plan->correction, n);
+    FREE(memory, plan->residual, n);
+    FREE(memory, plan->search, n);
+    FREE(memory, plan->product, n);
+    FREE(memory, plan->inverse_diagonal, n);
+    FREE(memory, plan->next, n);
+    FREE(memory, plan->partial, (size_t)plan->blocks);
+    FREE(memory, plan, 1);
+}
+
+float heat_thickening(const HeatPlan *plan, uint32_t sheet) { return plan->thickening[sheet]; }

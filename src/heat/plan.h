@@ -1,0 +1,98 @@
+// What the stage's files share: the plan, and the passes that heat_step calls in order.
+#ifndef HEAT_PLAN_H
+#define HEAT_PLAN_H
+
+#include "heat/heat.h"
+
+/// Cells of the plume's grid, at most.
+enum { PLUME_CELLS = 1 << 16 };
+
+/// The heat equation's matrix in rows: entry k of row i is a spring's conductance to particle column[k].
+/// `value` is 0 where the spring conducts no more; conductances are without the time step.
+typedef struct HeatMatrix {
+    uint32_t *first;  ///< [particles + 1]
+    uint32_t *column, *spring; ///< [entries]
+    float *value;     ///< [entries]
+    float *sum;       ///< [particles] of a row's values
+    uint32_t entries;
+} HeatMatrix;
+
+/// Hot gas in upright columns (plume.c). Cell (x, y, z) is x + nx (y + ny z), z against gravity.
+typedef struct PlumeGrid {
+    Vec axis[3];       ///< orthonormal, the third is up
+    float cell;        ///< m
+    double origin[3];  ///< of cell (0, 0, 0), in the axes
+    int size[3];
+    float *power;      ///< [PLUME_CELLS] W set free in each cell
+    float *rising;     ///< [PLUME_CELLS] W that enter each cell from below
+} PlumeGrid;
+
+struct HeatPlan {
+    HeatSettings settings;
+    uint32_t particles, springs, sheets;
+    int blocks;
+    uint32_t spring_first[SINGE_COLOUR_COUNT + 1]; ///< springs of all colours in one numbering
+    float *thickening;     ///< [sheets] F
+
+    // operator
+    float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s
+    uint8_t *spring_alive; ///< [springs] as the matrix has it
+    uint8_t *alive;        ///< [particles] as the matrix has it
+    uint16_t *dead;        ///< [particles] springs at it that are gone
+    HeatMatrix matrix;
+
+    // sources, per particle
+    float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
+    PlumeGrid plume;
+
+    // solver, per particle
+    float *star;           ///< T* after sources and losses, K
+    float *delta;          ///< T* - T, K
+    float *correction;     ///< T - T* of the diffusion, K
+    float *residual, *search, *product, *inverse_diagonal;
+    float *next;           ///< the new temperature, K
+    double (*partial)[4];  ///< [blocks]
+};
+
+/// What a step's passes read.
+typedef struct HeatPass {
+    HeatPlan *plan;
+    const Shell *shell;
+    const State *state;
+    Pool *pool;
+    float h;  ///< s of scene time
+    float dt; ///< s of fire
+    float step_length; ///< of the conjugate gradients
+    float direction;   ///< their beta
+} HeatPass;
+
+/// Fills plan->conductance and plan->measure (operator.c).
+void heat_operator(HeatPlan *plan, const Shell *shell);
+
+/// Builds the matrix's pattern, all springs alive (matrix.c).
+SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
+void heat_matrix_free(Memory *memory, HeatPlan *plan);
+/// Makes the matrix follow what ablation removed since the last call.
+void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate);
+
+/// Sums all sources into the plan's arrays (source.c, plume.c).
+void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
+void heat_plume(HeatPass *pass, const SingeSourceDef *def);
+/// An orthonormal frame whose third axis is `up`.
+void heat_plume_frame(PlumeGrid *grid, const float up[3]);
+
+/// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
+/// the umbrella made.
+SingeResult heat_conduct(HeatPass *pass, uint64_t *iterations, double *made, SingeError *error);
+
+/// Calls run over [0, blocks) through the pool and adds up column c of plan->partial in order.
+void heat_blocks(HeatPass *pass, SingeTaskFn *run);
+double heat_sum(const HeatPlan *plan, int column);
+/// The particles of a block.
+static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
+    uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
+    return end < plan->particles ? end : plan->particles;
+}
+
+#endif

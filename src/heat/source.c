@@ -1,0 +1,242 @@
+// Everything that heats a sheet from outside goes through one interface: flux q, conductance g and g times the
+// temperature it tends to, summed per particle. A kind of source is one function in the table below.
+#include <math.h>
+#include <string.h>
+
+#include "heat/plan.h"
+
+// --- making one ---------------------------------------------------------------------------------------
+
+static SingeResult source_bad(SingeError *error, const char *what) {
+    return error_set(error, SINGE_ERROR_ARGUMENT, "source", -1, "%s", what);
+}
+
+static bool source_positive(float x) { return x > 0 && isfinite(x); }
+static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
+
+static SingeResult source_check_picture(const SingeSourceDef *def, SingeError *error) {
+    const SingePicture *picture = &def->picture;
+    if (picture->width < 1 || picture->height < 1 || !picture->values) return source_bad(error, "the picture is empty");
+    if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
+    size_t count = (size_t)picture->width * (size_t)picture->height;
+    for (size_t k = 0; k < count; k++)
+        if (!isfinite(picture->values[k]))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
+                             "value %lld of the picture is not finite", (long long)k);
+    if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
+    for (uint32_t k = 0; k < def->strength_count; k++) {
+        const SingeValueKey *key = &def->strength[k];
+        if (!isfinite(key->time) || !isfinite(key->value) || (k && !(key->time > key[-1].time)))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "source", k,
+                             "key %u of strength: times must increase and all be finite", k);
+    }
+    return SINGE_OK;
+}
+
+static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
+    if (isnan(def->start) || isnan(def->end)) return source_bad(error, "start and end must be numbers");
+    switch (def->kind) {
+    case SINGE_SOURCE_BALL:
+    case SINGE_SOURCE_SPOT:
+        if (!source_positive(def->temperature)) return source_bad(error, "temperature must be above 0 K and finite");
+        if (!source_not_negative(def->conductance))
+            return source_bad(error, "conductance must be at least 0 and finite");
+        if (!source_not_negative(def->radius)) return source_bad(error, "radius must be at least 0 and finite");
+        if (!source_not_negative(def->falloff)) return source_bad(error, "falloff must be at least 0 and finite");
+        if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
+        if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
+            return source_bad(error, "the path of a spot has exactly one key");
+        return SINGE_OK;
+    case SINGE_SOURCE_PICTURE: return source_check_picture(def, error);
+    case SINGE_SOURCE_PLUME:
+        if (!(def->plume_share >= 0 && def->plume_share <= 1))
+            return source_bad(error, "plume_share must lie from 0 to 1");
+        if (!source_positive(def->plume_height)) return source_bad(error, "plume_height must be above 0 and finite");
+        if (!source_not_negative(def->plume_conductance))
+            return source_bad(error, "plume_conductance must be at least 0 and finite");
+        return SINGE_OK;
+    case SINGE_SOURCE_CALLBACK: return SINGE_OK; // may be set later
+    }
+    return source_bad(error, "there is no such kind of source");
+}
+
+/// Bilinear, clamped; pixel (0, 0) is at the top left, its middle at half a pixel.
+static float source_sample(const SingePicture *picture, float u, float v) {
+    float x = u * (float)picture->width - 0.5f, y = (1 - v) * (float)picture->height - 0.5f;
+    float right = (float)(picture->width - 1), bottom = (float)(picture->height - 1);
+    x = x > 0 ? (x < right ? x : right) : 0;
+    y = y > 0 ? (y < bottom ? y : bottom) : 0;
+    int x0 = (int)x, y0 = (int)y, x1 = x0 + (x0 + 1 < picture->width), y1 = y0 + (y0 + 1 < picture->height);
+    float fx = x - (float)x0, fy = y - (float)y0;
+    const float *top = picture->values + (size_t)y0 * (size_t)picture->width;
+    const float *low = picture->values + (size_t)y1 * (size_t)picture->width;
+    return (1 - fy) * ((1 - fx) * top[x0] + fx * top[x1]) + fy * ((1 - fx) * low[x0] + fx * low[x1]);
+}
+
+static SingeResult source_set_picture(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+                                      SingeError *error) {
+    bool mapped = false;
+    for (uint32_t i = 0; i < shell->particle_count && !mapped; i++)
+        mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
+    if (!mapped) return source_bad(error, "a picture needs a sheet with uv");
+    if (!NEW(memory, source->picture, shell->particle_count) || !NEW(memory, source->strength, def->strength_count))
+        return error_set(error, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
+    source->strength_count = def->strength_count;
+    if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        source->picture[i] = source_sample(&def->picture, shell->uv[i][0], shell->uv[i][1]);
+    return SINGE_OK;
+}
+
+SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+                          SingeError *error) {
+    TRY(source_check(def, error));
+    uint32_t generation = source->generation;
+    *source = (Source){.generation = generation, .def = *def};
+    source->def.path = NULL;
+    source->def.strength = NULL;
+    source->def.picture.values = NULL;
+    SingeResult result = SINGE_OK;
+    if (def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT)
+        result = path_set(&source->path, memory, def->path_count, def->path, "source", error);
+    else if (def->kind == SINGE_SOURCE_PICTURE)
+        result = source_set_picture(memory, shell, def, source, error);
+    if (result) {
+        source->strength_count = def->strength_count; // as it was asked for, should the array be there
+        source_free(memory, shell, source);
+    }
+    return result;
+}
+
+void source_free(Memory *memory, const Shell *shell, Source *source) {
+    path_free(&source->path, memory);
+    FREE(memory, source->strength, source->strength_count);
+    FREE(memory, source->picture, shell->particle_count);
+    source->strength_count = 0;
+}
+
+// --- what each kind gives -------------------------------------------------------------------------------
+
+/// A conductance towards `temperature`, weighted by a shape's distance.
+typedef struct SourceJob {
+    HeatPass *pass;
+    const Source *source;
+    const SingeColliderDef *collider;
+    Pose pose;
+    float strength;
+} SourceJob;
+
+static inline void source_add(HeatPlan *plan, uint32_t i, float conductance, float temperature) {
+    plan->source_conductance[i] += conductance;
+    plan->source_temperature[i] += conductance * temperature;
+}
+
+/// 1 to radius, 0 from radius + falloff on, smoothstep between.
+static inline float source_falloff(float distance, float radius, float falloff) {
+    if (distance <= radius) return 1;
+    if (distance >= radius + falloff) return 0;
+    float x = (distance - radius) / falloff;
+    return 1 - x * x * (3 - 2 * x);
+}
+
+static void source_ball_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    HeatPlan *plan = job->pass->plan;
+    const SingeSourceDef *def = &job->source->def;
+    float reach = def->radius + def->falloff, square = reach * reach;
+    const float(*position)[4] = (const float(*)[4])job->pass->state->dynamics.position;
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
+        Vec away = vec_sub(vec_load(position[i]), job->pose.position);
+        float d2 = vec_dot(away, away);
+        if (!(d2 <= square) || !plan->alive[i]) continue;
+        source_add(plan, i, def->conductance * source_falloff(sqrtf(d2), def->radius, def->falloff), def->temperature);
+    }
+}
+
+static void source_ball(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    SourceJob job = {.pass = pass, .source = source, .pose = path_pose(&source->path, pass->state->time)};
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_ball_task, &job);
+}
+
+/// The key-framed strength at a time: linear, held beyond the ends, 1 without keys.
+static float source_strength(const Source *source, double time) {
+    uint32_t count = source->strength_count;
+    const SingeValueKey *keys = source->strength;
+    if (count == 0) return 1;
+    if (time <= keys[0].time) return keys[0].value;
+    for (uint32_t k = 1; k < count; k++)
+        if (time < keys[k].time) {
+            double part = (time - keys[k - 1].time) / ((double)keys[k].time - keys[k - 1].time);
+            return (float)(keys[k - 1].value + part * ((double)keys[k].value - keys[k - 1].value));
+        }
+    return keys[count - 1].value;
+}
+
+static void source_picture_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    HeatPlan *plan = job->pass->plan;
+    for (int i = begin; i < end; i++)
+        if (plan->alive[i]) plan->flux[i] += job->strength * job->source->picture[i];
+}
+
+static void source_picture(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    SourceJob job = {.pass = pass, .source = source,
+                     .strength = source->def.flux * source_strength(source, pass->state->time)};
+    if (source->picture && job.strength != 0)
+        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_picture_task, &job);
+}
+
+static void source_plume(HeatPass *pass, const Source *source, const SingeView *view) {
+    (void)view;
+    heat_plume(pass, &source->def);
+}
+
+static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {
+    HeatPlan *plan = pass->plan;
+    if (source->def.callback)
+        source->def.callback(source->def.callback_context, view, plan->flux, plan->source_conductance,
+                             plan->source_temperature);
+}
+
+typedef void SourceFn(HeatPass *pass, const Source *source, const SingeView *view);
+
+static SourceFn *const SOURCE_KINDS[] = {
+    [SINGE_SOURCE_BALL] = source_ball,   [SINGE_SOURCE_PICTURE] = source_picture, [SINGE_SOURCE_SPOT] = source_ball,
+    [SINGE_SOURCE_PLUME] = source_plume, [SINGE_SOURCE_CALLBACK] = source_callback,
+};
+
+static void source_contact_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    HeatPlan *plan = job->pass->plan;
+    const SingeColliderDef *def = job->collider;
+    for (int i = begin; i < end; i++) {
+        if (!plan->alive[i]) continue;
+        Vec normal, local = pose_unapply(&job->pose, vec_load(job->pass->state->dynamics.position[i]));
+        if (collider_distance(def, local, &normal) <= def->contact_distance)
+            source_add(plan, (uint32_t)i, def->conductance, def->temperature);
+    }
+}
+
+static void source_contact(HeatPass *pass, const Collider *collider) {
+    SourceJob job = {.pass = pass, .collider = &collider->def, .pose = path_pose(&collider->path, pass->state->time)};
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
+}
+
+void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view) {
+    HeatPlan *plan = pass->plan;
+    double time = pass->state->time;
+    memset(plan->flux, 0, plan->particles * sizeof *plan->flux);
+    memset(plan->source_conductance, 0, plan->particles * sizeof *plan->source_conductance);
+    memset(plan->source_temperature, 0, plan->particles * sizeof *plan->source_temperature);
+    for (uint32_t k = 0; sources && k < sources->count; k++) {
+        const Source *source = &sources->items[k];
+        if (source->generation && time >= source->def.start && time < source->def.end)
+            SOURCE_KINDS[source->def.kind](pass, source, view);
+    }
+    for (uint32_t k = 0; colliders && k < colliders->count; k++) {
+        const Collider *collider = &colliders->items[k];
+        if (collider->generation && collider->def.conductance > 0) source_contact(pass, collider);
+    }
+}

@@ -1,0 +1,108 @@
+#include "heat/rig.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+
+RigDef rig_default(int nx, int ny, float dx, float dy) {
+    RigDef def = {.nx = nx, .ny = ny, .dx = dx, .dy = dy, .material = singe_default_material()};
+    def.material.diffusivity = singe_param(1e-4f);
+    def.material.convection = 0;
+    def.material.emissivity = 0;
+    def.material.thickening = 1;
+    def.settings = (HeatSettings){.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1, .up = {0, 0, 1}};
+    return def;
+}
+
+static void rig_mesh(const RigDef *def, float *positions, float *uv, uint32_t *cells) {
+    for (int j = 0; j <= def->ny; j++)
+        for (int i = 0; i <= def->nx; i++) {
+            size_t v = (size_t)(j * (def->nx + 1) + i);
+            float *x = positions + 3 * v;
+            x[0] = (float)i * def->dx, x[1] = (float)j * def->dy, x[2] = 0;
+            uv[2 * v] = (float)i / (float)def->nx, uv[2 * v + 1] = (float)j / (float)def->ny;
+            if (def->shape) def->shape(x, i, j);
+        }
+    for (int j = 0; j < def->ny; j++)
+        for (int i = 0; i < def->nx; i++) {
+            uint32_t *cell = cells + 4 * (j * def->nx + i), row = (uint32_t)def->nx + 1;
+            cell[0] = (uint32_t)j * row + (uint32_t)i, cell[1] = cell[0] + 1, cell[2] = cell[1] + row,
+                cell[3] = cell[0] + row;
+        }
+}
+
+void rig_open(Rig *rig, const RigDef *def) {
+    *rig = (Rig){.memory = memory_make((SingeAllocator){0}), .nx = def->nx, .ny = def->ny, .settings = def->settings,
+                 .h = 0.002f};
+    size_t vertices = (size_t)(def->nx + 1) * (size_t)(def->ny + 1), count = (size_t)def->nx * (size_t)def->ny;
+    float *positions = malloc(vertices * 3 * sizeof *positions), *uv = malloc(vertices * 2 * sizeof *uv);
+    uint32_t *cells = malloc(count * 4 * sizeof *cells);
+    assert_true(positions && uv && cells);
+    rig_mesh(def, positions, uv, cells);
+    SingeSheetDef sheet = singe_default_sheet();
+    sheet.vertex_count = (uint32_t)vertices, sheet.positions = positions, sheet.uv = uv;
+    sheet.cell_count = (uint32_t)count, sheet.cells = cells;
+    sheet.material = def->material;
+    SheetSource source;
+    if (sheet_source_create(&rig->memory, &sheet, &source, &rig->error) ||
+        shell_create(&rig->memory, &source, 1, &rig->shell, &rig->error))
+        fail_msg("%s", rig->error.message);
+    sheet_source_free(&rig->memory, &source);
+    free(positions), free(uv), free(cells);
+    assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
+    assert_int_equal(heat_plan_create(&rig->memory, &rig->shell, &rig->settings, &rig->plan), SINGE_OK);
+    rig->sources = (SourceList){.capacity = 2, .items = rig->source};
+    rig->colliders = (ColliderList){.capacity = 1, .items = rig->collider};
+}
+
+void rig_close(Rig *rig) {
+    for (uint32_t k = 0; k < rig->sources.count; k++) source_free(&rig->memory, &rig->shell, &rig->source[k]);
+    for (uint32_t k = 0; k < rig->colliders.count; k++) path_free(&rig->collider[k].path, &rig->memory);
+    pool_destroy(&rig->memory, rig->pool);
+    heat_plan_free(&rig->memory, rig->plan);
+    state_free(&rig->memory, &rig->state);
+    shell_free(&rig->memory, &rig->shell);
+    assert_int_equal(rig->memory.held, 0);
+}
+
+void rig_step(Rig *rig) {
+    SingeView view = {.time = rig->state.time, .particle_count = rig->shell.particle_count,
+                      .temperature = rig->state.heat.temperature};
+    if (heat_step(rig->plan, &rig->shell, &rig->state, &rig->sources, &rig->colliders, &view, rig->pool, rig->h,
+                  &rig->state.heat,
+                  &rig->iterations, &rig->error))
+        fail_msg("%s", rig->error.message);
+    rig->state.time += (double)rig->h;
+    rig->state.step++;
+}
+
+void rig_source(Rig *rig, const SingeSourceDef *def) {
+    Source *source = &rig->source[rig->sources.count];
+    if (source_create(&rig->memory, &rig->shell, def, source, &rig->error)) fail_msg("%s", rig->error.message);
+    source->generation = 1;
+    rig->sources.count++;
+}
+
+void rig_remove(Rig *rig, uint32_t particle) {
+    AblateState *ablate = &rig->state.ablate;
+    if (!(ablate->particle_flags[particle] & SINGE_ALIVE)) return;
+    ablate->particle_flags[particle] = 0;
+    double capacity = (double)rig->shell.matter.capacity[particle];
+    rig->removed += capacity * ((double)rig->state.heat.temperature[particle] - 293);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        for (uint32_t k = 0; k < rig->shell.springs[c].count; k++)
+            if (rig->shell.springs[c].ends[k][0] == particle || rig->shell.springs[c].ends[k][1] == particle)
+                ablate->spring_flags[c][k] = 0;
+}
+
+double rig_content(const Rig *rig, int weight) {
+    double sum = 0;
+    const float *weights = weight ? rig->shell.matter.capacity : rig->shell.matter.area;
+    for (uint32_t i = 0; i < rig->shell.particle_count; i++)
+        if (rig->state.ablate.particle_flags[i] & SINGE_ALIVE)
+            sum += (double)weights[i] * ((double)rig->state.heat.temperature[i] - 293);
+    return sum;
+}
+
+float rig_random(uint32_t a, uint32_t b) { return random_unit(random_hash(a, b, 17, 4)); }

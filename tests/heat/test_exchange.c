@@ -1,0 +1,201 @@
+// What particles exchange with the air, and the failures of the step.
+#include "heat/rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double SIGMA = 5.670374e-8;
+
+static void fill(Rig *rig, float temperature) {
+    for (uint32_t i = 0; i < rig->shell.particle_count; i++) rig->state.heat.temperature[i] = temperature;
+}
+
+static RigDef lossy(void) {
+    RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+    def.material.convection = 14;
+    def.material.emissivity = 0.9f;
+    return def;
+}
+
+/// dT/dt of one particle in the air at 293 K.
+static double cooling(double T, double mass, double thickening) {
+    double capacity = 0.04 * 1400;
+    return -(14 * (T - 293) + 0.9 * SIGMA * (pow(T, 4) - pow(293, 4))) / (capacity * mass * thickening);
+}
+
+/// The temperature after a time from 1100 K, by Runge and Kutta's fourth-order rule.
+static double cooled(double seconds, double mass, double thickening) {
+    double T = 1100, h = seconds / 20000;
+    for (int k = 0; k < 20000; k++) {
+        double a = cooling(T, mass, thickening), b = cooling(T + h / 2 * a, mass, thickening);
+        double c = cooling(T + h / 2 * b, mass, thickening), d = cooling(T + h * c, mass, thickening);
+        T += h / 6 * (a + 2 * b + 2 * c + d);
+    }
+    return T;
+}
+
+static double cool(float h, float mass, float thickening) {
+    RigDef def = lossy();
+    def.material.thickening = thickening;
+    Rig rig;
+    rig_open(&rig, &def);
+    fill(&rig, 1100);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = mass;
+    rig.h = h;
+    for (int k = 0; k < (int)lround(2 / (double)h); k++) rig_step(&rig);
+    double T = (double)rig.state.heat.temperature[3];
+    rig_close(&rig);
+    return T;
+}
+
+static void cooling_follows_radiation_and_convection(void **unused) {
+    (void)unused;
+    const struct { float mass, thickening; double effective; } cases[] = {{1, 1, 1}, {0.4f, 1, 0.4f}, {1, 3, 1},
+                                                                          {0.01f, 1, 0.15f}};
+    for (int k = 0; k < 4; k++) {
+        double exact = cooled(2, cases[k].effective, (double)cases[k].thickening);
+        double coarse = cool(0.02f, cases[k].mass, cases[k].thickening) - exact,
+            fine = cool(0.01f, cases[k].mass, cases[k].thickening) - exact;
+        CHECK_NEAR(fine, 0, 0.05 * (exact - 293));
+        if (fabs(fine) > 0.05) CHECK_NEAR(coarse / fine, 2, 0.2); // first order in time
+    }
+}
+
+static void one_step_of_losses_is_the_formula(void **unused) {
+    (void)unused;
+    RigDef def = lossy();
+    Rig rig;
+    rig_open(&rig, &def);
+    fill(&rig, 900);
+    rig_step(&rig);
+    double capacity = 0.04 * 1400, rate = (14 + 0.9 * SIGMA * (900.0 + 293) * (900.0 * 900 + 293.0 * 293)) / capacity;
+    double after = (900 + 0.002 * rate * 293) / (1 + 0.002 * rate);
+    CHECK_NEAR(rig.state.heat.temperature[0], after, 1e-4);
+    // exactly the loss by eps sigma (T^4 - Ta^4), to first order
+    CHECK_NEAR((900 - after) / 0.002, -cooling(900, 1, 1), 0.005 * -cooling(900, 1, 1));
+    double lost = 0.002 * rate * (after - 293) * rig_content(&rig, 1) / ((double)rig.state.heat.temperature[0] - 293);
+    CHECK_NEAR(rig.state.heat.heat_lost, lost, 1e-4 * lost);
+    rig_close(&rig);
+}
+
+static void combustion_is_eta_times_burnt_mass(void **unused) {
+    (void)unused;
+    RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+    def.settings.pace = 4; // burn_rate is per second of scene time already
+    Rig rig;
+    rig_open(&rig, &def);
+    fill(&rig, 600);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 2;
+    rig_step(&rig);
+    CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
+    CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
+    rig_close(&rig);
+}
+
+static void pace_is_fire_time(void **unused) {
+    (void)unused;
+    double T[2];
+    for (int k = 0; k < 2; k++) {
+        RigDef def = lossy();
+        def.settings.pace = k ? 4 : 1;
+        Rig rig;
+        rig_open(&rig, &def);
+        fill(&rig, 900);
+        rig.h = k ? 0.002f : 0.008f;
+        rig_step(&rig);
+        T[k] = (double)rig.state.heat.temperature[0];
+        rig_close(&rig);
+    }
+    CHECK_NEAR(T[0], T[1], 1e-4);
+}
+
+// --- failures -------------------------------------------------------------------------------------------
+
+static void poison(void *context, const struct SingeView *view, float *flux, float *conductance, float *temperature) {
+    (void)view, (void)conductance, (void)temperature;
+    flux[7] = *(float *)context;
+}
+
+static void a_bad_temperature_is_named_and_kept_out(void **unused) {
+    (void)unused;
+    float values[] = {NAN, INFINITY, -1e9f};
+    for (int k = 0; k < 3; k++) {
+        RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+        def.material.diffusivity = singe_param(0);
+        def.material.layer_exchange = 0;
+        Rig rig;
+        rig_open(&rig, &def);
+        fill(&rig, 300);
+        SingeSourceDef source = singe_default_source();
+        source.kind = SINGE_SOURCE_CALLBACK, source.callback = poison, source.callback_context = &values[k];
+        rig_source(&rig, &source);
+        SingeView view = {0};
+        assert_int_equal(heat_step(rig.plan, &rig.shell, &rig.state, &rig.sources, NULL, &view, NULL, rig.h,
+                                   &rig.state.heat,
+                                   &rig.iterations, &rig.error), SINGE_ERROR_DIVERGED);
+        assert_int_equal(rig.error.element, 7);
+        assert_string_equal(rig.error.stage, "heat");
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 300);
+        assert_true(rig.state.heat.heat_in == 0);
+        rig_close(&rig);
+    }
+}
+
+typedef struct Failing { int left; } Failing;
+
+static void *failing_resize(void *context, void *block, size_t old_size, size_t new_size) {
+    Failing *failing = context;
+    (void)old_size;
+    if (new_size == 0) {
+        free(block);
+        return NULL;
+    }
+    return failing->left-- > 0 ? realloc(block, new_size) : NULL;
+}
+
+static void running_out_of_memory_is_clean(void **unused) {
+    (void)unused;
+    RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+    Rig rig;
+    rig_open(&rig, &def);
+    float pixels[] = {0, 1};
+    SingeValueKey keys[] = {{0, 0}, {1, 1}};
+    SingePoseKey path = {.rotation = {0, 0, 0, 1}};
+    SingeSourceDef picture = singe_default_source(), ball = singe_default_source();
+    picture.kind = SINGE_SOURCE_PICTURE, picture.picture = (SingePicture){2, 1, pixels};
+    picture.strength = keys, picture.strength_count = 2;
+    ball.kind = SINGE_SOURCE_BALL, ball.path = &path, ball.path_count = 1;
+    for (int what = 0; what < 3; what++)
+        for (int n = 0;; n++) {
+            Failing failing = {n};
+            Memory memory = memory_make((SingeAllocator){failing_resize, &failing});
+            HeatPlan *plan = NULL;
+            Source source = {0};
+            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan)
+                                           : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source,
+                                                           &rig.error);
+            if (!result) {
+                assert_true(n >= (what == 0 ? 20 : what == 1 ? 2 : 1));
+                heat_plan_free(&memory, plan);
+                source_free(&memory, &rig.shell, &source);
+                assert_int_equal(memory.held, 0);
+                break;
+            }
+            assert_int_equal(result, SINGE_ERROR_MEMORY);
+            assert_null(plan);
+            assert_int_equal(memory.held, 0);
+        }
+    rig_close(&rig);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cooling_follows_radiation_and_convection),
+        cmocka_unit_test(one_step_of_losses_is_the_formula),
+        cmocka_unit_test(combustion_is_eta_times_burnt_mass),
+        cmocka_unit_test(pace_is_fire_time),
+        cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
+        cmocka_unit_test(running_out_of_memory_is_clean),
+    };
+    return cmocka_run_group_tests_name("heat_exchange", tests, NULL, NULL);
+}

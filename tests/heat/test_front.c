@@ -1,0 +1,121 @@
+// The burning front on strips: its speed must not depend on the cells, thanks to the thickening.
+#include "heat/rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "burn/burn.h"
+
+typedef struct Front {
+    float thickening;
+    double speed;   ///< m/s
+    double hottest; ///< K
+} Front;
+
+/// Burns a strip of 3 cells' width from one end; particles burnt to m_loss fall away.
+static Front burn_strip(float size, const SingeMaterialDef *material) {
+    const double length = 0.12, first = 0.4 * length, last = 0.9 * length;
+    int n = (int)lround(length / (double)size);
+    RigDef def = rig_default(n, 3, size, size);
+    def.material = *material;
+    def.settings.ambient_temperature = 293.15f;
+    def.settings.tolerance = 1e-5f;
+    Rig rig;
+    rig_open(&rig, &def);
+    const Shell *shell = &rig.shell;
+    State *state = &rig.state;
+    double *partial = calloc((size_t)pool_blocks((int)shell->particle_count), sizeof *partial);
+    EventList events = {0};
+    Front front = {.thickening = heat_thickening(rig.plan, 0)};
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        if (rig_place(&rig, i)[0] < 0.02f) state->heat.temperature[i] = 1100;
+    double passed[2] = {0, 0}, before = 0, place = 0;
+    while (passed[1] == 0 && state->time < 60) {
+        rig_step(&rig);
+        assert_int_equal(burn_step(shell, state, NULL, rig.h, 1, &front.thickening, partial, &state->burn, &events,
+                                   &rig.error), SINGE_OK);
+        for (uint32_t i = 0; i < shell->particle_count; i++) {
+            if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+            if (state->burn.mass[i] < shell->matter.mass_loss[i]) rig_remove(&rig, i);
+            else if (place > first) front.hottest = fmax(front.hottest, (double)state->heat.temperature[i]);
+        }
+        before = place;
+        for (int i = 0; i < n; i++) { // where the mass is 0.6
+            double a = (double)state->burn.mass[rig_vertex(&rig, i, 1)],
+                b = (double)state->burn.mass[rig_vertex(&rig, i + 1, 1)];
+            if (a < 0.6 && b >= 0.6) place = (double)size * (i + (0.6 - a) / (b - a));
+        }
+        for (int k = 0; k < 2; k++) {
+            double gate = k ? last : first;
+            if (before < gate && place >= gate)
+                passed[k] = state->time - (double)rig.h * (place - gate) / (place - before);
+        }
+    }
+    if (passed[1] > 0) front.speed = (last - first) / (passed[1] - passed[0]);
+    free(partial);
+    rig_close(&rig);
+    return front;
+}
+
+/// Office paper, all that matters here in numbers of its own.
+static SingeMaterialDef paper(float diffusivity, float mass_rate, float ash_exponent, float mass_loss) {
+    SingeMaterialDef def = singe_default_material();
+    def.grammage = 0.08f, def.specific_heat = 1400, def.layer_exchange = 36;
+    def.convection = 14, def.emissivity = 0.9f, def.loss_mass_floor = 0.15f, def.thickening = 0;
+    def.diffusivity = singe_param(diffusivity), def.mass_rate = singe_param(mass_rate);
+    def.heating = singe_param(2400), def.ignition_temperature = singe_param(513.15f);
+    def.ash_exponent = singe_param(ash_exponent), def.mass_min = singe_param(0.15f),
+        def.mass_loss = singe_param(mass_loss);
+    return def;
+}
+
+static void compare(const SingeMaterialDef *material, double slowest, double fastest) {
+    const float sizes[] = {0.0005f, 0.001f, 0.002f, 0.004f};
+    double reference = 0;
+    for (int k = 0; k < 4; k++) {
+        Front front = burn_strip(sizes[k], material);
+        print_message("cells %.1f mm: F %.2f, front %.3f mm/s, hottest %.0f C\n", (double)sizes[k] * 1e3,
+                      (double)front.thickening,
+                      front.speed * 1e3, front.hottest - 273.15);
+        if (k == 0) reference = front.speed;
+        CHECK_NEAR(front.speed / reference, 1, 0.05);
+        if (front.speed < slowest || front.speed > fastest) fail_msg("%.2f mm/s", front.speed * 1e3);
+        if (front.hottest < 1023 || front.hottest > 1223) fail_msg("%.0f K", front.hottest);
+    }
+}
+
+static void front_speed_does_not_depend_on_cells(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = paper(1.2e-5f, 9e-3f, 1, 0.22f);
+    compare(&material, 11e-3, 14e-3);
+}
+
+static void calibrated_paper_burns_at_its_real_pace(void **unused) {
+    (void)unused;
+    SingeMaterialDef flaky = paper(2.7e-6f, 8e-3f, 1, 0.22f), clean = paper(3.6e-6f, 6e-3f, 0.5f, 0.3f);
+    compare(&flaky, 4.4e-3, 7.0e-3);
+    compare(&clean, 4.4e-3, 7.0e-3);
+}
+
+static void thickening_by_hand_and_its_limits(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = singe_default_material();
+    material.thickening = 3.5f;
+    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.01f) == 3.5f);
+    material.thickening = 0;
+    float a = heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.01f);
+    CHECK_NEAR(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.02f), 2 * (double)a, 1e-3);
+    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 1e-5f) == 1);
+    assert_true(heat_thickening_for(&material, 0, 9e-3f, 2400, 513, 293, 0.01f) == 1);
+    assert_true(heat_thickening_for(&material, 1e-5f, 0, 2400, 513, 293, 0.01f) == 1);
+    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 100, 513, 293, 0.01f) == 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(front_speed_does_not_depend_on_cells),
+        cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
+        cmocka_unit_test(thickening_by_hand_and_its_limits),
+    };
+    return cmocka_run_group_tests_name("heat_front", tests, NULL, NULL);
+}

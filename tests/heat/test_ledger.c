@@ -1,0 +1,143 @@
+// The ledger of heat: stored = in + combustion - lost, each counted by its own formula; and the same bits from any
+// number of threads.
+#include "heat/rig.h"
+
+#include <math.h>
+#include <string.h>
+
+static const SingePoseKey MIDDLE = {.position = {0.03f, 0.03f, 0}, .rotation = {0, 0, 0, 1}};
+
+static RigDef paper(SingeHeatOperator heat_operator) {
+    RigDef def = rig_default(40, 40, 0.002f, 0.002f);
+    def.material = singe_default_material();
+    def.material.heat_operator = heat_operator;
+    def.settings.tolerance = 1e-5f;
+    def.material.temperature = singe_param(310);
+    return def;
+}
+
+static void light(Rig *rig) {
+    SingeSourceDef spot = singe_default_source(), plume = singe_default_source();
+    spot.path = &MIDDLE, spot.path_count = 1, spot.end = 0.6f;
+    plume.kind = SINGE_SOURCE_PLUME;
+    rig_source(rig, &spot);
+    rig_source(rig, &plume);
+}
+
+/// A ring of fire that grows from the middle; what it has passed falls away here and there.
+static void burn(Rig *rig, bool remove) {
+    double radius = 0.005 + 0.01 * rig->state.time;
+    for (uint32_t i = 0; i < rig->shell.particle_count; i++) {
+        const float *x = rig_place(rig, i);
+        double d = hypot((double)x[0] - 0.03, (double)x[1] - 0.03);
+        bool burns = fabs(d - radius) < 0.004 && rig->state.burn.mass[i] > 0.2f;
+        rig->state.burn.burn_rate[i] = burns ? 0.8f : 0;
+        if (burns) rig->state.burn.mass[i] -= 0.8f * rig->h;
+        if (remove && d < radius - 0.006 && i % 3 == 0) rig_remove(rig, i);
+    }
+}
+
+static void ledger_closes(void **unused) {
+    (void)unused;
+    for (int k = 0; k < 4; k++) {
+        RigDef def = paper(k % 2 ? SINGE_HEAT_UMBRELLA : SINGE_HEAT_SURFACE);
+        def.settings.pace = k < 2 ? 1 : 3;
+        def.material.thickening = k < 2 ? 0 : 1;
+        Rig rig;
+        rig_open(&rig, &def);
+        light(&rig);
+        double start = rig_content(&rig, 1);
+        for (int step = 0; step < 500; step++) {
+            burn(&rig, step % 20 == 0);
+            rig_step(&rig);
+        }
+        const HeatState *heat = &rig.state.heat;
+        double stored = rig_content(&rig, 1) + rig.removed - start;
+        double largest = fmax(fmax(fabs(stored), heat->heat_in), fmax(heat->heat_lost, heat->heat_of_combustion));
+        double error = (heat->heat_in + heat->heat_of_combustion - heat->heat_lost - stored) / largest;
+        print_message("ledger %d: in %.3f J, combustion %.3f J, lost %.3f J, error %.2e\n", k, heat->heat_in,
+                      heat->heat_of_combustion, heat->heat_lost, error);
+        CHECK_NEAR(error, 0, 1e-6);
+        assert_true(heat->heat_in > 0.03 * largest && heat->heat_lost > 0.03 * largest &&
+                    heat->heat_of_combustion > 0.1 * largest);
+        rig_close(&rig);
+    }
+}
+
+/// Warmth far below a float's last digit must not leak away while nothing else happens.
+static void small_changes_are_not_lost(void **unused) {
+    (void)unused;
+    RigDef def = paper(SINGE_HEAT_SURFACE);
+    def.settings.ambient_temperature = 293;
+    def.material.thickening = 1;
+    def.material.temperature = singe_param(293.02f); // cools by 1e-5 K a step; a float's digit is 3e-5 K
+    Rig rig;
+    rig_open(&rig, &def);
+    double start = rig_content(&rig, 1);
+    for (int step = 0; step < 500; step++) rig_step(&rig);
+    double stored = rig_content(&rig, 1) - start;
+    assert_true(rig.state.heat.heat_lost > 0.2 * start);
+    CHECK_NEAR(-stored, rig.state.heat.heat_lost, 2e-3 * start);
+    rig_close(&rig);
+}
+
+static void threads_do_not_matter(void **unused) {
+    (void)unused;
+    Rig one;
+    for (int threads = 0; threads <= 3; threads++) {
+        RigDef def = paper(SINGE_HEAT_SURFACE);
+        Rig rig;
+        rig_open(&rig, &def);
+        light(&rig);
+        if (threads) assert_int_equal(pool_create(&rig.memory, (SingeTasks){0}, threads, &rig.pool), SINGE_OK);
+        for (int step = 0; step < 60; step++) {
+            burn(&rig, step % 10 == 0);
+            rig_step(&rig);
+        }
+        if (threads == 0) {
+            one = rig;
+            continue;
+        }
+        const HeatState *a = &one.state.heat, *b = &rig.state.heat;
+        assert_memory_equal(a->temperature, b->temperature, rig.shell.particle_count * sizeof *a->temperature);
+        assert_true(a->heat_in == b->heat_in && a->heat_lost == b->heat_lost &&
+                    a->heat_of_combustion == b->heat_of_combustion);
+        assert_int_equal(one.iterations, rig.iterations);
+        rig_close(&rig);
+    }
+    rig_close(&one);
+}
+
+/// A plan made in the middle of a run (after a load) gives what the old one gives.
+static void a_new_plan_goes_on_to_the_bit(void **unused) {
+    (void)unused;
+    Rig rigs[2];
+    for (int k = 0; k < 2; k++) {
+        RigDef def = paper(SINGE_HEAT_SURFACE);
+        rig_open(&rigs[k], &def);
+        light(&rigs[k]);
+        rigs[k].sources.items = rigs[k].source, rigs[k].colliders.items = rigs[k].collider;
+        for (int step = 0; step < 60; step++) {
+            if (k && step == 35) {
+                heat_plan_free(&rigs[k].memory, rigs[k].plan);
+                assert_int_equal(heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan),
+                                 SINGE_OK);
+            }
+            burn(&rigs[k], step % 10 == 0);
+            rig_step(&rigs[k]);
+        }
+    }
+    assert_memory_equal(rigs[0].state.heat.temperature, rigs[1].state.heat.temperature,
+                        rigs[0].shell.particle_count * sizeof(float));
+    for (int k = 0; k < 2; k++) rig_close(&rigs[k]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ledger_closes),
+        cmocka_unit_test(small_changes_are_not_lost),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(a_new_plan_goes_on_to_the_bit),
+    };
+    return cmocka_run_group_tests_name("heat_ledger", tests, NULL, NULL);
+}

@@ -1,0 +1,282 @@
+// Every kind of heat source, by its formula.
+#include "heat/rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double PER_AREA = 0.04 * 1400; // J/(m2 K), of a layer
+
+/// A sheet of cold, still particles: nothing but sources moves them.
+static RigDef inert(int nx, int ny) {
+    RigDef def = rig_default(nx, ny, 0.002f, 0.002f);
+    def.material.diffusivity = singe_param(0);
+    def.material.layer_exchange = 0;
+    def.material.temperature = singe_param(300);
+    return def;
+}
+
+static SingeSourceDef ball(const SingePoseKey *path, uint32_t count, float conductance, float radius, float falloff) {
+    SingeSourceDef def = singe_default_source();
+    def.kind = count > 1 ? SINGE_SOURCE_BALL : SINGE_SOURCE_SPOT;
+    def.path = path, def.path_count = count;
+    def.temperature = 1200, def.conductance = conductance, def.radius = radius, def.falloff = falloff;
+    return def;
+}
+
+static const SingePoseKey MIDDLE = {.position = {0.01f, 0.01f, 0}, .rotation = {0, 0, 0, 1}};
+
+static void relaxes_to_the_source_by_the_formula(void **unused) {
+    (void)unused;
+    RigDef def = inert(10, 10);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingeSourceDef source = ball(&MIDDLE, 1, 150, 1, 0);
+    rig_source(&rig, &source);
+    for (int k = 0; k < 40; k++) rig_step(&rig);
+    double expected = 1200 - 900 * pow(1 + 0.002 * 150 / PER_AREA, -40);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
+    CHECK_NEAR(rig.state.heat.heat_in, 2 * 4e-4 * PER_AREA * (expected - 300), 1e-4 * rig.state.heat.heat_in);
+    rig_close(&rig);
+}
+
+static void never_overshoots(void **unused) {
+    (void)unused;
+    RigDef def = inert(4, 4);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingeSourceDef source = ball(&MIDDLE, 1, 1e9f, 1, 0);
+    rig_source(&rig, &source);
+    for (int k = 0; k < 10; k++) {
+        rig_step(&rig);
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+            CHECK_NEAR(rig.state.heat.temperature[i], 1200 - (k ? 0 : 0.03), 0.02);
+    }
+    rig_close(&rig);
+}
+
+static void falls_off_smoothly_and_moves(void **unused) {
+    (void)unused;
+    const SingePoseKey path[] = {{0, {0, 0.01f, 0}, {0, 0, 0, 1}}, {1, {0.02f, 0.01f, 0}, {0, 0, 0, 1}}};
+    RigDef def = inert(10, 10);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingeSourceDef source = ball(path, 2, 100, 0.003f, 0.004f);
+    source.start = 0.5f, source.end = 0.501f;
+    rig_source(&rig, &source);
+    rig_step(&rig); // time 0: not yet
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 300);
+    rig.state.time = 0.5; // half way: at (0.01, 0.01)
+    rig_step(&rig);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
+        const float *x = rig_place(&rig, i);
+        double d = sqrt(pow((double)x[0] - 0.01, 2) + pow((double)x[1] - 0.01, 2) + pow((double)x[2], 2)),
+            s = (d - 0.003) / 0.004;
+        double g = 100 * (s <= 0 ? 1 : s >= 1 ? 0 : 1 - s * s * (3 - 2 * s)), a = 0.002 * g / PER_AREA;
+        CHECK_NEAR(rig.state.heat.temperature[i], (300 + a * 1200) / (1 + a), 1e-3);
+    }
+    float before = rig.state.heat.temperature[rig_vertex(&rig, 5, 5)];
+    rig.state.time = 0.502; // over
+    rig_step(&rig);
+    assert_true(rig.state.heat.temperature[rig_vertex(&rig, 5, 5)] == before && before > 300);
+    rig_close(&rig);
+}
+
+static void contact_heats_the_near_layer(void **unused) {
+    (void)unused;
+    RigDef def = inert(4, 4);
+    def.material.thickness = singe_param(0.002f);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingePoseKey pose = {.position = {0, 0, -0.0008f}, .rotation = {0, 0, 0, 1}};
+    Collider *plane = &rig.collider[0];
+    plane->def = singe_default_collider();
+    plane->def.conductance = 300, plane->def.temperature = 700, plane->def.contact_distance = 0.001f;
+    assert_int_equal(path_set(&plane->path, &rig.memory, 1, &pose, "collider", &rig.error), SINGE_OK);
+    rig.colliders.count = 1;
+    rig_step(&rig); // the slot is still free
+    assert_true(rig.state.heat.temperature[0] == 300);
+    plane->generation = 1;
+    rig_step(&rig);
+    double a = 0.002 * 300 / PER_AREA;
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+        CHECK_NEAR(rig.state.heat.temperature[i], shell_is_corner(&rig.shell, i) ? (300 + a * 700) / (1 + a) : 300,
+                   1e-4);
+    rig_close(&rig);
+}
+
+static void picture_and_key_frames(void **unused) {
+    (void)unused;
+    const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
+    const SingeValueKey keys[] = {{1, 0}, {3, 2}};
+    RigDef def = inert(8, 8);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingeSourceDef source = singe_default_source();
+    source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){2, 2, pixels}, source.flux = 20e3f;
+    source.strength = keys, source.strength_count = 2;
+    rig_source(&rig, &source);
+    const struct { double time, strength; } times[] = {{0, 0}, {1.5, 0.5}, {2, 1}, {9, 2}};
+    double total = 0;
+    for (int k = 0; k < 4; k++) {
+        rig.state.time = times[k].time;
+        rig_step(&rig);
+        total += times[k].strength;
+        double per_unit = 0.002 * 20e3 / PER_AREA;
+        CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
+        CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 8, 0)], 300 + total * per_unit * 0.25, 1e-3);
+        CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 0, 8)], 300, 1e-6);
+        CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 8, 8)], 300 + total * per_unit, 1e-3);
+        CHECK_NEAR(rig.state.heat.temperature[rig_vertex(&rig, 4, 4)], 300 + total * per_unit * 0.4375, 1e-3);
+        CHECK_NEAR(rig.state.heat.temperature[rig_centre(&rig, 0, 0)], 300 + total * per_unit * 0.5, 1e-3);
+    }
+    rig_close(&rig);
+}
+
+static void my_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
+                    float *conductance_temperature) {
+    ++*(int *)context;
+    flux[2] += 5e3f;
+    for (uint32_t i = 0; i < view->particle_count; i++) conductance[i] += 10, conductance_temperature[i] += 10 * 500;
+}
+
+static void callback_adds_to_the_rest(void **unused) {
+    (void)unused;
+    RigDef def = inert(3, 3);
+    Rig rig;
+    rig_open(&rig, &def);
+    int calls = 0;
+    SingeSourceDef source = singe_default_source();
+    source.kind = SINGE_SOURCE_CALLBACK, source.callback = my_flux, source.callback_context = &calls;
+    rig_source(&rig, &source);
+    SingeSourceDef spot = ball(&MIDDLE, 1, 20, 1, 0);
+    rig_source(&rig, &spot);
+    rig_remove(&rig, 5);
+    rig_step(&rig);
+    assert_int_equal(calls, 1);
+    double a = 0.002 / PER_AREA;
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
+        double q = i == 2 ? 5e3 : 0;
+        CHECK_NEAR(rig.state.heat.temperature[i], i == 5 ? 300 : (300 + a * (q + 10 * 500 + 20 * 1200)) / (1 + a * 30),
+                   1e-4);
+    }
+    rig.source[0].def.callback = NULL; // as after a load
+    rig_step(&rig);
+    assert_int_equal(calls, 1);
+    rig_close(&rig);
+}
+
+// --- plume -------------------------------------------------------------------------------------------------
+
+static void stand_up(float position[3], int column, int row) {
+    (void)column, (void)row;
+    position[2] = position[1], position[1] = 0;
+}
+
+static void plume_heats_what_is_above(void **unused) {
+    (void)unused;
+    for (int tilt = 0; tilt < 2; tilt++) {
+        RigDef def = inert(40, 60);
+        def.shape = tilt ? NULL : stand_up;
+        def.settings.up[tilt ? 2 : 1] = 0, def.settings.up[tilt ? 1 : 2] = 1;
+        Rig rig;
+        rig_open(&rig, &def);
+        for (int column = 0; column < 40; column++)
+            for (int row = 29; row < 31; row++) rig.state.burn.burn_rate[rig_centre(&rig, column, row)] = 1;
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+            rig.shell.matter.heating[i] = shell_is_corner(&rig.shell, i) ? 0 : 2400;
+        SingeSourceDef source = singe_default_source();
+        source.kind = SINGE_SOURCE_PLUME;
+        rig_source(&rig, &source);
+        rig_step(&rig);
+        double above = 0, below = 0, last = 1e9;
+        for (int row = 0; row <= 60; row++) {
+            double rise = (double)rig.state.heat.temperature[rig_vertex(&rig, 20, row)] - 300;
+            if (row < 30) below += rise;
+            if (row > 30) above += rise;
+            if (row > 40) assert_true(rise > 0 && rise <= last + 1e-4); // cools on its way up
+            if (row > 40) last = rise;
+        }
+        assert_true(above > 10 * below);
+        double hottest = 0.002 * 30 / PER_AREA * 1200;
+        assert_true(above / 30 > 0.02 * hottest && above / 30 < hottest);
+        rig_close(&rig);
+    }
+}
+
+static void plume_copes_with_any_place(void **unused) {
+    (void)unused;
+    RigDef def = inert(6, 6);
+    Rig rig;
+    rig_open(&rig, &def);
+    SingeSourceDef source = singe_default_source();
+    source.kind = SINGE_SOURCE_PLUME;
+    rig_source(&rig, &source);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 0.5f;
+    rig.state.dynamics.position[3][0] = 4000; // far larger than the grid is made for
+    rig.state.dynamics.position[4][2] = -900;
+    rig_step(&rig);
+    rig.state.dynamics.position[3][0] = NAN;
+    rig_step(&rig);
+    rig.state.dynamics.position[3][0] = INFINITY;
+    rig_step(&rig);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(isfinite(rig.state.heat.temperature[i]));
+    rig_close(&rig);
+}
+
+// --- refusals ------------------------------------------------------------------------------------------------
+
+static void bad_defs_are_refused(void **unused) {
+    (void)unused;
+    RigDef def = inert(2, 2);
+    Rig rig;
+    rig_open(&rig, &def);
+    const float pixels[] = {0, NAN}, good_pixels[] = {0, 1};
+    const SingeValueKey keys[] = {{1, 0}, {1, 2}};
+    SingeSourceDef bad[20];
+    int count = 0;
+    SingeSourceDef spot = ball(&MIDDLE, 1, 150, 0.01f, 0), picture = singe_default_source(),
+        plume = singe_default_source();
+    picture.kind = SINGE_SOURCE_PICTURE, picture.picture = (SingePicture){2, 1, good_pixels};
+    plume.kind = SINGE_SOURCE_PLUME;
+    bad[count] = spot, bad[count++].temperature = 0;
+    bad[count] = spot, bad[count++].temperature = NAN;
+    bad[count] = spot, bad[count++].conductance = -1;
+    bad[count] = spot, bad[count++].radius = INFINITY;
+    bad[count] = spot, bad[count++].falloff = -1;
+    bad[count] = spot, bad[count++].path_count = 0;
+    bad[count] = spot, bad[count++].path_count = 2;
+    bad[count] = spot, bad[count++].path = NULL;
+    bad[count] = spot, bad[count++].start = NAN;
+    bad[count] = spot, bad[count++].kind = (SingeSourceKind)9;
+    bad[count] = picture, bad[count++].picture.width = 0;
+    bad[count] = picture, bad[count++].picture.values = NULL;
+    bad[count] = picture, bad[count++].picture.values = pixels;
+    bad[count] = picture, bad[count++].flux = NAN;
+    bad[count] = picture, bad[count].strength = keys, bad[count++].strength_count = 2;
+    bad[count] = plume, bad[count++].plume_share = 1.5f;
+    bad[count] = plume, bad[count++].plume_height = 0;
+    bad[count] = plume, bad[count++].plume_conductance = -1;
+    for (int k = 0; k < count; k++) {
+        size_t held = rig.memory.held;
+        rig.error = (SingeError){0};
+        if (source_create(&rig.memory, &rig.shell, &bad[k], &rig.source[0], &rig.error) != SINGE_ERROR_ARGUMENT)
+            fail_msg("Def %d passed", k);
+        assert_true(rig.error.message[0] != 0);
+        assert_int_equal(rig.memory.held, held);
+    }
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.shell.uv[i][0] = rig.shell.uv[i][1] = 0;
+    assert_int_equal(source_create(&rig.memory, &rig.shell, &picture, &rig.source[0], &rig.error),
+                     SINGE_ERROR_ARGUMENT);
+    rig_close(&rig);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(relaxes_to_the_source_by_the_formula), cmocka_unit_test(never_overshoots),
+        cmocka_unit_test(falls_off_smoothly_and_moves),         cmocka_unit_test(contact_heats_the_near_layer),
+        cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
+        cmocka_unit_test(plume_heats_what_is_above),            cmocka_unit_test(plume_copes_with_any_place),
+        cmocka_unit_test(bad_defs_are_refused),
+    };
+    return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);
+}
