@@ -1,0 +1,21 @@
+// Burning: mass loss (eq 4), volume (eq 5) and target lengths (eq 6).
+#ifndef BURN_BURN_H
+#define BURN_BURN_H
+
+#include "base/pool.h"
+#include "shell/shell.h"
+
+/// Volume ratio of eq 5 for a mass fraction, with density going linearly from 1 to `ash_density`
+/// as the mass goes from 1 to mass_min. In (0, 1] for sane materials, clamped to [0.05, 1].
+float burn_volume_ratio(float mass, float mass_min, float ash_density);
+
+/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
+float burn_progress(float mass, float mass_min);
+
+/// One step of length h: masses, times and target lengths. `thickening` holds F for every sheet; rates
+/// are divided by it. `partial` is scratch of pool_blocks(particle_count) doubles. Reads `state`,
+/// writes `burn` (which is &state->burn). Ignitions are pushed to `events` in order of particle.
+SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float h, float pace, const float *thickening,
+                      double *partial, BurnState *burn, EventList *events, SingeError *error);
+
+#endif

@@ -1,0 +1,33 @@
+// What the passes of one burn step share.
+#ifndef BURN_JOB_H
+#define BURN_JOB_H
+
+#include "burn/burn.h"
+
+typedef struct BurnJob {
+    const Shell *shell;
+    const State *state;
+    float h;                 ///< s, the step in scene time
+    float dt;                ///< s, of fire: h times pace
+    float time;              ///< s, stamped on what happens in this step
+    const float *thickening; ///< [sheets] F
+    double *partial;         ///< [pool_blocks(particles)]
+    BurnState *burn;
+} BurnJob;
+
+/// The particles of block `block`: [*first, *last).
+static inline void burn_block(const BurnJob *job, int block, uint32_t *first, uint32_t *last) {
+    *first = (uint32_t)block * POOL_BLOCK;
+    *last = *first + POOL_BLOCK < job->shell->particle_count ? *first + POOL_BLOCK : job->shell->particle_count;
+}
+
+/// Stamps what reached its ignition temperature and pushes its events in order of particle.
+void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
+
+/// Eq 4. Returns the mass that went as gas, kg; not finite where a mass is not.
+double burn_lose_mass(BurnJob *job, Pool *pool);
+
+/// Eq 6, for springs with an end that lost mass in this step.
+void burn_shrink(BurnJob *job, Pool *pool);
+
+#endif

@@ -1,0 +1,81 @@
+// Mass loss, eq 4 with an ash exponent:
+//
+//   dm/dt = -(mu/F) x^p (T - T_ign)+,   x = (m - m_min)/(1 - m_min)
+//
+//   m      mass as a fraction of the initial mass, 1 unburnt; x what of it can still burn, 1 to 0
+//   m_min  fraction that never burns
+//   mu     mass rate, 1/(K s)
+//   F      front thickening, by which every rate is divided
+//   T, T_ign  temperature and ignition temperature, K;  (.)+ is zero below zero
+//   p      ash exponent; 0 is the paper's straight line, larger p leaves flakes of ash
+//
+// Over one step T is held, and k = mu dt (T - T_ign)/(F (1 - m_min)) is a number. dx/dt = -(k/dt) x^p is
+// then solved exactly, so that no step however long passes m_min, and x falls by
+//
+//   p = 0     k, at most x
+//   p = 1/2   (k/2) (2 sqrt(x) - k/2), and all of x once k/2 >= sqrt(x)
+//   p = 1     x (1 - exp(-k))
+//   p = 2     x / (1 + 1/(k x))
+//   else      x (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k x^(p - 1), and all of x once r >= 1
+#include "burn/burn_job.h"
+
+#include <math.h>
+
+/// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
+static float fall(float x, float k, float p) {
+    if (p == 0.0f) return k > x ? x : k;
+    if (p == 1.0f) return -x * expm1f(-k);
+    if (p == 2.0f) return x / (1 + 1 / (k * x));
+    if (p == 0.5f) {
+        float root = sqrtf(x), half = 0.5f * k;
+        return half > root ? x : half * (2 * root - half);
+    }
+    float r = (1 - p) * k * powf(x, p - 1);
+    return r >= 1 ? x : -x * expm1f(log1pf(-r) / (1 - p));
+}
+
+/// One particle's new mass; NaN comes through.
+static float lower_mass(const Matter *matter, uint32_t i, float mass, float excess, float dt) {
+    float least = matter->mass_min[i], span = 1 - least;
+    float x = (mass - least) / span, k = matter->mass_rate[i] * dt * excess / span;
+    if (x <= 0 || k <= 0) return mass;
+    float lowered = mass - span * fall(x, k, matter->ash_exponent[i]);
+    return lowered < least ? least : lowered;
+}
+
+static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
+    const Matter *matter = &job->shell->matter;
+    const float *temperature = job->state->heat.temperature;
+    const uint8_t *flags = job->state->ablate.particle_flags;
+    BurnState *burn = job->burn;
+    double lost = 0;
+    for (uint32_t i = first; i < last; i++) {
+        burn->burn_rate[i] = 0;
+        float excess = temperature[i] - matter->ignition_temperature[i];
+        if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
+        float before = burn->mass[i];
+        float after = lower_mass(matter, i, before, excess, job->dt / job->thickening[matter->sheet[i]]);
+        burn->mass[i] = after;
+        burn->burn_rate[i] = (before - after) / job->h;
+        if (after < matter->mass_loss[i] && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
+        lost += ((double)before - (double)after) * (double)matter->mass[i];
+    }
+    return lost;
+}
+
+static void lose_blocks(void *context, int begin, int end) {
+    BurnJob *job = context;
+    for (int block = begin; block < end; block++) {
+        uint32_t first, last;
+        burn_block(job, block, &first, &last);
+        job->partial[block] = lose_mass(job, first, last);
+    }
+}
+
+double burn_lose_mass(BurnJob *job, Pool *pool) {
+    int blocks = pool_blocks((int)job->shell->particle_count);
+    pool_for(pool, blocks, 1, lose_blocks, job);
+    double lost = 0;
+    for (int block = 0; block < blocks; block++) lost += job->partial[block];
+    return lost;
+}

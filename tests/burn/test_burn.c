@@ -1,0 +1,296 @@
+// Eq 4 to 6 against their closed forms; ignition; determinism; the mass ledger.
+#include "ablate/burning_sheet.h"
+
+#include "burn/burn.h"
+
+#include <string.h>
+
+static SingeResult step(BurningSheet *b, Pool *pool, float h, float pace, float thickening) {
+    double partial[64];
+    float factors[4] = {thickening, thickening, thickening, thickening};
+    assert_true(pool_blocks((int)b->shell.particle_count) <= 64);
+    return burn_step(&b->shell, &b->state, pool, h, pace, factors, partial, &b->state.burn, &b->events, &b->error);
+}
+
+static void heat_all(BurningSheet *b, float temperature) {
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = temperature;
+}
+
+static void volume_ratio_follows_eq_5(void **unused) {
+    (void)unused;
+    // constant density: the volume is the mass
+    assert_float_equal(burn_volume_ratio(1, 0.15f, 1), 1, 1e-7);
+    assert_float_equal(burn_volume_ratio(0.4f, 0.15f, 1), 0.4f, 1e-7);
+    // the density at half the way to m_min = 0.2 and rho_ash = 0.3 is 0.65: 0.6/0.65
+    assert_float_equal(burn_volume_ratio(0.6f, 0.2f, 0.3f), 0.6 / 0.65, 1e-6);
+    assert_float_equal(burn_volume_ratio(0.2f, 0.2f, 0.3f), 0.2 / 0.3, 1e-6);
+    // never outside [0.05, 1]
+    assert_float_equal(burn_volume_ratio(0.9f, 0.2f, 0.01f), 1, 0);
+    assert_float_equal(burn_volume_ratio(0.0f, 0.0f, 1), 0.05f, 0);
+    assert_float_equal(burn_progress(0.6f, 0.2f), 0.5, 1e-6);
+    assert_float_equal(burn_progress(0.1f, 0.2f), 1, 0);
+}
+
+static void no_exponent_is_a_straight_line(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
+    heat_all(b, 600); // mu (T - T_ign) = 0.1 1/s
+    for (int n = 1; n <= 20; n++) {
+        assert_int_equal(step(b, NULL, 0.25f, 2, 2.5f), SINGE_OK); // 0.1 * 0.25 * 2 / 2.5 = 0.02 a step
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+            assert_float_equal(b->state.burn.mass[i], 1 - 0.02 * n, 1e-6);
+            assert_float_equal(b->state.burn.burn_rate[i], 0.08, 1e-6); // per second of scene time
+        }
+    }
+    burning_sheet_free(b);
+}
+
+/// The solution of dx/dt = -k x^p from x = 1.
+static double exact(double k, double t, double p) {
+    if (p == 1) return exp(-k * t);
+    double y = 1 - (1 - p) * k * t;
+    return y <= 0 ? 0 : pow(y, 1 / (1 - p));
+}
+
+static void exponents_follow_their_solutions(void **unused) {
+    (void)unused;
+    const float exponents[] = {0, 0.25f, 0.5f, 0.999f, 1, 1.5f, 2, 3};
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
+        SingeMaterialDef material = plain_material();
+        material.ash_exponent = singe_param(exponents[e]);
+        BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+        heat_all(b, 670); // k = 0.17/0.85 = 0.2 1/s
+        for (int n = 1; n <= 80; n++) {
+            assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
+            double expected = 0.15 + 0.85 * exact(0.2, 0.1 * n, (double)exponents[e]);
+            assert_float_equal(b->state.burn.mass[0], expected, 5e-6);
+        }
+        burning_sheet_free(b);
+    }
+}
+
+static void no_step_passes_the_least_mass(void **unused) {
+    (void)unused;
+    const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2, 5}, steps[] = {1, 50, 1e4f, 1e30f};
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
+        for (size_t s = 0; s < sizeof steps / sizeof *steps; s++) {
+            SingeMaterialDef material = plain_material();
+            material.ash_exponent = singe_param(exponents[e]);
+            BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+            heat_all(b, 1500);
+            float least = b->shell.matter.mass_min[0], before = 1;
+            for (int n = 0; n < 30; n++) {
+                assert_int_equal(step(b, NULL, steps[s], 1, 1), SINGE_OK);
+                float mass = b->state.burn.mass[0];
+                assert_true(mass >= least && mass <= before);
+                before = mass;
+            }
+            if (exponents[e] <= 1) assert_float_equal(before, least, 1e-6);
+            burning_sheet_free(b);
+        }
+}
+
+static void ignites_once_and_in_order(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = burning_sheet(60, 40, 0.01f, &material);
+    const BurnState *burn = &b->state.burn;
+    const uint32_t lit[] = {3, 1023, 1024, 2500, 4000, 4100};
+    b->state.time = 1.5;
+    b->state.heat.temperature[4000] = 499.99f;
+    for (int k = 0; k < 6; k++)
+        if (lit[k] != 4000) b->state.heat.temperature[lit[k]] = 500; // exactly at the ignition point
+    b->state.ablate.particle_flags[4100] = 0;
+    assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
+    assert_int_equal(b->events.count, 4);
+    for (size_t k = 0; k < 4; k++) {
+        assert_int_equal(b->events.items[k].kind, SINGE_EVENT_IGNITED);
+        assert_int_equal(b->events.items[k].element, lit[k]);
+        assert_float_equal(b->events.items[k].time, 1.5, 0);
+        assert_float_equal(b->events.items[k].position[0], b->shell.rest_position[lit[k]][0], 0);
+        assert_float_equal(burn->time_ignited[lit[k]], 1.5f, 0);
+    }
+    assert_float_equal(burn->time_ignited[4000], -1, 0);
+    assert_float_equal(burn->time_ignited[4100], -1, 0);
+    b->state.time = 1.6;
+    b->state.heat.temperature[4000] = 800;
+    assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
+    assert_int_equal(b->events.count, 5);
+    assert_int_equal(b->events.items[4].element, 4000);
+    assert_float_equal(burn->time_ignited[3], 1.5f, 0);
+    assert_float_equal(burn->time_ignited[4000], 1.6f, 0);
+    burning_sheet_free(b);
+}
+
+static void burnt_when_mass_is_below_loss(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+    heat_all(b, 600); // 0.1 of the mass a second
+    b->state.ablate.particle_flags[0] = 0;
+    for (int n = 0; n < 8; n++) {
+        b->state.time = n;
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) assert_float_equal(b->state.burn.time_burnt[i], -1, 0);
+        if (n == 7) b->state.heat.temperature[2] = 500; // 0.3 of its mass stays
+        assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+    }
+    assert_float_equal(b->state.burn.time_burnt[1], 7, 0);
+    assert_float_equal(b->state.burn.mass[1], 0.2, 1e-6);
+    b->state.time = 8;
+    assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_OK);
+    assert_float_equal(b->state.burn.mass[1], 0.19, 1e-6);
+    assert_float_equal(b->state.burn.time_burnt[1], 7, 0); // stamped once
+    assert_float_equal(b->state.burn.time_burnt[2], -1, 0);
+    assert_float_equal(b->state.burn.burn_rate[2], 0, 0);
+    assert_float_equal(b->state.burn.mass[0], 1, 0); // what is gone does not burn
+    assert_float_equal(b->state.burn.time_burnt[0], -1, 0);
+    burning_sheet_free(b);
+}
+
+/// The blue spring between two corners.
+static uint32_t blue_between(const Shell *shell, uint32_t a, uint32_t b) {
+    const SpringSet *set = &shell->springs[SINGE_BLUE];
+    for (uint32_t s = 0; s < set->count; s++)
+        if ((set->ends[s][0] == a && set->ends[s][1] == b) || (set->ends[s][0] == b && set->ends[s][1] == a)) return s;
+    fail();
+    return 0;
+}
+
+/// Target over rest length of the spring between two corners burnt to the given masses.
+static double shrunk_ratio(float mass_a, float mass_b, float shrink_a, float shrink_b) {
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = burning_sheet(2, 1, 0.01f, &material);
+    uint32_t s = blue_between(&b->shell, 0, 1);
+    b->shell.matter.shrink[0] = shrink_a, b->shell.matter.shrink[1] = shrink_b;
+    b->state.heat.temperature[0] = 500 + 1000 * (1 - mass_a);
+    b->state.heat.temperature[1] = 500 + 1000 * (1 - mass_b);
+    assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+    assert_float_equal(b->state.burn.mass[0], mass_a, 1e-6);
+    double ratio = (double)(b->state.burn.spring_length[SINGE_BLUE][s] / b->shell.springs[SINGE_BLUE].rest[s]);
+    burning_sheet_free(b);
+    return ratio;
+}
+
+static void springs_shrink_by_eq_6(void **unused) {
+    (void)unused;
+    // Fig 5 a to d: 87.5, 62.5, 57.5 and 50 %
+    assert_float_equal(shrunk_ratio(1, 0.75f, 1, 1), 0.875, 1e-6);
+    assert_float_equal(shrunk_ratio(0.75f, 0.5f, 1, 1), 0.625, 1e-6);
+    assert_float_equal(shrunk_ratio(0.95f, 0.2f, 1, 1), 0.575, 1e-6);
+    assert_float_equal(shrunk_ratio(0.8f, 0.2f, 1, 1), 0.5, 1e-6);
+    // a layer's own share
+    assert_float_equal(shrunk_ratio(0.75f, 0.5f, 0, 0), 1, 0);
+    assert_float_equal(shrunk_ratio(0.75f, 0.5f, 0.5f, 1), 1 - 0.75 * 0.375, 1e-6);
+    // shrinking more than all there is does not turn a spring inside out
+    assert_float_equal(shrunk_ratio(0.15f, 0.15f, 2, 2), 0.05, 1e-6);
+}
+
+static void all_colours_shrink_and_do_not_compound(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    material.ash_density = singe_param(0.3f);
+    material.shrink_back = singe_param(0.5f);
+    BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 400 + 10 * (float)i;
+    b->state.ablate.spring_flags[SINGE_RED][7] = 0;
+    for (int n = 0; n < 5; n++) assert_int_equal(step(b, NULL, 0.2f, 1, 1), SINGE_OK);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t s = 0; s < b->shell.springs[colour].count; s++) {
+            double volumes = 0, shrink = 0;
+            for (int k = 0; k < 2; k++) {
+                uint32_t end = b->shell.springs[colour].ends[s][k];
+                double m = (double)b->state.burn.mass[end];
+                volumes += m / (1 - 0.7 * (1 - m) / 0.85) / 2;
+                shrink += (end < b->shell.vertex_count ? 1 : 0.5) / 2;
+            }
+            double expected = 1 - shrink * (1 - volumes), rest = (double)b->shell.springs[colour].rest[s];
+            if (colour == SINGE_RED && s == 7) expected = 1;
+            assert_float_equal((double)b->state.burn.spring_length[colour][s] / rest, expected, 2e-6);
+        }
+    burning_sheet_free(b);
+}
+
+static void bad_mass_is_named(void **unused) {
+    (void)unused;
+    const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2};
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
+        SingeMaterialDef material = plain_material();
+        material.ash_exponent = singe_param(exponents[e]);
+        BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
+        heat_all(b, 600);
+        b->state.heat.temperature[11] = NAN;
+        assert_int_equal(step(b, NULL, 0.1f, 1, 1), SINGE_ERROR_DIVERGED);
+        assert_int_equal(b->error.element, 11);
+        assert_string_equal(b->error.stage, "burn");
+        burning_sheet_free(b);
+    }
+}
+
+/// A hot stripe crosses a sheet of 8041 particles.
+static BurningSheet *crossed_by_stripe(Pool *pool) {
+    SingeMaterialDef material = plain_material();
+    material.ash_exponent = singe_param(0.5f);
+    material.mass_rate.to = 2e-3f;
+    material.mass_rate.field = SINGE_FIELD_NOISE;
+    material.mass_rate.noise = (SingeNoise){.scale = 0.02f, .octaves = 3, .seed = 7};
+    BurningSheet *b = burning_sheet(80, 50, 0.001f, &material);
+    for (int n = 0; n < 40; n++) {
+        b->state.time = 0.1 * n;
+        b->events.count = 0;
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+            float away = b->shell.rest_position[i][0] - 0.002f * (float)n;
+            b->state.heat.temperature[i] = 300 + 900 * expf(-away * away * 1e4f);
+        }
+        assert_int_equal(step(b, pool, 0.1f, 1, 1.5f), SINGE_OK);
+    }
+    return b;
+}
+
+static void mass_ledger_closes(void **unused) {
+    (void)unused;
+    BurningSheet *b = crossed_by_stripe(NULL);
+    double initial = 0;
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) initial += (double)b->shell.matter.mass[i];
+    double error = fabs(initial - mass_left(b) - b->state.burn.mass_burnt) / initial;
+    assert_true(b->state.burn.mass_burnt > 0.2 * initial);
+    assert_true(error < 1e-12);
+    burning_sheet_free(b);
+}
+
+static void threads_change_nothing(void **unused) {
+    (void)unused;
+    BurningSheet *one = crossed_by_stripe(NULL);
+    for (int threads = 1; threads <= 4; threads += threads) {
+        Memory memory = memory_make((SingeAllocator){0});
+        Pool *pool;
+        assert_int_equal(pool_create(&memory, (SingeTasks){0}, threads, &pool), SINGE_OK);
+        BurningSheet *many = crossed_by_stripe(pool);
+        assert_int_equal(many->state.arena_size, one->state.arena_size);
+        assert_memory_equal(many->state.arena, one->state.arena, one->state.arena_size);
+        assert_memory_equal(&many->state.burn.mass_burnt, &one->state.burn.mass_burnt, sizeof(double));
+        assert_int_equal(many->events.count, one->events.count);
+        for (size_t k = 0; k < one->events.count; k++)
+            assert_int_equal(many->events.items[k].element, one->events.items[k].element);
+        pool_destroy(&memory, pool);
+        burning_sheet_free(many);
+    }
+    burning_sheet_free(one);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volume_ratio_follows_eq_5),
+        cmocka_unit_test(no_exponent_is_a_straight_line),
+        cmocka_unit_test(exponents_follow_their_solutions),
+        cmocka_unit_test(no_step_passes_the_least_mass),
+        cmocka_unit_test(ignites_once_and_in_order),
+        cmocka_unit_test(burnt_when_mass_is_below_loss),
+        cmocka_unit_test(springs_shrink_by_eq_6),
+        cmocka_unit_test(all_colours_shrink_and_do_not_compound),
+        cmocka_unit_test(bad_mass_is_named),
+        cmocka_unit_test(mass_ledger_closes),
+        cmocka_unit_test(threads_change_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
