@@ -1,0 +1,30 @@
+// Ablation: what is burnt goes (section 6), what is loose is counted, what is left is drawn.
+#ifndef ABLATE_ABLATE_H
+#define ABLATE_ABLATE_H
+
+#include "base/pool.h"
+#include "shell/shell.h"
+
+/// Scratch of the stage, built once.
+typedef struct AblatePlan AblatePlan;
+SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **plan);
+void ablate_plan_free(Memory *memory, AblatePlan *plan);
+
+/// m' = m - m_loss at a particle; where the sheet's `ablate` is false, always 1.
+float ablate_level(const Shell *shell, const State *state, uint32_t particle);
+
+/// Labels the pieces in order of their smallest particle, unless they have labels. ablate_step does this
+/// first; a caller that reads pieces before the first step calls it too.
+void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
+
+/// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology
+/// changed; pushes hole and piece events. `heat_ambient` (K) is the zero of the enthalpy that removed
+/// particles carry away. Reads `state`, writes `ablate` (which is &state->ablate). First call labels the pieces.
+SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state, Pool *pool, float heat_ambient,
+                        AblateState *ablate, EventList *events, SingeError *error);
+
+/// Draws the surface (marching triangles, surface.c). Grows `surface` through its allocator.
+SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
+                           SingeError *error);
+
+#endif

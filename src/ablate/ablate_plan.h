@@ -1,0 +1,77 @@
+// What the files of the ablate stage share.
+#ifndef ABLATE_ABLATE_PLAN_H
+#define ABLATE_ABLATE_PLAN_H
+
+#include "ablate/ablate.h"
+
+/// Corners, virtual centres, cuts of blue springs and cuts of red springs, numbered in this order: every
+/// vertex that a surface may have.
+typedef struct SurfaceKeys {
+    uint32_t centre, blue, red; ///< the first of each; corners begin at 0
+    uint32_t count;
+} SurfaceKeys;
+
+struct AblatePlan {
+    uint32_t particle_count, vertex_count, cell_count;
+    float *level;            ///< [particles] m' of eq 7 at the present masses
+    uint8_t *rim;            ///< [vertices] 1 at the mesh's boundary
+    uint32_t *fan_first;     ///< [vertices + 1] cells around vertex v: fan[fan_first[v]] up to fan_first[v + 1]
+    uint32_t *fan;           ///< [4 cells]
+    uint32_t *root;          ///< [particles] of the disjoint sets; the smallest particle of its set
+    uint32_t *size;          ///< [particles] at a root: particles of the piece
+    double *area;            ///< [particles] at a root: m2 at rest of its corner layer
+    uint8_t *mark;           ///< [particles] at a root: PIECE_HELD, PIECE_DROPPED
+    uint32_t *heir;          ///< [particles] by id: root of the piece that keeps the id
+    SurfaceKeys keys;
+    uint32_t *output;        ///< [keys.count] index in the surface
+};
+
+/// Fills plan->level.
+void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state);
+
+/// What is left of a cell: bit i is the triangle of side i (corners i, i + 1 and the virtual centre). A
+/// triangle is gone when its three levels are negative.
+static inline unsigned ablate_triangles(const AblatePlan *plan, const Shell *shell, uint32_t cell) {
+    const uint32_t *corners = shell->cells[cell];
+    unsigned left = 0;
+    if (plan->level[shell_centre(shell, cell)] >= 0) return 15;
+    for (unsigned i = 0; i < 4; i++)
+        if (plan->level[corners[i]] >= 0) left |= 1u << i | 1u << ((i + 3) & 3);
+    return left;
+}
+
+/// What removal works on.
+typedef struct Removal {
+    AblatePlan *plan;
+    const Shell *shell;
+    const State *state;
+    AblateState *ablate;
+    float heat_ambient; ///< K
+    bool changed;       ///< something was removed
+} Removal;
+
+/// Removes a spring unless it has gone already; a particle that loses its last spring goes with it.
+void remove_spring(Removal *removal, SingeColour colour, uint32_t spring);
+
+/// Removes what has burnt through: springs, cells, particles.
+void remove_burnt(Removal *removal);
+
+/// Pushes a SINGE_EVENT_HOLE_OPENED for every hole that opened in this step. Comes before the removal.
+void hole_report(const AblatePlan *plan, const Shell *shell, const State *state, EventList *events);
+
+/// Finds the pieces after a change: drops small loose ones, keeps or gives ids, pushes SINGE_EVENT_PIECE_FREED.
+void piece_update(Removal *removal, EventList *events);
+
+/// Room for so many triangles or vertices; what the arrays held is lost. On failure the surface is empty.
+SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error);
+SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
+
+/// Fills the vertex of a key at `index` (all but its normal).
+void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key, uint32_t index,
+                    SingeSurface *surface);
+
+/// Where the level set cuts an edge, eq 7, as a fraction of the way from the end inside. 0 where that end
+/// is so near that the cut is taken to be there.
+float surface_cut(float inside, float outside);
+
+#endif

@@ -1,0 +1,26 @@
+// The level set of section 6:
+//
+//   m' = m - m_loss
+//
+// Not negative: still there. A sheet that is not ablated is inside everywhere.
+#include "ablate/ablate_plan.h"
+
+float ablate_level(const Shell *shell, const State *state, uint32_t particle) {
+    const Matter *matter = &shell->matter;
+    if (!shell->sheets[matter->sheet[particle]].material.ablate) return 1;
+    return state->burn.mass[particle] - matter->mass_loss[particle];
+}
+
+static void fill(AblatePlan *plan, const Shell *shell, const State *state, bool ablate, uint32_t first,
+                 uint32_t count) {
+    const float *mass = state->burn.mass, *mass_loss = shell->matter.mass_loss;
+    for (uint32_t i = first; i < first + count; i++) plan->level[i] = ablate ? mass[i] - mass_loss[i] : 1;
+}
+
+void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state) {
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        fill(plan, shell, state, sheet->material.ablate, sheet->vertex_first, sheet->vertex_count);
+        fill(plan, shell, state, sheet->material.ablate, shell_centre(shell, sheet->cell_first), sheet->cell_count);
+    }
+}

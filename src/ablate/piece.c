@@ -1,0 +1,133 @@
+// Pieces: what hangs together by springs.
+//
+// Disjoint sets over the springs that are left, with path halving; the root of a set is its smallest
+// particle, so that the result does not depend on the order of the springs. A piece that falls apart leaves
+// its id to the part with most particles (of equals the one with the smallest particle); the others get new
+// ids in order of their smallest particle. A particle without springs belongs to no piece.
+#include "ablate/ablate_plan.h"
+
+#include <string.h>
+
+enum { PIECE_HELD = 1, PIECE_DROPPED = 2 };
+
+static uint32_t find(uint32_t *root, uint32_t i) {
+    while (root[i] != i) {
+        root[i] = root[root[i]];
+        i = root[i];
+    }
+    return i;
+}
+
+static void join(uint32_t *root, uint32_t a, uint32_t b) {
+    a = find(root, a), b = find(root, b);
+    if (a < b) root[b] = a;
+    else root[a] = b;
+}
+
+/// Leaves in plan->root[i] the smallest particle that i hangs together with.
+static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    uint32_t *root = plan->root;
+    for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = i;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        const uint8_t *flags = ablate->spring_flags[colour];
+        for (uint32_t s = 0; s < springs->count; s++)
+            if (flags[s] & SINGE_ALIVE) join(root, springs->ends[s][0], springs->ends[s][1]);
+    }
+    // roots come before what they are the root of, so one look is enough
+    for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
+}
+
+/// Size, area and pins of every set, at its root.
+static void measure(AblatePlan *plan, const Shell *shell, const AblateState *ablate, const uint8_t *pinned) {
+    size_t count = shell->particle_count;
+    memset(plan->size, 0, count * sizeof *plan->size);
+    memset(plan->mark, 0, count);
+    for (uint32_t i = 0; i < count; i++) plan->area[i] = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (ablate->degree[i] == 0) continue;
+        uint32_t root = plan->root[i];
+        plan->size[root]++;
+        if (i < shell->vertex_count) plan->area[root] += (double)shell->matter.area[i];
+        if (pinned[i]) plan->mark[root] |= PIECE_HELD;
+    }
+}
+
+/// Marks a sheet's small loose pieces; its largest stays whatever its size. The root of a piece is a
+/// corner: no centre hangs on without one, and corners come first.
+static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
+    uint32_t first = sheet->vertex_first, last = first + sheet->vertex_count, largest = SHELL_NONE;
+    bool any = false;
+    for (uint32_t r = first; r < last; r++)
+        if (plan->size[r] && (largest == SHELL_NONE || plan->area[r] > plan->area[largest])) largest = r;
+    for (uint32_t r = first; r < last; r++) {
+        if (!plan->size[r] || r == largest || plan->mark[r] & PIECE_HELD) continue;
+        if (!(plan->area[r] < (double)sheet->drop_pieces_below)) continue;
+        plan->mark[r] |= PIECE_DROPPED;
+        any = true;
+    }
+    return any;
+}
+
+/// Removes the marked pieces whole: cells, springs and, with their last spring, particles.
+static void drop_marked(Removal *removal) {
+    const AblatePlan *plan = removal->plan;
+    const Shell *shell = removal->shell;
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        if (plan->mark[plan->root[shell->cells[c][0]]] & PIECE_DROPPED)
+            removal->ablate->cell_flags[c] &= (uint8_t)~SINGE_ALIVE;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t s = 0; s < shell->springs[colour].count; s++)
+            if (plan->mark[plan->root[shell->springs[colour].ends[s][0]]] & PIECE_DROPPED)
+                remove_spring(removal, (SingeColour)colour, s);
+}
+
+static bool is_piece(const AblatePlan *plan, uint32_t root) {
+    return plan->size[root] > 0 && !(plan->mark[root] & PIECE_DROPPED);
+}
+
+/// For every id the root of the part that keeps it.
+static void choose_heirs(AblatePlan *plan, const AblateState *ablate) {
+    memset(plan->heir, 0xff, plan->particle_count * sizeof *plan->heir);
+    for (uint32_t r = 0; r < plan->particle_count; r++) {
+        if (!is_piece(plan, r)) continue;
+        uint32_t *heir = &plan->heir[ablate->piece[r]];
+        if (*heir == SHELL_NONE || plan->size[r] > plan->size[*heir]) *heir = r;
+    }
+}
+
+/// Gives every particle the id that its root has by now.
+static void spread_ids(const AblatePlan *plan, AblateState *ablate) {
+    for (uint32_t i = 0; i < plan->particle_count; i++)
+        ablate->piece[i] = ablate->degree[i] ? ablate->piece[plan->root[i]] : -1;
+}
+
+void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate) {
+    if (ablate->next_piece) return;
+    find_sets(plan, shell, ablate);
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        if (plan->root[i] == i && ablate->degree[i]) ablate->piece[i] = (int32_t)ablate->next_piece++;
+    ablate->piece_count = ablate->next_piece;
+    spread_ids(plan, ablate);
+}
+
+void piece_update(Removal *removal, EventList *events) {
+    AblatePlan *plan = removal->plan;
+    const State *state = removal->state;
+    AblateState *ablate = removal->ablate;
+    bool drop = false;
+    find_sets(plan, removal->shell, ablate);
+    measure(plan, removal->shell, ablate, state->dynamics.pinned);
+    for (uint32_t s = 0; s < removal->shell->sheet_count; s++) drop |= mark_small(plan, &removal->shell->sheets[s]);
+    if (drop) drop_marked(removal);
+    choose_heirs(plan, ablate);
+    ablate->piece_count = 0;
+    for (uint32_t r = 0; r < plan->particle_count; r++) {
+        if (!is_piece(plan, r)) continue;
+        ablate->piece_count++;
+        if (plan->heir[ablate->piece[r]] == r) continue;
+        ablate->piece[r] = (int32_t)ablate->next_piece++;
+        event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics.position[r]);
+    }
+    spread_ids(plan, ablate);
+}

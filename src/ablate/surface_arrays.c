@@ -1,0 +1,65 @@
+// The memory of a surface.
+#include "ablate/ablate_plan.h"
+
+#include <string.h>
+
+typedef struct SurfaceArray {
+    size_t offset, element_size;
+} SurfaceArray;
+
+#define ARRAY(field) {offsetof(SingeSurface, field), sizeof *((SingeSurface *)0)->field}
+
+static const SurfaceArray vertex_arrays[] = {
+    ARRAY(position), ARRAY(normal), ARRAY(uv), ARRAY(velocity), ARRAY(rest_position), ARRAY(temperature), ARRAY(mass),
+    ARRAY(burn_rate), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece), ARRAY(source_vertex), ARRAY(sheet),
+};
+static const SurfaceArray triangle_array = ARRAY(triangles);
+
+enum { VERTEX_ARRAYS = sizeof vertex_arrays / sizeof *vertex_arrays };
+
+static void release(Memory *memory, SingeSurface *surface, const SurfaceArray *array, uint32_t count) {
+    memory_free(memory, (char *)surface + array->offset, count, array->element_size);
+}
+
+static bool obtain(Memory *memory, SingeSurface *surface, const SurfaceArray *array, uint32_t count) {
+    void *block = memory_new(memory, count, array->element_size);
+    memcpy((char *)surface + array->offset, &block, sizeof block);
+    return block != NULL;
+}
+
+void singe_surface_free(SingeSurface *surface) {
+    if (!surface) return;
+    Memory memory = memory_make(surface->allocator);
+    for (int i = 0; i < VERTEX_ARRAYS; i++) release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
+    release(&memory, surface, &triangle_array, surface->triangle_capacity);
+    *surface = (SingeSurface){0};
+}
+
+/// Empties a surface but for its allocator.
+static SingeResult fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
+    SingeAllocator allocator = surface->allocator;
+    singe_surface_free(surface);
+    surface->allocator = allocator;
+    return error_set(error, code, "ablate", -1, "%s", message);
+}
+
+static SingeResult reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count, uint32_t *capacity,
+                           uint64_t count, SingeError *error) {
+    if (count > INT32_MAX) return fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
+    if (count <= *capacity) return SINGE_OK;
+    Memory memory = memory_make(surface->allocator);
+    for (int i = 0; i < array_count; i++) release(&memory, surface, &arrays[i], *capacity);
+    *capacity = (uint32_t)(count + count / 4); // a burning sheet's surface grows a little in most frames
+    for (int i = 0; i < array_count; i++)
+        if (!obtain(&memory, surface, &arrays[i], *capacity))
+            return fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
+    return SINGE_OK;
+}
+
+SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error) {
+    return reserve(surface, &triangle_array, 1, &surface->triangle_capacity, count, error);
+}
+
+SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
+    return reserve(surface, vertex_arrays, VERTEX_ARRAYS, &surface->vertex_capacity, count, error);
+}

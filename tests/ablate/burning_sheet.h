@@ -1,0 +1,113 @@
+// A flat grid sheet with its shell, state and events, for the tests of burn and ablate.
+#ifndef TESTS_ABLATE_BURNING_SHEET_H
+#define TESTS_ABLATE_BURNING_SHEET_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "shell/shell.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct BurningSheet {
+    Memory memory;
+    Shell shell;
+    State state;
+    EventList events;
+    SingeError error;
+    uint32_t nx, ny;
+} BurningSheet;
+
+/// m_min 0.15, m_loss 0.25, p = 0, mu = 1e-3 1/(K s), T_ign 500 K, constant density, the paper's shrinkage.
+static inline SingeMaterialDef plain_material(void) {
+    SingeMaterialDef material = singe_default_material();
+    material.mass_min = singe_param(0.15f);
+    material.mass_loss = singe_param(0.25f);
+    material.ash_exponent = singe_param(0);
+    material.mass_rate = singe_param(1e-3f);
+    material.ignition_temperature = singe_param(500);
+    material.temperature = singe_param(300);
+    material.ash_density = singe_param(1);
+    material.shrink_front = material.shrink_back = singe_param(1);
+    return material;
+}
+
+/// A source of nx by ny square cells with side `cell` (m) in the plane z = 0, its corner at x = `left`.
+static inline SheetSource grid_source(Memory *memory, uint32_t nx, uint32_t ny, float cell, float left,
+                                      const SingeMaterialDef *material, float drop_pieces_below) {
+    SingeSheetDef def = singe_default_sheet();
+    SheetSource source;
+    uint32_t row = nx + 1;
+    def.vertex_count = row * (ny + 1), def.cell_count = nx * ny;
+    float *positions = calloc(3 * (size_t)def.vertex_count, sizeof *positions);
+    float *uv = calloc(2 * (size_t)def.vertex_count, sizeof *uv);
+    uint32_t *cells = calloc(4 * (size_t)def.cell_count, sizeof *cells);
+    for (uint32_t j = 0; j <= ny; j++)
+        for (uint32_t i = 0; i <= nx; i++) {
+            size_t v = j * row + i;
+            positions[3 * v] = left + cell * (float)i, positions[3 * v + 1] = cell * (float)j;
+            uv[2 * v] = (float)i / (float)nx, uv[2 * v + 1] = (float)j / (float)ny;
+        }
+    for (uint32_t j = 0; j < ny; j++)
+        for (uint32_t i = 0; i < nx; i++) {
+            uint32_t *corners = cells + 4 * (size_t)(j * nx + i), v = j * row + i;
+            corners[0] = v, corners[1] = v + 1, corners[2] = v + row + 1, corners[3] = v + row;
+        }
+    def.positions = positions, def.uv = uv, def.cells = cells;
+    def.material = *material;
+    def.drop_pieces_below = drop_pieces_below;
+    assert_int_equal(sheet_source_create(memory, &def, &source, NULL), SINGE_OK);
+    free(positions), free(uv), free(cells);
+    return source;
+}
+
+/// `sheets` equal grids side by side, a metre apart.
+static inline BurningSheet *burning_sheets(uint32_t sheets, uint32_t nx, uint32_t ny, float cell,
+                                           const SingeMaterialDef *material, float drop_pieces_below) {
+    BurningSheet *b = calloc(1, sizeof *b);
+    SheetSource sources[4];
+    b->memory = memory_make((SingeAllocator){0});
+    b->nx = nx, b->ny = ny;
+    for (uint32_t k = 0; k < sheets; k++)
+        sources[k] = grid_source(&b->memory, nx, ny, cell, (float)k, material, drop_pieces_below);
+    assert_int_equal(shell_create(&b->memory, sources, sheets, &b->shell, &b->error), SINGE_OK);
+    assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
+    for (uint32_t k = 0; k < sheets; k++) sheet_source_free(&b->memory, &sources[k]);
+    b->events.capacity = 4096;
+    b->events.items = calloc(b->events.capacity, sizeof *b->events.items);
+    return b;
+}
+
+static inline BurningSheet *burning_sheet(uint32_t nx, uint32_t ny, float cell, const SingeMaterialDef *material) {
+    return burning_sheets(1, nx, ny, cell, material, 0);
+}
+
+static inline void burning_sheet_free(BurningSheet *b) {
+    state_free(&b->memory, &b->state);
+    shell_free(&b->memory, &b->shell);
+    assert_int_equal(b->memory.held, 0);
+    free(b->events.items);
+    free(b);
+}
+
+static inline uint32_t corner_at(const BurningSheet *b, uint32_t i, uint32_t j) { return j * (b->nx + 1) + i; }
+static inline uint32_t cell_at(const BurningSheet *b, uint32_t i, uint32_t j) { return j * b->nx + i; }
+static inline uint32_t centre_at(const BurningSheet *b, uint32_t i, uint32_t j) {
+    return shell_centre(&b->shell, cell_at(b, i, j));
+}
+
+/// Mass of particles alive, kg.
+static inline double mass_left(const BurningSheet *b) {
+    double mass = 0;
+    for (uint32_t i = 0; i < b->shell.particle_count; i++)
+        if (b->state.ablate.particle_flags[i] & SINGE_ALIVE)
+            mass += (double)b->state.burn.mass[i] * (double)b->shell.matter.mass[i];
+    return mass;
+}
+
+#endif
