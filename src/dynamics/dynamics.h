@@ -1,0 +1,34 @@
+// Shell dynamics (eq 8 to 15, 18, 19) by strand projection.
+#ifndef DYNAMICS_DYNAMICS_H
+#define DYNAMICS_DYNAMICS_H
+
+#include "base/pool.h"
+#include "shell/shell.h"
+#include "world/collider.h"
+#include "world/pin.h"
+#include "world/wind.h"
+
+typedef struct DynamicsSettings {
+    float gravity[3];
+    float air_density;
+    SingeSolverDef solver;
+} DynamicsSettings;
+
+/// Scratch of the stage, built once.
+typedef struct DynamicsPlan DynamicsPlan;
+SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings, DynamicsPlan **plan);
+void dynamics_plan_free(Memory *memory, DynamicsPlan *plan);
+
+/// Makes room for that many colliders before they are added; false when out of memory.
+bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
+
+typedef struct DynamicsCounters {
+    uint64_t strands, contacts;
+} DynamicsCounters;
+
+/// One step of length h in settings.solver.substeps substeps. Reads `state`, writes `dynamics` (which is
+/// &state->dynamics).
+SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins, const ColliderList *colliders,
+                          const SingeWindDef *wind, Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error);
+
+#endif
