@@ -1,0 +1,67 @@
+// A simulation: everything a SingeSim owns. Only src/step includes this.
+#ifndef STEP_SIM_H
+#define STEP_SIM_H
+
+#include "ablate/ablate.h"
+#include "burn/burn.h"
+#include "dynamics/dynamics.h"
+#include "heat/heat.h"
+
+struct SingeSim {
+    Memory memory;
+    SingeSimDef def;
+    Pool *pool;
+    SingeError error; ///< of the last failed call
+
+    // description: fixed once committed
+    uint32_t sheet_count, sheet_capacity;
+    SheetSource *sheets;
+    bool committed;
+    Shell shell;
+    float *thickening; ///< [sheet_count] F
+
+    // what the sheets meet
+    uint32_t next_generation;
+    SourceList sources;
+    ColliderList colliders;
+    PinList pins;
+
+    // what changes
+    State state;
+    double heat_start; ///< J, enthalpy at the start
+    void *backup;      ///< the state's arena before the step
+    EventList events;
+    SingeTimers timers;
+
+    // plans and scratch of the stages
+    HeatPlan *heat;
+    AblatePlan *ablate;
+    DynamicsPlan *dynamics;
+    double *partial;      ///< [pool_blocks(particles)]
+    float *strain;        ///< [blue springs]
+};
+
+/// Notes a failure in sim->error and returns it.
+SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
+
+/// Copies what both headers know of a caller's Def, which begins with its struct_size, over *def of `size`
+/// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is not set.
+bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
+
+/// Checks the numbers of a simulation's Def.
+SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
+
+/// Everything commit builds from sim->sheets, without the first state (also used by load).
+SingeResult sim_build(SingeSim *sim);
+
+/// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
+double sim_enthalpy(const SingeSim *sim);
+
+void sim_free_source(SingeSim *sim, Source *source);
+void sim_free_pin(SingeSim *sim, Pin *pin);
+
+/// Free slot of a list of `size`-byte items that begin with their generation; the item is zeroed and its
+/// generation left 0. NULL when out of memory.
+void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *capacity, size_t size, uint32_t *index);
+
+#endif

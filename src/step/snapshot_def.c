@@ -1,0 +1,113 @@
+#include "step/snapshot_def.h"
+
+static void def_bool(Stream *stream, bool *value) {
+    uint8_t byte = *value;
+    STREAM(stream, byte);
+    if (stream->mode == STREAM_READ) *value = byte != 0;
+}
+
+static void def_wind(Stream *stream, SingeWindDef *wind) {
+    wind->struct_size = sizeof *wind;
+    STREAM(stream, wind->velocity);
+    STREAM(stream, wind->gust);
+    STREAM(stream, wind->gust_time);
+    STREAM(stream, wind->gust_size);
+    STREAM(stream, wind->seed);
+}
+
+static void def_solver(Stream *stream, SingeSolverDef *solver) {
+    solver->struct_size = sizeof *solver;
+    STREAM(stream, solver->substeps);
+    STREAM(stream, solver->order);
+    STREAM(stream, solver->regularisation);
+    STREAM(stream, solver->height_min);
+    STREAM(stream, solver->height_gain);
+}
+
+void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
+    STREAM(stream, def->seed);
+    STREAM(stream, def->time_step);
+    STREAM(stream, def->pace);
+    STREAM(stream, def->gravity);
+    STREAM(stream, def->ambient_temperature);
+    STREAM(stream, def->air_density);
+    STREAM(stream, def->heat_tolerance);
+    def_wind(stream, &def->wind);
+    def_solver(stream, &def->solver);
+}
+
+/// A parameter's numbers; its values at the particles are the sheet's params.
+static void def_param(Stream *stream, SingeParam *param) {
+    STREAM(stream, param->value);
+    STREAM(stream, param->to);
+    STREAM(stream, param->field);
+    STREAM(stream, param->noise.scale);
+    STREAM(stream, param->noise.octaves);
+    STREAM(stream, param->noise.seed);
+}
+
+static void def_material(Stream *stream, SingeMaterialDef *material) {
+    SingeParam *const params[] = {
+        &material->thickness,     &material->diffusivity, &material->temperature,  &material->ignition_temperature,
+        &material->heating,       &material->mass_rate,   &material->ash_exponent, &material->mass_min,
+        &material->mass_loss,     &material->ash_density, &material->shrink_front, &material->shrink_back,
+        &material->weight[0],     &material->weight[1],   &material->weight[2],    &material->weight[3],
+    };
+    material->struct_size = sizeof *material;
+    for (size_t i = 0; i < sizeof params / sizeof *params; i++) def_param(stream, params[i]);
+    STREAM(stream, material->grammage);
+    STREAM(stream, material->specific_heat);
+    STREAM(stream, material->heat_operator);
+    STREAM(stream, material->layer_exchange);
+    STREAM(stream, material->convection);
+    STREAM(stream, material->emissivity);
+    STREAM(stream, material->loss_mass_floor);
+    STREAM(stream, material->thickening);
+    def_bool(stream, &material->ablate);
+    STREAM(stream, material->compliance);
+    STREAM(stream, material->char_weight);
+    STREAM(stream, material->drag);
+    STREAM(stream, material->damping);
+}
+
+void snapshot_sheet_def(Stream *stream, Sheet *sheet) {
+    STREAM(stream, sheet->name);
+    sheet->name[sizeof sheet->name - 1] = 0;
+    STREAM(stream, sheet->vertex_count);
+    STREAM(stream, sheet->cell_count);
+    STREAM(stream, sheet->velocity);
+    STREAM(stream, sheet->drop_pieces_below);
+    def_material(stream, &sheet->material);
+}
+
+void snapshot_source_def(Stream *stream, SingeSourceDef *def) {
+    def->struct_size = sizeof *def;
+    STREAM(stream, def->kind);
+    STREAM(stream, def->start);
+    STREAM(stream, def->end);
+    STREAM(stream, def->temperature);
+    STREAM(stream, def->conductance);
+    STREAM(stream, def->radius);
+    STREAM(stream, def->falloff);
+    STREAM(stream, def->path_count);
+    STREAM(stream, def->flux);
+    STREAM(stream, def->plume_share);
+    STREAM(stream, def->plume_height);
+    STREAM(stream, def->plume_conductance);
+    stream->failed |= (unsigned)def->kind > SINGE_SOURCE_CALLBACK;
+}
+
+void snapshot_collider_def(Stream *stream, SingeColliderDef *def) {
+    def->struct_size = sizeof *def;
+    STREAM(stream, def->kind);
+    STREAM(stream, def->radius);
+    STREAM(stream, def->half_size);
+    STREAM(stream, def->height);
+    STREAM(stream, def->friction);
+    STREAM(stream, def->offset);
+    STREAM(stream, def->temperature);
+    STREAM(stream, def->conductance);
+    STREAM(stream, def->contact_distance);
+    STREAM(stream, def->path_count);
+    stream->failed |= (unsigned)def->kind > SINGE_COLLIDER_CAPSULE;
+}

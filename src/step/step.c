@@ -1,0 +1,71 @@
+// The step, in the order of the paper's section 4.
+#include "step/sim.h"
+
+#include <string.h>
+#include <time.h>
+
+static double step_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/// Adds the time since *start to a stage and starts the next.
+static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
+    double now = step_seconds();
+    sim->timers.seconds[stage] += now - *start;
+    *start = now;
+}
+
+static SingeResult step_stages(SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    const SingeSimDef *def = &sim->def;
+    const SingeView view = singe_sim_view(sim);
+    State *state = &sim->state;
+    SingeError *error = &sim->error;
+    float h = def->time_step;
+    double start = step_seconds();
+    sim->events.count = 0;
+
+    // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
+    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat,
+                  &sim->timers.heat_iterations, error));
+    step_lap(sim, SINGE_STAGE_HEAT, &start);
+
+    // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
+    TRY(burn_step(shell, state, sim->pool, h, def->pace, sim->thickening, sim->partial, &state->burn, &sim->events, error));
+    step_lap(sim, SINGE_STAGE_BURN, &start);
+
+    // 3. burnt springs and particles go (eq 7)
+    TRY(ablate_step(sim->ablate, shell, state, sim->pool, def->ambient_temperature, &state->ablate, &sim->events, error));
+    step_lap(sim, SINGE_STAGE_ABLATE, &start);
+
+    // 4. positions and velocities (eq 8 to 19)
+    DynamicsCounters counters = {0, 0};
+    TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h, &state->dynamics,
+                      &counters, error));
+    step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
+
+    sim->timers.strands_projected += counters.strands;
+    sim->timers.contacts += counters.contacts;
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_step(SingeSim *sim) {
+    if (!sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+    State before = sim->state;
+    SingeTimers timers = sim->timers;
+    memcpy(sim->backup, sim->state.arena, sim->state.arena_size);
+    SingeResult result = step_stages(sim);
+    if (result) {
+        sim->state = before;
+        sim->timers = timers;
+        memcpy(sim->state.arena, sim->backup, sim->state.arena_size);
+        sim->events.count = 0;
+        return result;
+    }
+    sim->state.step++;
+    sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
+    sim->timers.steps++;
+    return SINGE_OK;
+}

@@ -1,0 +1,67 @@
+// Read-only views, events, timers, census and the drawn surface.
+#include "step/sim.h"
+
+SingeView singe_sim_view(const SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    const State *state = &sim->state;
+    SingeView view = {
+        .time = state->time,
+        .step = state->step,
+        .topology_version = state->ablate.topology_version,
+        .particle_count = shell->particle_count,
+        .vertex_count = shell->vertex_count,
+        .cell_count = shell->cell_count,
+        .position = (const float(*)[4])state->dynamics.position,
+        .velocity = (const float(*)[4])state->dynamics.velocity,
+        .rest_position = (const float(*)[4])shell->rest_position,
+        .uv = (const float(*)[2])shell->uv,
+        .area = shell->matter.area,
+        .mass = state->burn.mass,
+        .temperature = state->heat.temperature,
+        .burn_rate = state->burn.burn_rate,
+        .time_ignited = state->burn.time_ignited,
+        .time_burnt = state->burn.time_burnt,
+        .piece = state->ablate.piece,
+        .particle_flags = state->ablate.particle_flags,
+        .cell_flags = state->ablate.cell_flags,
+        .cells = (const uint32_t(*)[4])shell->cells,
+    };
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        view.spring_count[colour] = shell->springs[colour].count;
+        view.springs[colour] = (const uint32_t(*)[2])shell->springs[colour].ends;
+        view.spring_length[colour] = state->burn.spring_length[colour];
+        view.spring_rest[colour] = shell->springs[colour].rest;
+        view.spring_flags[colour] = state->ablate.spring_flags[colour];
+    }
+    return view;
+}
+
+const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
+    *count = sim->events.count;
+    return sim->events.items;
+}
+
+SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }
+
+SingeCensus singe_sim_census(const SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    SingeCensus census = {.cells = shell->cell_count, .memory = sim->memory.held};
+    double springs = 0, strands = 0, size = 0;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        census.springs[colour] = shell->springs[colour].count;
+        census.strands[colour] = shell->springs[colour].strand_count;
+        census.families[colour] = shell->springs[colour].family_count;
+        springs += shell->springs[colour].count;
+        strands += shell->springs[colour].strand_count;
+    }
+    census.mean_strand_length = strands > 0 ? springs / strands : 0;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
+    census.cell_size = (float)size;
+    for (uint32_t i = 0; i < shell->particle_count; i++) census.particles += shell->matter.area[i] > 0;
+    return census;
+}
+
+SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
+    if (!sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
+    return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+}

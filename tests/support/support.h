@@ -1,0 +1,91 @@
+// Helpers of the tests: meshes, simulations made through the public header, and a counting allocator.
+#ifndef TEST_SUPPORT_H
+#define TEST_SUPPORT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "singe/singe.h"
+
+// ---- meshes (mesh.c)
+
+/// A quad mesh whose arrays come from malloc. uv runs over [0, 1] squared.
+typedef struct TestMesh {
+    uint32_t vertex_count, cell_count;
+    float *positions; ///< [3 * vertex_count]
+    float *uv;        ///< [2 * vertex_count]
+    uint32_t *cells;  ///< [4 * cell_count]
+} TestMesh;
+
+/// A flat sheet in z = 0, front upwards, with a corner at the origin: vertex (i, j) is j (nx + 1) + i and
+/// cell (i, j) is j nx + i.
+TestMesh test_grid(uint32_t nx, uint32_t ny, float dx, float dy);
+
+/// A tube along z, front outwards: vertex (i, j) is j around + i, j up to `along`.
+TestMesh test_cylinder(uint32_t around, uint32_t along, float radius, float length);
+
+/// A torus around z, front outwards.
+TestMesh test_torus(uint32_t around, uint32_t tube, float radius, float tube_radius);
+
+/// Appends a vertex that no cell uses.
+void test_mesh_add_vertex(TestMesh *mesh, float x, float y, float z);
+void test_mesh_move(TestMesh *mesh, float x, float y, float z);
+/// Turns a flat grid upright: y becomes z, and the front looks to -y.
+void test_mesh_raise(TestMesh *mesh);
+void test_mesh_free(TestMesh *mesh);
+
+// ---- simulations (sim.c)
+
+/// Fails the test with the simulation's error unless the call succeeded.
+#define test_ok(sim, call) test_ok_at((sim), (call), #call, __FILE__, __LINE__)
+void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const char *file, int line);
+
+/// Fails the test unless the call gave `expected`, noted it in the simulation's error, and that says something.
+#define test_refused(sim, expected, call) test_refused_at((sim), (expected), (call), #call, __FILE__, __LINE__)
+void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult result, const char *call, const char *file, int line);
+
+/// The default sheet on a mesh.
+SingeSheetDef test_sheet(const TestMesh *mesh);
+
+/// A committed simulation of one sheet; NULL stands for the default Def or material. Frees the mesh.
+SingeSim *test_sim(const SingeSimDef *def, TestMesh mesh, const SingeMaterialDef *material);
+
+void test_steps(SingeSim *sim, int count);
+
+/// A key that only places.
+SingePoseKey test_key(float time, float x, float y, float z);
+
+/// Adds a spot at a point.
+SingeSourceId test_spot(SingeSim *sim, float x, float y, float z, float radius, float temperature, float conductance);
+
+/// Fails unless all arrays, stats and saved bytes of two simulations are bitwise equal.
+void test_assert_same(SingeSim *a, SingeSim *b);
+
+/// Saved bytes as a block from malloc.
+typedef struct TestBytes {
+    uint8_t *data;
+    size_t size;
+} TestBytes;
+TestBytes test_save(SingeSim *sim);
+
+// ---- memory (allocator.c)
+
+/// Counts everything, and fails from the fail_at-th call for memory on (1 is the first; 0 never), or at that
+/// one only.
+typedef struct TestAllocator {
+    long calls;      ///< for memory, frees not counted
+    long frees;
+    long fail_at;
+    bool once;       ///< fail at that call only
+    long blocks;     ///< now held
+    size_t bytes, peak;
+    long faults;     ///< wrong old sizes, and frees of what is not a block
+} TestAllocator;
+
+SingeAllocator test_allocator(TestAllocator *allocator);
+
+#endif
