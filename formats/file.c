@@ -1,0 +1,150 @@
+// Whole files: read into memory, and written under a temporary name that replaces the old file only when
+// every byte is on the disk.
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700 // realpath
+#endif
+
+#include "formats.h"
+#include "support.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#ifndef PATH_MAX
+#define PATH_MAX 4096
+#endif
+#ifndef O_CLOEXEC
+#define O_CLOEXEC 0
+#endif
+
+enum { FILE_LIMIT = 0x7fffffff };
+
+static SingeResult refuse_system(SingeError *error, const char *doing, const char *path, int reason) {
+    char text[120];
+    if (strerror_r(reason, text, sizeof text)) snprintf(text, sizeof text, "error %d", reason);
+    return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot %s: %s", short_name(path), doing, text);
+}
+
+// ---- reading
+
+static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeError *error) {
+    size_t done = 0;
+    while (done < bytes->size) {
+        ssize_t count = read(file, bytes->data + done, bytes->size - done);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return refuse_system(error, "read", path, errno);
+        if (count == 0)
+            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: became shorter while it was read",
+                          short_name(path));
+        done += (size_t)count;
+    }
+    bytes->data[done] = 0;
+    return SINGE_OK;
+}
+
+static SingeResult read_open(int file, const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+    struct stat about;
+    if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
+    if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
+    if (!S_ISREG(about.st_mode))
+        return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
+    if (about.st_size > FILE_LIMIT)
+        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than 2 GiB", short_name(path));
+    bytes->size = (size_t)about.st_size;
+    bytes->allocator = allocator;
+    bytes->data = store_new(allocator, bytes->size + 1, 1);
+    if (!bytes->data) return refuse_memory(error, "file", path);
+    return read_bytes(file, path, bytes, error);
+}
+
+SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+    memset(bytes, 0, sizeof *bytes);
+    // without O_NONBLOCK a named pipe would wait here for its writer
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return refuse_system(error, "read", path, errno);
+    SingeResult result = read_open(file, path, allocator, bytes, error);
+    close(file);
+    if (result) bytes_free(bytes);
+    return result;
+}
+
+void bytes_free(Bytes *bytes) {
+    store_free(bytes->allocator, bytes->data, bytes->size + 1, 1);
+    memset(bytes, 0, sizeof *bytes);
+}
+
+// ---- writing
+
+static int write_bytes(int file, const uint8_t *data, size_t size) {
+    while (size) {
+        ssize_t count = write(file, data, size < FILE_LIMIT ? size : FILE_LIMIT);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return count < 0 ? errno : EIO;
+        data += count;
+        size -= (size_t)count;
+    }
+    // file systems that cannot flush say so by EINVAL
+    return fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
+}
+
+// Opens a new file beside `target`.
+static int temporary_open(const char *target, char *temporary, size_t length, int *file) {
+    for (int attempt = 0; attempt < 100; attempt++) {
+        int needed = snprintf(temporary, length, "%s.%ld-%d.tmp", target, (long)getpid(), attempt);
+        if (needed < 0 || (size_t)needed >= length) return ENAMETOOLONG;
+        *file = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (*file >= 0) return 0;
+        if (errno != EEXIST) return errno;
+    }
+    return EEXIST;
+}
+
+// The rename itself lasts only when the folder is flushed too. A failure here loses no data.
+static void flush_folder(const char *target, char *scratch) {
+    strcpy(scratch, target);
+    char *slash = strrchr(scratch, '/');
+    if (!slash) strcpy(scratch, ".");
+    else slash[slash == scratch] = 0;
+    int folder = open(scratch, O_RDONLY | O_CLOEXEC);
+    if (folder < 0) return;
+    (void)fsync(folder);
+    close(folder);
+}
+
+static int write_whole(const char *target, const void *data, size_t size) {
+    char temporary[PATH_MAX + 64];
+    int file, reason = temporary_open(target, temporary, sizeof temporary, &file);
+    if (reason) return reason;
+    reason = write_bytes(file, data, size);
+    if (close(file) && !reason) reason = errno;
+    if (!reason && rename(temporary, target)) reason = errno;
+    if (reason) unlink(temporary);
+    else flush_folder(target, temporary);
+    return reason;
+}
+
+SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error) {
+    char target[PATH_MAX];
+    struct stat about;
+    if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);
+    if (stat(path, &about) == 0) {
+        if (S_ISDIR(about.st_mode)) return refuse_system(error, "write", path, EISDIR);
+        // a rename would put a plain file in the place of a device
+        if (!S_ISREG(about.st_mode))
+            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file",
+                          short_name(path));
+        // a link stays a link: what it points at is replaced
+        if (!realpath(path, target)) return refuse_system(error, "write", path, errno);
+    } else {
+        if (strlen(path) >= sizeof target) return refuse_system(error, "write", path, ENAMETOOLONG);
+        strcpy(target, path);
+    }
+    int reason = write_whole(target, data, size);
+    return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
+}

@@ -1,0 +1,80 @@
+// Files in and out: meshes, pictures, the PLY cache. Readers work on bytes in memory; file.h does the
+// reading and the writing-whole-or-not-at-all. Memory comes from a SingeAllocator (zeroed: libc).
+#ifndef FORMATS_FORMATS_H
+#define FORMATS_FORMATS_H
+
+#include "singe/sim.h"
+
+// ---- bytes of a file
+
+typedef struct Bytes {
+    uint8_t *data; ///< followed by one zero byte that is not counted
+    size_t size;
+    SingeAllocator allocator;
+} Bytes;
+
+/// Reads a whole regular file. Errors: SINGE_ERROR_FILE with the path and the system's reason (missing,
+/// directory, unreadable), SINGE_ERROR_LIMIT above 2 GiB.
+SINGE_NODISCARD SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error);
+void bytes_free(Bytes *bytes);
+
+/// Writes path whole or leaves it as it was: a temporary name beside it, flushed, renamed. Errors name
+/// the path and the system's reason (full disk, no permission) and remove the temporary file.
+SINGE_NODISCARD SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error);
+
+// ---- meshes
+
+/// A quad mesh as read: vertices in the file's order.
+typedef struct Mesh {
+    uint32_t vertex_count, cell_count, attribute_count;
+    float *positions;  ///< [3 * vertex_count], file units
+    float *uv;         ///< [2 * vertex_count] or NULL
+    uint32_t *cells;   ///< [4 * cell_count]
+    SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
+    SingeAllocator allocator;
+} Mesh;
+
+/// Reads a mesh, by the ending of `name` (registry.c), from bytes. `name` is used in messages. Errors have
+/// the line (text formats) or byte offset in `element` and in the message: "letter.obj:17: ...".
+SINGE_NODISCARD SingeResult mesh_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                      Mesh *mesh, SingeError *error);
+SINGE_NODISCARD SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Mesh *mesh, SingeError *error);
+SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Mesh *mesh, SingeError *error);
+/// A flat grid of cells_x × cells_y cells of the given size (m), centred at the origin in the x-y plane,
+/// uv from (0,0) at (-x,-y) to (1,1).
+SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y,
+                                      SingeAllocator allocator, Mesh *mesh, SingeError *error);
+void mesh_free(Mesh *mesh);
+
+// ---- pictures
+
+/// 8-bit RGB, rows from the top.
+typedef struct Image {
+    int width, height;
+    uint8_t *rgb; ///< [height * width * 3]
+    SingeAllocator allocator;
+} Image;
+
+/// Reads PNG or JPEG, told apart by their first bytes; alpha is laid over white. At most 16384 × 16384.
+SINGE_NODISCARD SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                       Image *image, SingeError *error);
+/// Writes an 8-bit RGB PNG file, whole or not at all.
+SINGE_NODISCARD SingeResult png_write(const char *path, int width, int height, const uint8_t *rgb, SingeError *error);
+void image_free(Image *image);
+/// Luminance (Rec. 709 weights of the encoded values, 0 to 1) as the SingePicture of a parameter; values are allocated
+/// with `allocator`, [width * height].
+SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingePicture *picture,
+                                            SingeError *error);
+
+// ---- the cache: one binary PLY per frame (docs/formats.md)
+
+SINGE_NODISCARD SingeResult ply_write_surface(const char *path, const SingeSurface *surface, double time,
+                                              SingeError *error);
+/// Reads what ply_write_surface wrote; free with singe_surface_free. *time may be NULL.
+SINGE_NODISCARD SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size,
+                                             SingeAllocator allocator, SingeSurface *surface, double *time,
+                                             SingeError *error);
+
+#endif

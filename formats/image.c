@@ -1,0 +1,34 @@
+#include "codec.h"
+#include "support.h"
+
+#include <string.h>
+
+SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Image *image,
+                       SingeError *error) {
+    memset(image, 0, sizeof *image);
+    if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "image", -1, "%s: is empty", short_name(name));
+    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
+        return png_read(name, bytes, size, allocator, image, error);
+    if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
+        return jpeg_read(name, bytes, size, allocator, image, error);
+    return refuse(error, SINGE_ERROR_FORMAT, "image", -1, "%s: neither a PNG nor a JPEG picture", short_name(name));
+}
+
+void image_free(Image *image) {
+    store_free(image->allocator, image->rgb, (size_t)image->width * (size_t)image->height, 3);
+    memset(image, 0, sizeof *image);
+}
+
+// Luma of Rec. 709 on the encoded values, Y = (2126 R + 7152 G + 722 B) / (10000 * 255): whole numbers up to
+// the last division, so that white is 1 exactly.
+SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingePicture *picture, SingeError *error) {
+    memset(picture, 0, sizeof *picture);
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    float *values = store_new(allocator, pixels, sizeof *values);
+    if (!values) return refuse(error, SINGE_ERROR_MEMORY, "image", -1, "out of memory for a picture's luminance");
+    const uint8_t *p = image->rgb;
+    for (size_t i = 0; i < pixels; i++, p += 3)
+        values[i] = (float)(2126 * p[0] + 7152 * p[1] + 722 * p[2]) / 2550000.0f;
+    *picture = (SingePicture){image->width, image->height, values};
+    return SINGE_OK;
+}

@@ -1,0 +1,26 @@
+// Decimal numbers in text, whatever the locale.
+#ifndef FORMATS_NUMBER_H
+#define FORMATS_NUMBER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum NumberStatus {
+    NUMBER_OK = 0,
+    NUMBER_JUNK,       ///< not a number
+    NUMBER_NOT_FINITE, ///< "nan", "inf" or "infinity"
+    NUMBER_RANGE,      ///< larger than the type holds
+} NumberStatus;
+
+/// Reads [+-] digits [. digits] [e [+-] digits] from *at and moves *at behind it. The result is the
+/// nearest float (ties to even); what is too small becomes 0. On failure *at stays.
+NumberStatus number_float(const uint8_t **at, const uint8_t *end, float *value);
+NumberStatus number_double(const uint8_t **at, const uint8_t *end, double *value);
+
+/// Reads [+-] digits.
+NumberStatus number_integer(const uint8_t **at, const uint8_t *end, int64_t *value);
+
+/// Writes a finite double so that number_double reads it back exactly. Returns the length.
+int number_print(double value, char text[40]);
+
+#endif

@@ -1,0 +1,66 @@
+// The PLY header, and values of its body, for the readers of meshes and of the cache.
+#ifndef FORMATS_PLY_H
+#define FORMATS_PLY_H
+
+#include "formats.h"
+#include "text.h"
+
+typedef enum PlyFormat { PLY_ASCII = 0, PLY_LITTLE, PLY_BIG } PlyFormat;
+
+typedef enum PlyType {
+    PLY_INT8 = 0,
+    PLY_UINT8,
+    PLY_INT16,
+    PLY_UINT16,
+    PLY_INT32,
+    PLY_UINT32,
+    PLY_FLOAT32,
+    PLY_FLOAT64,
+    PLY_TYPE_COUNT
+} PlyType;
+
+typedef struct PlyProperty {
+    const uint8_t *name, *name_end;
+    bool is_list;
+    PlyType type;       ///< of the value, or of a list's items
+    PlyType count_type; ///< of a list's length
+} PlyProperty;
+
+typedef struct PlyElement {
+    const uint8_t *name, *name_end;
+    uint32_t count;
+    size_t first_property, property_count;
+} PlyElement;
+
+typedef struct PlyHeader {
+    PlyFormat format;
+    PlyElement *elements;
+    PlyProperty *properties;
+    size_t element_count, element_capacity, property_count, property_capacity;
+    const uint8_t *note, *note_end; ///< the first comment that begins with "singe", or NULL
+} PlyHeader;
+
+/// A place in a PLY file, with what is needed to complain about it.
+typedef struct Ply {
+    const char *name;
+    const uint8_t *begin;
+    Text text;
+    PlyHeader header;
+    SingeAllocator allocator;
+    SingeError *error;
+} Ply;
+
+/// Reads the header of ply->text and leaves the cursor at the body. The element counts are known to fit
+/// into the bytes that follow. Free with ply_header_free, after failure too.
+SINGE_NODISCARD SingeResult ply_read_header(Ply *ply);
+void ply_header_free(Ply *ply);
+
+/// The element of that name, or NULL.
+const PlyElement *ply_element(const Ply *ply, const char *name);
+size_t ply_type_size(PlyType type);
+const char *ply_type_name(PlyType type);
+
+/// Fails at the cursor: by line in text, by byte in binary.
+SingeResult ply_refuse(const Ply *ply, SingeResult code, const char *format, ...) SINGE_PRINTF(3, 4);
+
+#endif

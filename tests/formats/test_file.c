@@ -1,0 +1,172 @@
+#include "support.h"
+
+#include <dirent.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char *folder;
+static const SingeAllocator libc_allocator = {0};
+
+static const char *inside(const char *name) {
+    static char paths[4][512];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static int files_in_folder(void) {
+    DIR *directory = opendir(folder);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(directory));) count += entry->d_name[0] != '.';
+    closedir(directory);
+    return count;
+}
+
+static void assert_contents(const char *path, const char *expected) {
+    Bytes bytes;
+    assert_int_equal(file_read(path, libc_allocator, &bytes, NULL), SINGE_OK);
+    assert_string_equal((char *)bytes.data, expected);
+    assert_int_equal(bytes.size, strlen(expected));
+    bytes_free(&bytes);
+}
+
+static void writes_and_reads(void **state) {
+    (void)state;
+    SingeError error;
+    const char *path = inside("a.txt");
+    assert_int_equal(file_write(path, "hello", 5, &error), SINGE_OK);
+    assert_contents(path, "hello");
+    assert_int_equal(file_write(path, "", 0, &error), SINGE_OK);
+    assert_contents(path, "");
+    assert_int_equal(file_write(path, "again", 5, &error), SINGE_OK);
+    assert_contents(path, "again");
+    assert_int_equal(files_in_folder(), 1);
+    // a name without a folder is in the working one
+    char before[512];
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(folder), 0);
+    assert_int_equal(file_write("b.txt", "b", 1, &error), SINGE_OK);
+    assert_contents("b.txt", "b");
+    assert_int_equal(unlink("b.txt"), 0);
+    assert_int_equal(chdir(before), 0);
+    assert_int_equal(unlink(path), 0);
+}
+
+static void reading_says_why(void **state) {
+    (void)state;
+    SingeError error;
+    Bytes bytes;
+    assert_int_equal(file_read(inside("missing"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "missing: cannot read: No such file");
+    assert_null(bytes.data);
+    assert_int_equal(file_read(folder, libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "directory");
+    assert_int_equal(file_read("/dev/null", libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "not a regular file");
+    assert_int_equal(mkfifo(inside("pipe"), 0600), 0);
+    assert_int_equal(file_read(inside("pipe"), libc_allocator, &bytes, &error), SINGE_ERROR_FILE);
+    unlink(inside("pipe"));
+    // a sparse file of 2 GiB and a byte takes no room
+    assert_int_equal(file_write(inside("large"), "", 0, &error), SINGE_OK);
+    if (truncate(inside("large"), (off_t)2147483649LL) == 0) {
+        assert_int_equal(file_read(inside("large"), libc_allocator, &bytes, &error), SINGE_ERROR_LIMIT);
+        assert_message(&error, "2 GiB");
+    }
+    unlink(inside("large"));
+}
+
+static void writing_says_why(void **state) {
+    (void)state;
+    SingeError error;
+    assert_int_equal(file_write(inside("no/where"), "x", 1, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "No such file");
+    assert_int_equal(file_write(folder, "x", 1, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "directory");
+    assert_int_equal(file_write("", "x", 1, &error), SINGE_ERROR_FILE);
+    assert_int_equal(file_write("/dev/full", "x", 1, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "not a regular file");
+    struct stat about;
+    assert_int_equal(stat("/dev/full", &about), 0);
+    assert_true(S_ISCHR(about.st_mode));
+    char longest[6000];
+    memset(longest, 'a', sizeof longest);
+    longest[sizeof longest - 1] = 0;
+    assert_int_equal(file_write(longest, "x", 1, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "too long");
+    assert_int_equal(file_write("/proc/singe", "x", 1, &error), SINGE_ERROR_FILE);
+    // root may write anywhere
+    if (geteuid() != 0) {
+        assert_int_equal(mkdir(inside("locked"), 0500), 0);
+        assert_int_equal(file_write(inside("locked/x"), "x", 1, &error), SINGE_ERROR_FILE);
+        assert_message(&error, "denied");
+        rmdir(inside("locked"));
+    }
+    assert_int_equal(files_in_folder(), 0);
+}
+
+// The limit on a file's size makes the write fail in the middle, as a full disk does.
+static void failed_write_keeps_the_old_file(void **state) {
+    (void)state;
+    SingeError error;
+    const char *path = inside("old.txt");
+    enum { LARGE = 1 << 20 };
+    char *data = calloc(1, LARGE);
+    assert_int_equal(file_write(path, "old", 3, &error), SINGE_OK);
+    struct rlimit before, small;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = before;
+    small.rlim_cur = 65536;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    SingeResult result = file_write(path, data, LARGE, &error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(result, SINGE_ERROR_FILE);
+    assert_message(&error, "old.txt: cannot write: File too large");
+    assert_contents(path, "old");
+    assert_int_equal(files_in_folder(), 1);
+    free(data);
+    unlink(path);
+}
+
+static void a_link_stays_a_link(void **state) {
+    (void)state;
+    SingeError error;
+    assert_int_equal(file_write(inside("real"), "1", 1, &error), SINGE_OK);
+    assert_int_equal(symlink("real", inside("link")), 0);
+    assert_int_equal(file_write(inside("link"), "22", 2, &error), SINGE_OK);
+    struct stat about;
+    assert_int_equal(lstat(inside("link"), &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_contents(inside("real"), "22");
+    unlink(inside("real"));
+    unlink(inside("link"));
+}
+
+static void allocation_failure_is_clean(void **state) {
+    (void)state;
+    SingeError error;
+    assert_int_equal(file_write(inside("a"), "abc", 3, &error), SINGE_OK);
+    Counter counter = {.fail_at = 1};
+    Bytes bytes;
+    assert_int_equal(file_read(inside("a"), counter_allocator(&counter), &bytes, &error), SINGE_ERROR_MEMORY);
+    assert_int_equal(file_read(inside("a"), counter_allocator(&counter), &bytes, &error), SINGE_OK);
+    assert_true(counter.held > 0);
+    bytes_free(&bytes);
+    counter_check(&counter);
+    unlink(inside("a"));
+}
+
+int main(void) {
+    folder = test_folder();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(writes_and_reads),     cmocka_unit_test(reading_says_why),
+        cmocka_unit_test(writing_says_why),     cmocka_unit_test(failed_write_keeps_the_old_file),
+        cmocka_unit_test(a_link_stays_a_link),  cmocka_unit_test(allocation_failure_is_clean),
+    };
+    int failures = cmocka_run_group_tests(tests, NULL, NULL);
+    rmdir(folder);
+    return failures;
+}

@@ -1,0 +1,280 @@
+#include "support.h"
+
+#include <math.h>
+
+static SingeResult parse(const char *text, Mesh *mesh, SingeError *error) {
+    memset(error, 0, sizeof *error);
+    // a copy without the closing zero, so that a sanitizer sees a read behind the end
+    size_t size = strlen(text);
+    uint8_t *bytes = malloc(size ? size : 1);
+    memcpy(bytes, text, size);
+    SingeResult result = mesh_read("a.obj", bytes, size, (SingeAllocator){0}, mesh, error);
+    free(bytes);
+    return result;
+}
+
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static void expect_mesh(const char *text, uint32_t vertices, const uint32_t *cells, uint32_t cell_count) {
+    Mesh mesh;
+    SingeError error;
+    if (parse(text, &mesh, &error)) fail_msg("%s", error.message);
+    assert_int_equal(mesh.vertex_count, vertices);
+    assert_int_equal(mesh.cell_count, cell_count);
+    assert_memory_equal(mesh.cells, cells, cell_count * 16);
+    mesh_free(&mesh);
+    assert_null(mesh.positions);
+}
+
+static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
+    Mesh mesh;
+    SingeError error;
+    SingeResult result = parse(text, &mesh, &error);
+    if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
+    assert_int_equal(error.code, code);
+    assert_string_equal(error.stage, "obj");
+    if (error.element != line) fail_msg("line %d, not %d: %s", (int)error.element, (int)line, error.message);
+    assert_message(&error, part);
+    assert_null(mesh.positions);
+    assert_null(mesh.cells);
+}
+
+static void keeps_order_and_positions(void **state) {
+    (void)state;
+    Mesh mesh;
+    SingeError error;
+    const char *text = "# a comment\n"
+                       "mtllib a.mtl\no thing\ng group\ns off\nusemtl paper\n"
+                       "v 0.1 -0.2 3e-1\nv 1.25e2 0 .5\nv 1 1. 0 0.5 0.25 1\nv -0 1 0.30000001192092896\n"
+                       "v 9 9 9 # not used by a face\n"
+                       "vt 0 0.5\nvt 1 0.5 0\nvt 0.25\nvn 0 0 1\n"
+                       "l 1 2\np 1\n"
+                       "f 1/1/1 2/2/1 3/3/1 4/1/1";
+    assert_int_equal(parse(text, &mesh, &error), SINGE_OK);
+    static const float positions[] = {0.1f, -0.2f, 0.3f, 125, 0, 0.5f, 1, 1, 0, -0.0f, 1, 0.3f, 9, 9, 9};
+    static const float uv[] = {0, 0.5f, 1, 0.5f, 0.25f, 0, 0, 0.5f, 0, 0};
+    static const uint32_t cells[] = {0, 1, 2, 3};
+    assert_int_equal(mesh.vertex_count, 5);
+    assert_int_equal(mesh.cell_count, 1);
+    assert_int_equal(mesh.attribute_count, 0);
+    assert_memory_equal(mesh.positions, positions, sizeof positions);
+    assert_memory_equal(mesh.uv, uv, sizeof uv);
+    assert_memory_equal(mesh.cells, cells, sizeof cells);
+    mesh_free(&mesh);
+}
+
+static void reads_every_form(void **state) {
+    (void)state;
+    static const uint32_t one[] = {0, 1, 2, 3}, two[] = {0, 1, 2, 3, 1, 4, 5, 2};
+    expect_mesh(SQUARE "f 1 2 3 4", 4, one, 1);
+    expect_mesh(SQUARE "f 1 2 3 4\n", 4, one, 1);
+    expect_mesh(SQUARE "f 1//1 2//1 3//7 4//-1\n", 4, one, 1);
+    expect_mesh(SQUARE "vt 0 0\nf 1/1 2/1 3/1 4/1\n", 4, one, 1);
+    expect_mesh(SQUARE "vt 0 0\nf 1/1/2 2/1/3 3/-1/4 4/1/5\n", 4, one, 1);
+    expect_mesh(SQUARE "f -4 -3 -2 -1\n", 4, one, 1);
+    expect_mesh("f 1 2 3 4\n" SQUARE, 4, one, 1); // a face may come before its vertices
+    expect_mesh(SQUARE "f -4 -3 -2 -1\nv 2 0 0\nv 2 1 0\nf -5 -2 -1 -4\n", 6, two, 2);
+    expect_mesh("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n", 4, one, 1);
+    expect_mesh("v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4", 4, one, 1);
+    expect_mesh("\t v\t0  0 0 \n\n  v 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 \\\r\n4\n", 4, one, 1);
+    expect_mesh(SQUARE "f\\\n1 2 3 4\n", 4, one, 1);
+    expect_mesh(SQUARE "f 1 2 3\\\n 4\n", 4, one, 1);
+    expect_mesh(SQUARE "l 1 2 \\\n 3 4\nf 1 2 3 4\n", 4, one, 1);
+    expect_mesh("\xef\xbb\xbf" SQUARE "f 1 2 3 4#end", 4, one, 1);
+    expect_mesh("# ends in a backslash \\\n" SQUARE "f 1 2 3 4\n", 4, one, 1);
+}
+
+static void refuses_bad_syntax(void **state) {
+    (void)state;
+    expect_error("", SINGE_ERROR_FORMAT, 1, "empty");
+    expect_error("\n\n", SINGE_ERROR_FORMAT, 3, "no faces");
+    expect_error(SQUARE, SINGE_ERROR_FORMAT, 5, "no faces");
+    expect_error("v 1 2\n", SINGE_ERROR_FORMAT, 1, "a vertex is v x y z");
+    expect_error("v 1 2 3 4 5 6 7 8\n", SINGE_ERROR_FORMAT, 1, "a vertex is v x y z");
+    expect_error("v 1 x 3\n", SINGE_ERROR_FORMAT, 1, "a.obj:1: \"x\" is not a number");
+    expect_error("v 1 2,5 3\n", SINGE_ERROR_FORMAT, 1, "\"2,5\" is not a number");
+    expect_error("v 1 0x2 3\n", SINGE_ERROR_FORMAT, 1, "\"0x2\"");
+    expect_error("\nv 1 nan 3\n", SINGE_ERROR_FORMAT, 2, "finite");
+    expect_error("\nv 1 2 -inf\n", SINGE_ERROR_FORMAT, 2, "finite");
+    expect_error("v 1 2 \\\n1e39\n", SINGE_ERROR_FORMAT, 2, "too large");
+    expect_error("vt\n", SINGE_ERROR_FORMAT, 1, "texture coordinate is vt u v");
+    expect_error("vt 1 2 3 4\n", SINGE_ERROR_FORMAT, 1, "texture coordinate is vt u v");
+    expect_error("vt a 2\n", SINGE_ERROR_FORMAT, 1, "\"a\"");
+    expect_error(SQUARE "wobble 1\n", SINGE_ERROR_FORMAT, 5, "\"wobble\" is not a directive");
+    expect_error("solid thing\n", SINGE_ERROR_FORMAT, 1, "\"solid\"");
+    expect_error("\x89PNG\r\n\x1a\n", SINGE_ERROR_FORMAT, 1, "?PNG");
+    expect_error(SQUARE "f 1 2 3 4x\n", SINGE_ERROR_FORMAT, 5, "\"4x\" is not an index");
+    expect_error(SQUARE "f 1 2 3 4/\n", SINGE_ERROR_FORMAT, 5, "not an index");
+    expect_error(SQUARE "f 1 2 3 4//\n", SINGE_ERROR_FORMAT, 5, "not an index");
+    expect_error(SQUARE "f 1 2 3 4//0\n", SINGE_ERROR_FORMAT, 5, "not an index");
+    expect_error(SQUARE "vt 0 0\nf 1/1/1/1 2 3 4\n", SINGE_ERROR_FORMAT, 6, "not an index");
+    expect_error(SQUARE "f 1.5 2 3 4\n", SINGE_ERROR_FORMAT, 5, "not an index");
+    expect_error(SQUARE "f 0 1 2 3\n", SINGE_ERROR_FORMAT, 5, "counts from 1");
+}
+
+static void refuses_bad_meshes(void **state) {
+    (void)state;
+    expect_error(SQUARE "f 1 2 3\n", SINGE_ERROR_MESH, 5, "a.obj:5: face has 3 corners; Singe reads quads for now");
+    expect_error(SQUARE "v 2 2 2\nf 1 2 3 4 5\n", SINGE_ERROR_MESH, 6, "face has 5 corners");
+    expect_error(SQUARE "f 1\n", SINGE_ERROR_MESH, 5, "face has 1 corner;");
+    expect_error(SQUARE "f\n", SINGE_ERROR_MESH, 5, "face has 0 corners");
+    expect_error(SQUARE "f 1 2 3 5\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f -5 -3 -2 -1\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f 1 2 3 99999999999\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f 1 2 3 99999999999999999999999\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f 1 2 3 -9223372036854775807\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f 1/1 2/1 3/1 4/1\n", SINGE_ERROR_MESH, 5, "out of range");
+    expect_error(SQUARE "f 1 2 3 1\n", SINGE_ERROR_MESH, 5, "uses vertex 1 twice");
+    expect_error(SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3 4/1\n\nf 2/3 5/1 6/1 3/3\n",
+                 SINGE_ERROR_MESH, 12,
+                 "a.obj:12: vertex 2 has texture coordinate 3 here and 2 before");
+    expect_error(SQUARE "vt 0 0\nf 1/1 2/1 3 4/1\n", SINGE_ERROR_MESH, 6, "no texture coordinate");
+}
+
+static void equal_uv_under_two_indices_agree(void **state) {
+    (void)state;
+    static const uint32_t cells[] = {0, 1, 2, 3, 1, 4, 5, 2};
+    expect_mesh(SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 0\nf 1/1 2/2 3/1 4/1\nf 2/3 5/1 6/1 3/1\n", 6, cells, 2);
+}
+
+static void registry_goes_by_the_ending(void **state) {
+    (void)state;
+    Mesh mesh;
+    SingeError error;
+    static const char text[] = SQUARE "f 1 2 3 4\n";
+    const uint8_t *bytes = (const uint8_t *)text;
+    assert_int_equal(mesh_read("A.OBJ", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
+    mesh_free(&mesh);
+    assert_int_equal(mesh_read("a.fbx", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error),
+                     SINGE_ERROR_FORMAT);
+    assert_message(&error, ".obj, .ply");
+    assert_int_equal(mesh_read("a.ply", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error),
+                     SINGE_ERROR_FORMAT);
+    assert_int_equal(mesh_read("obj", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, NULL), SINGE_ERROR_FORMAT);
+}
+
+static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nvt 1 0\nvt 1 1\n"
+                                    "f 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/3\n";
+
+// A cut file may only be read where the cut leaves whole faces.
+static void truncated_at_every_byte(void **state) {
+    (void)state;
+    Mesh whole, mesh;
+    SingeError error;
+    assert_int_equal(parse(sample, &whole, &error), SINGE_OK);
+    int read = 0;
+    for (size_t size = 0; size < sizeof sample - 1; size++) {
+        char *text = strdup(sample);
+        text[size] = 0;
+        if (parse(text, &mesh, &error) == SINGE_OK) {
+            read++;
+            assert_true(mesh.cell_count <= whole.cell_count);
+            assert_int_equal(mesh.vertex_count, whole.vertex_count);
+            assert_memory_equal(mesh.positions, whole.positions, whole.vertex_count * 12);
+            assert_memory_equal(mesh.cells, whole.cells, mesh.cell_count * 16);
+            mesh_free(&mesh);
+        } else {
+            assert_true(error.message[0] != 0);
+        }
+        free(text);
+    }
+    // behind the first face: its newline missing or there, an "f" cannot stand alone; the last newline missing
+    assert_int_equal(read, 3);
+    mesh_free(&whole);
+}
+
+static void allocation_failure_is_clean(void **state) {
+    (void)state;
+    for (long n = 1;; n++) {
+        Counter counter = {.fail_at = n};
+        Mesh mesh;
+        SingeError error;
+        SingeResult result = obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, counter_allocator(&counter),
+                                      &mesh, &error);
+        if (result == SINGE_OK) mesh_free(&mesh);
+        else assert_int_equal(result, SINGE_ERROR_MEMORY);
+        counter_check(&counter);
+        if (result == SINGE_OK) {
+            assert_true(n > 5);
+            break;
+        }
+    }
+}
+
+static void grid_is_exact(void **state) {
+    (void)state;
+    Mesh mesh;
+    SingeError error;
+    assert_int_equal(mesh_grid(2, 1, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_OK);
+    static const float positions[] = {-1, -0.5f, 0, 0, -0.5f, 0, 1, -0.5f, 0, -1, 0.5f, 0, 0, 0.5f, 0, 1, 0.5f, 0};
+    static const float uv[] = {0, 0, 0.5f, 0, 1, 0, 0, 1, 0.5f, 1, 1, 1};
+    static const uint32_t cells[] = {0, 1, 4, 3, 1, 2, 5, 4};
+    assert_int_equal(mesh.vertex_count, 6);
+    assert_int_equal(mesh.cell_count, 2);
+    assert_memory_equal(mesh.positions, positions, sizeof positions);
+    assert_memory_equal(mesh.uv, uv, sizeof uv);
+    assert_memory_equal(mesh.cells, cells, sizeof cells);
+    mesh_free(&mesh);
+    assert_int_equal(mesh_grid(0, 1, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(mesh_grid(1, NAN, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(mesh_grid(1, INFINITY, 2, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(mesh_grid(1, 1, 0, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(mesh_grid(1, 1, 4294967295u, 4294967295u, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_LIMIT);
+    for (long n = 1; n <= 4; n++) {
+        Counter counter = {.fail_at = n};
+        SingeResult result = mesh_grid(1, 1, 3, 3, counter_allocator(&counter), &mesh, &error);
+        assert_int_equal(result, n <= 3 ? SINGE_ERROR_MEMORY : SINGE_OK);
+        if (!result) mesh_free(&mesh);
+        counter_check(&counter);
+    }
+}
+
+// The example's sheet: A4, flat, straight borders, at most 30,000 springs (4 + 2 + 2 + 2 a cell, fewer at the border).
+static void the_letter_is_a4(void **state) {
+    (void)state;
+    Bytes bytes;
+    Mesh mesh;
+    SingeError error;
+    SingeAllocator libc = {0};
+    if (file_read("examples/letter/letter.obj", libc, &bytes, &error)) fail_msg("%s", error.message);
+    if (mesh_read("letter.obj", bytes.data, bytes.size, libc, &mesh, &error)) fail_msg("%s", error.message);
+    assert_int_equal(mesh.vertex_count, 47 * 66);
+    assert_int_equal(mesh.cell_count, 46 * 65);
+    assert_true(10 * mesh.cell_count <= 30000);
+    double area = 0;
+    for (uint32_t c = 0; c < mesh.cell_count; c++) {
+        const float *p[4];
+        for (int k = 0; k < 4; k++) p[k] = mesh.positions + 3 * mesh.cells[4 * c + (uint32_t)k];
+        double cell = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
+        assert_true(cell > 0.5 * 0.21 * 0.297 / 2990);
+        area += cell;
+    }
+    assert_float_equal(area, 0.21 * 0.297, 1e-6);
+    int on_border = 0;
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+        const float *p = mesh.positions + 3 * v;
+        assert_true(fabsf(p[0]) <= 0.105f && fabsf(p[1]) <= 0.1485f && p[2] == 0);
+        on_border += fabsf(p[0]) == 0.105f || fabsf(p[1]) == 0.1485f;
+        assert_float_equal(mesh.uv[2 * v], p[0] / 0.21f + 0.5f, 1e-5f);
+        assert_float_equal(mesh.uv[2 * v + 1], p[1] / 0.297f + 0.5f, 1e-5f);
+    }
+    assert_int_equal(on_border, 2 * (46 + 65));
+    mesh_free(&mesh);
+    bytes_free(&bytes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keeps_order_and_positions),
+        cmocka_unit_test(reads_every_form),
+        cmocka_unit_test(refuses_bad_syntax),
+        cmocka_unit_test(refuses_bad_meshes),
+        cmocka_unit_test(equal_uv_under_two_indices_agree),
+        cmocka_unit_test(registry_goes_by_the_ending),
+        cmocka_unit_test(truncated_at_every_byte),
+        cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(grid_is_exact),
+        cmocka_unit_test(the_letter_is_a4),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,312 @@
+#include "support.h"
+
+#include <math.h>
+
+static SingeResult parse_bytes(const void *data, size_t size, Mesh *mesh, SingeError *error) {
+    memset(error, 0, sizeof *error);
+    uint8_t *bytes = malloc(size ? size : 1);
+    memcpy(bytes, data, size);
+    SingeResult result = mesh_read("a.ply", bytes, size, (SingeAllocator){0}, mesh, error);
+    free(bytes);
+    return result;
+}
+
+static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
+    Mesh mesh;
+    SingeError error;
+    SingeResult result = parse_bytes(text, strlen(text), &mesh, &error);
+    if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
+    assert_string_equal(error.stage, "ply");
+    if (line >= 0 && error.element != line)
+        fail_msg("line %d, not %d: %s", (int)error.element, (int)line, error.message);
+    assert_message(&error, part);
+    assert_null(mesh.positions);
+    assert_null(mesh.attributes);
+}
+
+#define HEADER "ply\nformat ascii 1.0\n"
+#define XYZ "property float x\nproperty float y\nproperty float z\n"
+#define FACES "property list uchar int vertex_indices\n"
+#define SQUARE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+#define GOOD_HEADER HEADER "element vertex 4\n" XYZ "element face 1\n" FACES "end_header\n"
+
+static void reads_ascii(void **state) {
+    (void)state;
+    static const char text[] = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info x\r\n"
+                               "element extra 2\r\nproperty list uchar float things\r\nproperty int k\r\n"
+                               "element vertex 4\r\nproperty double z\r\nproperty float32 nx\r\nproperty float x\r\n"
+                               "property float y\r\n"
+                               "property float v\r\nproperty float u\r\nproperty uchar red\r\nproperty short wet\r\n"
+                               "property list uchar int neighbours\r\n"
+                               "element face 1\r\nproperty uchar flag\r\nproperty list uint8 uint32 vertex_index\r\n"
+                               "end_header\r\n"
+                               "2 0.5 1e99 7\r\n0 1\r\n"
+                               "0.1 nan 1 2 0.25 0.75 255 -5 0\r\n"
+                               "\r\n  -1e-3 0 3 4 0 1 0 32767 2 9 9\r\n"
+                               "0 0 5 6 1 1 51 -32768 0\r\n"
+                               "0 0 7 8 0 0 102 0 0\r\n"
+                               "9 4 3 2 1 0";
+    Mesh mesh;
+    SingeError error;
+    if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
+    static const float positions[] = {1, 2, 0.1f, 3, 4, -1e-3f, 5, 6, 0, 7, 8, 0};
+    static const float uv[] = {0.75f, 0.25f, 1, 0, 1, 1, 0, 0};
+    static const float red[] = {1, 0, 51 * (1 / 255.0f), 102 * (1 / 255.0f)}, wet[] = {-5, 32767, -32768, 0};
+    static const uint32_t cells[] = {3, 2, 1, 0};
+    assert_int_equal(mesh.vertex_count, 4);
+    assert_int_equal(mesh.cell_count, 1);
+    assert_int_equal(mesh.attribute_count, 2);
+    assert_memory_equal(mesh.positions, positions, sizeof positions);
+    assert_memory_equal(mesh.uv, uv, sizeof uv);
+    assert_memory_equal(mesh.cells, cells, sizeof cells);
+    assert_string_equal(mesh.attributes[0].name, "red");
+    assert_memory_equal(mesh.attributes[0].values, red, sizeof red);
+    assert_string_equal(mesh.attributes[1].name, "wet");
+    assert_memory_equal(mesh.attributes[1].values, wet, sizeof wet);
+    mesh_free(&mesh);
+}
+
+// ---- binary files made here, in either byte order
+
+typedef struct Maker {
+    uint8_t bytes[4096];
+    size_t size;
+    bool big;
+} Maker;
+
+static void put(Maker *maker, uint64_t bits, int size) {
+    for (int i = 0; i < size; i++) maker->bytes[maker->size++] = (uint8_t)(bits >> 8 * (maker->big ? size - 1 - i : i));
+}
+static void put_float(Maker *maker, float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(maker, bits, 4);
+}
+static void put_double(Maker *maker, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(maker, bits, 8);
+}
+static void put_text(Maker *maker, const char *text) {
+    memcpy(maker->bytes + maker->size, text, strlen(text));
+    maker->size += strlen(text);
+}
+
+static const float corners[4][3] = {{0.1f, -0.2f, 1e-20f}, {1, 0, 3e38f}, {1, 1, -0.0f}, {0, 1, 0.3f}};
+
+static Maker make_binary(bool big) {
+    Maker maker = {.big = big};
+    put_text(&maker, "ply\nformat ");
+    put_text(&maker, big ? "binary_big_endian" : "binary_little_endian");
+    put_text(&maker, " 1.0\nelement vertex 4\nproperty double x\nproperty list ushort short junk\n"
+             "property float y\nproperty float z\n"
+                     "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
+                     "property uint f\n"
+                     "property float texture_u\nproperty float texture_v\n"
+                     "element edge 2\nproperty int p\nproperty uchar q\n"
+                     "element face 2\nproperty list int ushort vertex_indices\nproperty list uchar double weights\n"
+                     "end_header\n");
+    for (int v = 0; v < 4; v++) {
+        put_double(&maker, corners[v][0]);
+        put(&maker, (uint64_t)v, 2);
+        for (int i = 0; i < v; i++) put(&maker, 77, 2);
+        put_float(&maker, corners[v][1]);
+        put_float(&maker, corners[v][2]);
+        put(&maker, 0x80, 1), put(&maker, 0x80, 1), put(&maker, 0x8001, 2), put(&maker, 0x8001, 2);
+        put(&maker, 0xffffffff, 4), put(&maker, 0xffffff00, 4);
+        put_float(&maker, 0.25f * (float)v), put_float(&maker, 1);
+    }
+    put(&maker, 1, 4), put(&maker, 2, 1), put(&maker, 3, 4), put(&maker, 4, 1);
+    put(&maker, 4, 4), put(&maker, 0, 2), put(&maker, 1, 2), put(&maker, 2, 2), put(&maker, 3, 2);
+    put(&maker, 0, 1);
+    put(&maker, 4, 4), put(&maker, 3, 2), put(&maker, 2, 2), put(&maker, 1, 2), put(&maker, 0, 2);
+    put(&maker, 1, 1), put_double(&maker, 0.5);
+    return maker;
+}
+
+static void reads_binary_of_both_orders(void **state) {
+    (void)state;
+    for (int big = 0; big < 2; big++) {
+        Maker maker = make_binary(big);
+        Mesh mesh;
+        SingeError error;
+        if (parse_bytes(maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
+        assert_int_equal(mesh.vertex_count, 4);
+        assert_memory_equal(mesh.positions, corners, sizeof corners);
+        static const uint32_t cells[] = {0, 1, 2, 3, 3, 2, 1, 0};
+        assert_int_equal(mesh.cell_count, 2);
+        assert_memory_equal(mesh.cells, cells, sizeof cells);
+        assert_int_equal(mesh.attribute_count, 6);
+        static const float expected[6] = {-128, 128, -32767, 32769, -1, 4294967040.0f};
+        for (int i = 0; i < 6; i++) {
+            assert_int_equal(mesh.attributes[i].name[0], 'a' + i);
+            assert_true(mesh.attributes[i].values[3] == expected[i]);
+        }
+        assert_true(mesh.uv[6] == 0.75f && mesh.uv[7] == 1);
+        mesh_free(&mesh);
+        // a cut anywhere is noticed
+        for (size_t size = 0; size < maker.size; size++) {
+            if (parse_bytes(maker.bytes, size, &mesh, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
+            assert_true(error.message[0] != 0);
+        }
+    }
+}
+
+static void refuses_bad_headers(void **state) {
+    (void)state;
+    expect_error("", SINGE_ERROR_FORMAT, 1, "empty");
+    expect_error("plx\nformat ascii 1.0\n", SINGE_ERROR_FORMAT, 1, "not a PLY file");
+    expect_error("ply", SINGE_ERROR_FORMAT, 1, "not a PLY file");
+    expect_error("ply\n", SINGE_ERROR_FORMAT, 2, "not a line");
+    expect_error("ply\nelement vertex 4\nend_header\n", SINGE_ERROR_FORMAT, 3, "no format line");
+    expect_error("ply\nformat utf8 1.0\n", SINGE_ERROR_FORMAT, 2, "not a PLY format");
+    expect_error("ply\nformat ascii 2.0\n", SINGE_ERROR_FORMAT, 2, "version 1.0");
+    expect_error(HEADER "format ascii 1.0\n", SINGE_ERROR_FORMAT, 3, "twice");
+    expect_error(HEADER "element vertex\n", SINGE_ERROR_FORMAT, 3, "not a count");
+    expect_error(HEADER "element vertex -4\n", SINGE_ERROR_FORMAT, 3, "not a count");
+    expect_error(HEADER "element vertex 4x\n", SINGE_ERROR_FORMAT, 3, "not a count");
+    expect_error(HEADER "element vertex 4294967296\n", SINGE_ERROR_LIMIT, 3, "too many");
+    expect_error(HEADER "element vertex 99999999999999999999999\n", SINGE_ERROR_LIMIT, 3, "too many");
+    expect_error(HEADER "element\n", SINGE_ERROR_FORMAT, 3, "name is missing");
+    expect_error(HEADER "element vertex 4 5\n", SINGE_ERROR_FORMAT, 3, "too many words");
+    expect_error(HEADER "element vertex 4\nelement vertex 4\n", SINGE_ERROR_FORMAT, 4, "twice");
+    expect_error(HEADER "property float x\n", SINGE_ERROR_FORMAT, 3, "before any element");
+    expect_error(HEADER "element vertex 4\nproperty real x\n", SINGE_ERROR_FORMAT, 4, "\"real\" is not a PLY type");
+    expect_error(HEADER "element vertex 4\nproperty float x\nproperty int x\n", SINGE_ERROR_FORMAT, 5, "twice");
+    expect_error(HEADER "element vertex 4\nproperty float\n", SINGE_ERROR_FORMAT, 4, "name is missing");
+    expect_error(HEADER "element face 4\nproperty list float int vertex_indices\n", SINGE_ERROR_FORMAT, 4,
+                 "integer type");
+    expect_error(HEADER "elephant\n", SINGE_ERROR_FORMAT, 3, "\"elephant\"");
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 1\n" FACES "end_header", SINGE_ERROR_FORMAT, 9,
+                 "cut off");
+}
+
+static void refuses_bad_bodies(void **state) {
+    (void)state;
+    expect_error(HEADER "element face 1\n" FACES "end_header\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, -1, "no vertices");
+    expect_error(HEADER "element vertex 4\n" XYZ "end_header\n" SQUARE, SINGE_ERROR_FORMAT, -1, "no faces");
+    expect_error(HEADER "element vertex 0\n" XYZ "element face 0\n" FACES "end_header\n", SINGE_ERROR_FORMAT, -1,
+                 "no vertices");
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 0\n" FACES "end_header\n" SQUARE, SINGE_ERROR_FORMAT,
+                 -1, "no faces");
+    expect_error(HEADER "element vertex 4\nproperty float x\nproperty float y\nelement face 1\n"
+                 FACES "end_header\n0 0\n0 0\n0 0\n0 0\n4 0 1 2 3\n",
+                 SINGE_ERROR_FORMAT, -1, "no property \"z\"");
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 1\nproperty list uchar int corners\nend_header\n"
+                 SQUARE "4 0 1 2 3\n",
+                 SINGE_ERROR_FORMAT, -1, "no list \"vertex_indices\"");
+    expect_error(HEADER "element vertex 4\n"
+                 XYZ "element face 1\nproperty list uchar float vertex_indices\nend_header\n" SQUARE "4 0 1 2 3\n",
+                 SINGE_ERROR_FORMAT, -1, "integer type");
+    expect_error(GOOD_HEADER SQUARE "3 0 1 2\n", SINGE_ERROR_MESH, 14,
+                 "a.ply:14: face has 3 corners; Singe reads quads for now");
+    expect_error(GOOD_HEADER SQUARE "5 0 1 2 3 0\n", SINGE_ERROR_MESH, 14, "face has 5 corners");
+    expect_error(GOOD_HEADER SQUARE "255 0 1 2 3 0\n", SINGE_ERROR_MESH, 14, "face has 255 corners");
+    expect_error(GOOD_HEADER SQUARE "300 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "\"300\" is out of range");
+    expect_error(GOOD_HEADER SQUARE "-4 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "out of range");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2 4\n", SINGE_ERROR_MESH, 14, "index 4 is out of range");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2 -1\n", SINGE_ERROR_MESH, 14, "index -1 is out of range");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2 1\n", SINGE_ERROR_MESH, 14, "uses vertex 1 twice");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2.5 3\n", SINGE_ERROR_FORMAT, 14, "\"2.5\" is not an integer");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2\n", SINGE_ERROR_FORMAT, 14, "too few values");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2 3 4\n", SINGE_ERROR_FORMAT, 14, "too many values");
+    expect_error(GOOD_HEADER SQUARE, SINGE_ERROR_FORMAT, -1, "too short");
+    expect_error(GOOD_HEADER "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
+                 "\"nan\" is not a finite number");
+    expect_error(GOOD_HEADER "0 0 0\n1 1e39 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
+                 "\"1e39\" is out of range");
+    expect_error(GOOD_HEADER "0 0 0\n1 y 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
+                 "\"y\" is not a number");
+    expect_error(GOOD_HEADER "0 0 0\n1 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "too few values");
+}
+
+static void refuses_bad_binary_values(void **state) {
+    (void)state;
+    static const double bad[] = {NAN, INFINITY, 1e300, -3.5e38};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        Maker maker = {0};
+        put_text(&maker,
+                 "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\nproperty float y\n"
+                 "property float z\n"
+                         "element face 1\n" FACES "end_header\n");
+        size_t body = maker.size;
+        put_double(&maker, bad[i]);
+        for (int k = 0; k < 40; k++) put(&maker, 0, 1);
+        Mesh mesh;
+        SingeError error;
+        assert_int_equal(parse_bytes(maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
+        assert_true(error.element >= (int64_t)body && error.element <= (int64_t)body + 8);
+    }
+}
+
+// Counts and list lengths that the file cannot hold are refused before memory is taken for them.
+static void large_claims_take_no_memory(void **state) {
+    (void)state;
+    static const char *const claims[] = {
+        "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\n" XYZ "element face 1\n" FACES "end_header\n"
+        "0123456789",
+        "ply\nformat ascii 1.0\nelement vertex 2147483647\n" XYZ "element face 1\n" FACES "end_header\n0 0 0\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 2147483647\n" FACES "end_header\n0 0 0\n"
+        "4 0 0 0 0\n",
+        "ply\nformat binary_big_endian 1.0\nelement nothing 2147483647\nelement vertex 1\n"
+        XYZ "element face 2147483647\n" FACES
+        "end_header\n0123456789012345",
+        "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty list uint double l\n" XYZ "element face 1\n"
+        FACES
+        "end_header\n\xff\xff\xff\xff\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01",
+    };
+    for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
+        Counter counter = {0};
+        Mesh mesh;
+        SingeError error;
+        assert_int_equal(ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), counter_allocator(&counter),
+                                  &mesh, &error),
+                         SINGE_ERROR_FORMAT);
+        assert_true(counter.largest < 4096);
+        counter_check(&counter);
+    }
+}
+
+static void truncated_ascii(void **state) {
+    (void)state;
+    static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
+    Mesh mesh;
+    SingeError error;
+    // only the last newline may be missing
+    for (size_t size = 0; size + 2 < sizeof text; size++)
+        assert_int_not_equal(parse_bytes(text, size, &mesh, &error), SINGE_OK);
+    assert_int_equal(parse_bytes(text, sizeof text - 2, &mesh, &error), SINGE_OK);
+    mesh_free(&mesh);
+}
+
+static void allocation_failure_is_clean(void **state) {
+    (void)state;
+    Maker maker = make_binary(false);
+    for (long n = 1;; n++) {
+        Counter counter = {.fail_at = n};
+        Mesh mesh;
+        SingeError error;
+        SingeResult result = ply_read("a.ply", maker.bytes, maker.size, counter_allocator(&counter), &mesh, &error);
+        if (result == SINGE_OK) mesh_free(&mesh);
+        else assert_int_equal(result, SINGE_ERROR_MEMORY);
+        counter_check(&counter);
+        if (result == SINGE_OK) {
+            assert_true(n > 15);
+            break;
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_ascii),
+        cmocka_unit_test(reads_binary_of_both_orders),
+        cmocka_unit_test(refuses_bad_headers),
+        cmocka_unit_test(refuses_bad_bodies),
+        cmocka_unit_test(refuses_bad_binary_values),
+        cmocka_unit_test(large_claims_take_no_memory),
+        cmocka_unit_test(truncated_ascii),
+        cmocka_unit_test(allocation_failure_is_clean),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,31 @@
+// What must hold of every mesh that a reader accepts.
+#ifndef TESTS_FUZZ_MESH_H
+#define TESTS_FUZZ_MESH_H
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "formats/formats.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static inline void demand(bool holds) {
+    if (!holds) abort();
+}
+
+static inline void demand_mesh(const Mesh *mesh) {
+    demand(mesh->vertex_count > 0 && mesh->cell_count > 0 && mesh->positions && mesh->cells);
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) demand(isfinite(mesh->positions[i]));
+    for (size_t i = 0; mesh->uv && i < 2 * (size_t)mesh->vertex_count; i++) demand(isfinite(mesh->uv[i]));
+    for (size_t i = 0; i < mesh->cell_count; i++) {
+        const uint32_t *c = mesh->cells + 4 * i;
+        for (int k = 0; k < 4; k++)
+            demand(c[k] < mesh->vertex_count && c[k] != c[(k + 1) % 4] && c[k] != c[(k + 2) % 4]);
+    }
+    for (uint32_t a = 0; a < mesh->attribute_count; a++) {
+        demand(mesh->attributes[a].name[0] != 0);
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) demand(isfinite(mesh->attributes[a].values[v]));
+    }
+}
+
+#endif
