@@ -1,0 +1,54 @@
+// The colour of what glows.
+//
+// Planck: B(lambda, T) ~ lambda^-5 / (exp(c2/(lambda T)) - 1), c2 = 1.438777e-2 m K.
+// CIE 1931 observer by the multi-lobe Gaussians of Wyman, Sloan & Shirley 2013 (JCGT 2(2)), then XYZ to linear
+// Rec. 709. Below about 1900 K blue lies outside the gamut: negative values are cut.
+// The luminance of an ember grows 50-fold from 1020 to 1220 K; the eye and the film follow only part of
+// that, so the table holds chromaticity * (Y(T)/Y(1200 K))^0.55.
+
+#include "preview/internal.h"
+
+static double lobe(double x, double centre, double left, double right) {
+    double t = (x - centre) * (x < centre ? left : right);
+    return exp(-0.5 * t * t);
+}
+
+static void observe(double nm, double xyz[3]) {
+    xyz[0] = 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
+             0.065 * lobe(nm, 501.1, 0.0490, 0.0382);
+    xyz[1] = 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322);
+    xyz[2] = 1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725);
+}
+
+static void planck_xyz(double temperature, double xyz[3]) {
+    xyz[0] = xyz[1] = xyz[2] = 0;
+    for (int nm = 380; nm <= 780; nm += 5) {
+        double lambda = nm * 1e-9, seen[3];
+        double radiance = pow(lambda * 1e6, -5) / (exp(1.438777e-2 / (lambda * temperature)) - 1);
+        observe(nm, seen);
+        for (int c = 0; c < 3; c++) xyz[c] += radiance * seen[c];
+    }
+}
+
+void blackbody_fill(V3 table[BLACKBODY_COUNT]) {
+    double reference[3], xyz[3];
+    planck_xyz(1200, reference);
+    for (int i = 0; i < BLACKBODY_COUNT; i++) {
+        double temperature = (double)BLACKBODY_MIN + (double)BLACKBODY_STEP * i;
+        planck_xyz(temperature, xyz);
+        double x = xyz[0] / xyz[1], z = xyz[2] / xyz[1];
+        double r = 3.2406 * x - 1.5372 - 0.4986 * z, g = -0.9689 * x + 1.8758 + 0.0415 * z;
+        double b = 0.0557 * x - 0.2040 + 1.0570 * z;
+        double strength = pow(xyz[1] / reference[1], 0.55);
+        strength *= (double)stepf(BLACKBODY_MIN, BLACKBODY_MIN + 120, (float)temperature);
+        table[i] = v3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
+    }
+}
+
+V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature) {
+    float x = (temperature - BLACKBODY_MIN) / BLACKBODY_STEP;
+    if (!(x > 0)) return v3(0, 0, 0);
+    if (x >= BLACKBODY_COUNT - 1) return table[BLACKBODY_COUNT - 1];
+    int i = (int)x;
+    return v3_mix(table[i], table[i + 1], x - (float)i);
+}

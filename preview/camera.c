@@ -1,0 +1,63 @@
+// Camera rays and the points at which a picture is sampled.
+//
+// Sequence: R2 (M. Roberts 2018), x_i = frac(a + i/g), y_i = frac(b + i/g^2) with g = 1.3247..., the root of
+// g^3 = g + 1; turned per pixel (Cranley & Patterson 1976) by interleaved gradient noise (Jimenez 2014), whose
+// neighbours differ, so that what is left of the noise is fine-grained.
+
+#include "preview/internal.h"
+
+Camera camera_make(const PreviewDef *def) {
+    V3 eye = v3_load(def->camera.eye), forward = v3_sub(v3_load(def->camera.target), eye);
+    Camera camera = {.eye = eye, .reach = v3_length(forward)};
+    camera.forward = v3_unit(forward, v3(0, 1, 0));
+    V3 up = v3_unit(v3_load(def->camera.up), v3(0, 0, 1));
+    V3 right = v3_cross(camera.forward, up);
+    // looking along `up`: any other direction will do
+    if (v3_dot(right, right) < 1e-8f)
+        right = v3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? v3(0, 1, 0) : v3(1, 0, 0));
+    right = v3_unit(right, v3(1, 0, 0));
+    float half = tanf(0.5f * def->camera.fov), aspect = (float)def->width / (float)def->height;
+    camera.up = v3_scale(v3_cross(right, camera.forward), half);
+    camera.right = v3_scale(right, half * aspect);
+    camera.pixel = 2 * half / (float)def->height;
+    return camera;
+}
+
+/// x and y run from -1 to 1, left to right and bottom to top.
+V3 camera_ray(const Camera *camera, float x, float y) {
+    V3 d = v3_mad(v3_mad(camera->forward, camera->right, x), camera->up, y);
+    return v3_scale(d, 1 / v3_length(d));
+}
+
+static float fraction(float x) { return x - (float)(int)x; }
+
+void sample_square(uint32_t index, float a, float b, float out[2]) {
+    out[0] = fraction(a + 0.75487767f * (float)index);
+    out[1] = fraction(b + 0.56984029f * (float)index);
+}
+
+void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
+    float px = (float)(x + (int)(seed & 63)), py = (float)(y + (int)(seed >> 6 & 63));
+    out[0] = fraction(52.9829189f * fraction(0.06711056f * px + 0.00583715f * py));
+    out[1] = fraction(52.9829189f * fraction(0.06711056f * (py + 47) + 0.00583715f * (px + 17)));
+}
+
+/// sin(pi x) for x in [-1, 1], to 1e-3: enough to choose a direction by.
+static float sine(float x) {
+    float y = 4 * x * (1 - fabsf(x));
+    return y * (0.775f + 0.225f * fabsf(y));
+}
+
+void sample_disc(const float square[2], float out[2]) {
+    float r = sqrtf(square[0]), x = 2 * square[1] - 1, quarter = x + 0.5f;
+    out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter), out[1] = r * sine(x);
+}
+
+V3 sample_cosine(V3 normal, const float square[2]) {
+    V3 a, b;
+    float disc[2];
+    v3_frame(normal, &a, &b);
+    sample_disc(square, disc);
+    float height = sqrtf(maxf(0.0f, 1 - square[0]));
+    return v3_mad(v3_mad(v3_scale(normal, height), a, disc[0]), b, disc[1]);
+}

@@ -1,0 +1,106 @@
+// The device, the acceleration structure and packets of rays, on Embree 3.
+//
+// One builder thread: the tree, and with it the order in which equal hits are met, must not depend on the
+// number of threads. Debian's Embree checks its arguments: lanes that are not in use must hold a valid ray.
+
+#include "preview/internal.h"
+
+static SingeResult embree_check(const Preview *preview, SingeError *error) {
+    enum RTCError code = rtcGetDeviceError(preview->device);
+    if (code == RTC_ERROR_NONE) return SINGE_OK;
+    if (code == RTC_ERROR_OUT_OF_MEMORY) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree is out of memory");
+    return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
+}
+
+SingeResult tracer_build(Preview *preview, SingeError *error) {
+    Scene *scene = &preview->scene;
+    tracer_release(preview);
+    if (!scene->triangle_count) return SINGE_OK;
+    (void)rtcGetDeviceError(preview->device);
+    RTCScene built = rtcNewScene(preview->device);
+    RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (built && geometry) {
+        rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions, 0,
+                                   sizeof *scene->positions, scene->vertex_count);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
+                                   sizeof *scene->triangles, scene->triangle_count);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(built, geometry);
+        rtcCommitScene(built);
+    }
+    if (geometry) rtcReleaseGeometry(geometry);
+    SingeResult result = embree_check(preview, error);
+    if (!result && !built) result = preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree made no scene");
+    if (result) {
+        if (built) rtcReleaseScene(built);
+        return result;
+    }
+    scene->embree = built;
+    return SINGE_OK;
+}
+
+void tracer_release(Preview *preview) {
+    if (preview->scene.embree) rtcReleaseScene(preview->scene.embree);
+    preview->scene.embree = NULL;
+}
+
+/// 1 / x, large but finite at 0 so that no 0 times infinity follows.
+static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
+
+/// Whether the ray meets the surface's bounds before `far`.
+static bool near_surface(const Scene *scene, V3 o, V3 d, float far) {
+    float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
+    float x0 = (scene->low.x - o.x) * ix, x1 = (scene->high.x - o.x) * ix;
+    float y0 = (scene->low.y - o.y) * iy, y1 = (scene->high.y - o.y) * iy;
+    float z0 = (scene->low.z - o.z) * iz, z1 = (scene->high.z - o.z) * iz;
+    float enter = maxf(maxf(minf(x0, x1), minf(y0, y1)), maxf(minf(z0, z1), 0));
+    float leave = minf(minf(maxf(x0, x1), maxf(y0, y1)), minf(maxf(z0, z1), far));
+    return !(enter > leave);
+}
+
+void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays) {
+    const Scene *scene = &preview->scene;
+    struct RTCRay16 *ray = &rays->ray;
+    _Alignas(64) int wanted[LANES];
+    int count = 0;
+    for (int i = 0; i < LANES; i++) {
+        rays->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        rays->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        wanted[i] = valid[i];
+        if (wanted[i] && scene->embree)
+            wanted[i] = -near_surface(scene, v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
+                                      v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i]);
+        count += wanted[i] != 0;
+    }
+    if (!scene->embree || !count) return;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(wanted, scene->embree, &context, rays);
+}
+
+static bool shape_blocks(const Preview *preview, V3 o, V3 d, float far) {
+    V3 normal;
+    for (uint32_t k = 0; k < preview->shape_count; k++)
+        if (shape_intersect(&preview->shapes[k], o, d, preview->scene.epsilon, far, &normal) > 0) return true;
+    return false;
+}
+
+void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, bool blocked[LANES]) {
+    const Scene *scene = &preview->scene;
+    int count = 0;
+    for (int i = 0; i < LANES; i++) {
+        blocked[i] = false;
+        if (!valid[i]) continue;
+        V3 o = v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
+        blocked[i] = shape_blocks(preview, o, d, ray->tfar[i]);
+        if (blocked[i] || !scene->embree || !near_surface(scene, o, d, ray->tfar[i])) valid[i] = 0;
+        count += valid[i] != 0;
+    }
+    if (!count) return;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, scene->embree, &context, ray);
+    for (int i = 0; i < LANES; i++) blocked[i] = blocked[i] || (valid[i] && ray->tfar[i] < 0);
+}

@@ -1,0 +1,166 @@
+// What the files of the preview share.
+#ifndef PREVIEW_INTERNAL_H
+#define PREVIEW_INTERNAL_H
+
+#include "preview/noise.h"
+#include "preview/preview.h"
+
+#include <embree3/rtcore.h>
+
+enum {
+    LANES = 16,            ///< rays in a packet: a block of 4 x 4 pixels
+    BLOCK = 4,             ///< pixels along a block's side
+    TILE = 32,             ///< pixels along a tile's side, the unit of work of a thread
+    LIGHT_LIMIT = 16,      ///< ember clusters that cast light
+    MIP_LIMIT = 15,
+    BLACKBODY_COUNT = 160, ///< table from BLACKBODY_MIN in steps of BLACKBODY_STEP
+    THREAD_LIMIT = 64,
+    SIZE_LIMIT = 16384,
+};
+#define BLACKBODY_MIN 780.0f
+#define BLACKBODY_STEP 10.0f
+#define PI_F 3.14159265f
+
+/// What shading reads of a vertex: one cache line.
+typedef struct PaperVertex {
+    float normal[3];
+    float rest[3];       ///< m
+    float uv[2];
+    float temperature;   ///< K
+    float burn;          ///< 0 to 1
+    float burn_rate;     ///< 1/s
+    float gradient;      ///< 1/m, of burn in rest space
+    int32_t sheet;       ///< -1: none
+    float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
+} PaperVertex;
+
+/// A sheet's picture with its smaller copies. Level 0 is the caller's.
+typedef struct Texture {
+    const uint8_t *levels[MIP_LIMIT];
+    int width[MIP_LIMIT], height[MIP_LIMIT], count;
+    float texels_per_metre; ///< of level 0, measured on the surface
+} Texture;
+
+typedef struct EmberLight {
+    V3 position, strength; ///< radiance times area over 2 pi: divide by distance squared
+    float softness;        ///< m2, added to the distance squared
+} EmberLight;
+
+typedef struct Camera {
+    V3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
+    float pixel;                ///< size of a pixel at distance 1
+    float reach;                ///< m, eye to target
+} Camera;
+
+typedef struct Scene {
+    RTCScene embree; ///< NULL when there is no triangle
+    PaperVertex *vertices;
+    float (*positions)[4];
+    uint32_t (*triangles)[3];
+    uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
+    V3 low, high;    ///< bounds of the drawn triangles
+    float epsilon;   ///< m, distance by which secondary rays leave a surface
+    EmberLight lights[LIGHT_LIMIT];
+    int light_count;
+} Scene;
+
+struct Preview {
+    PreviewDef def;
+    SingeAllocator allocator;
+    RTCDevice device;
+    Camera camera;
+    V3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
+    float sun_spread;          ///< tangent of the light's apparent radius
+    PreviewShape *shapes;
+    uint32_t shape_count;
+    Texture *textures;         ///< [def.sheet_count]
+    float linear[256];         ///< sRGB byte to linear
+    V3 blackbody[BLACKBODY_COUNT];
+    V3 *picture;               ///< [height * width] radiance
+    V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
+    Scene scene;
+    double time;
+};
+
+/// A point to be lit. All normals face the viewer.
+typedef struct Point {
+    V3 position, normal, geometric, view; ///< view: unit, towards the eye
+    V3 albedo, emission;
+    float transmission; ///< share of the light from behind that comes through
+    float gloss, shininess; ///< Blinn-Phong lobe
+    float footprint;    ///< m, a pixel's size here
+    float fade;         ///< 0 here to 1 lost in the background
+    bool lit;           ///< false: emission is all
+} Point;
+
+// preview.c
+SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...)
+    SINGE_PRINTF(4, 5);
+void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_size, size_t new_size);
+
+// camera.c
+Camera camera_make(const PreviewDef *def);
+V3 camera_ray(const Camera *camera, float x, float y);
+/// Point `index` of a low-discrepancy sequence in the square, turned by (a, b).
+void sample_square(uint32_t index, float a, float b, float out[2]);
+/// Two numbers for a pixel that differ well from its neighbours'.
+void sample_pixel(int x, int y, uint32_t seed, float out[2]);
+V3 sample_cosine(V3 normal, const float square[2]);
+void sample_disc(const float square[2], float out[2]);
+
+// texture.c
+SingeResult texture_create(Preview *preview, Texture *texture, const Image *image, SingeError *error);
+void texture_free(const Preview *preview, Texture *texture);
+/// Linear colour; `texels` is a sample's width in texels of level 0.
+V3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
+
+// surface.c
+SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
+void tracer_free(Preview *preview);
+
+// embree.c
+SingeResult tracer_build(Preview *preview, SingeError *error);
+void tracer_release(Preview *preview);
+/// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
+void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
+/// blocked[i] tells of the lanes with valid = -1 whether anything, shapes included, is in the way. Changes `valid`.
+void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, bool blocked[LANES]);
+
+// shape.c
+/// Distance to the shape in (near, far), or -1; *normal points outward.
+float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float near, float far, V3 *normal);
+
+// light.c
+void light_gather(Preview *preview);
+
+// blackbody.c
+void blackbody_fill(V3 table[BLACKBODY_COUNT]);
+V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
+
+// shade_paper.c
+/// What the look of a hit depends on, interpolated.
+typedef struct PaperState {
+    V3 rest;
+    float uv[2], temperature, burn, burn_rate, gradient;
+    int32_t sheet;
+} PaperState;
+/// False where the burnt edge has a hole at the picture's scale.
+bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
+/// Width of the glowing line, m, and the share of burn around which it lies.
+#define EMBER_WIDTH 0.00065f
+#define EMBER_BURN 0.80f
+#define EMBER_GAIN 4.6f
+/// How readily a place glows, 0 to 1, by its rate of burning (1/s).
+static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
+
+// shade_ground.c
+void ground_shade(const Preview *preview, float distance, Point *point);
+V3 background_colour(const Preview *preview, V3 direction);
+void shape_shade(const Preview *preview, const PreviewShape *shape, Point *point);
+
+// bloom.c, tonemap.c
+void bloom_apply(Preview *preview);
+void tonemap_fill_linear(float table[256]);
+void tonemap_write(const Preview *preview, uint8_t *rgb);
+
+#endif

@@ -1,0 +1,81 @@
+// Light cast by embers and hot shapes, as a few point sources.
+//
+// A patch of area A and radiance L that glows to both sides lights a place at distance r by about L A / (2 pi r^2)
+// per unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become
+// lights, scaled so that the total is kept. A sphere of radius R gives L R^2 / r^2.
+
+#include "preview/internal.h"
+
+enum { GRID = 10 };
+
+typedef struct Cluster { V3 place, strength; float weight; } Cluster;
+
+/// Share of a triangle that the ember's line covers: the overlap of the two ranges of burn.
+static float coverage(const PaperVertex *a, const PaperVertex *b, const PaperVertex *c) {
+    float low = minf(a->burn, minf(b->burn, c->burn)), high = maxf(a->burn, maxf(b->burn, c->burn));
+    float gradient = (a->gradient + b->gradient + c->gradient) / 3, half = EMBER_WIDTH * maxf(gradient, 20.0f);
+    float overlap = minf(high, EMBER_BURN + 1.3f * half) - maxf(low, EMBER_BURN - half);
+    return overlap > 0 ? overlap / maxf(high - low, 2 * half) : 0;
+}
+
+static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
+    const Scene *scene = &preview->scene;
+    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
+    float hottest = maxf(a->temperature, maxf(b->temperature, c->temperature));
+    float share = hottest > BLACKBODY_MIN ? coverage(a, b, c) : 0;
+    if (share <= 0) return;
+    V3 pa = v3_load(scene->positions[t[0]]), pb = v3_load(scene->positions[t[1]]), pc = v3_load(scene->positions[t[2]]);
+    float area = 0.5f * v3_length(v3_cross(v3_sub(pb, pa), v3_sub(pc, pa)));
+    float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
+    float temperature = (a->temperature + b->temperature + c->temperature) / 3;
+    V3 radiance = v3_scale(blackbody_glow(preview->blackbody, temperature), 0.4f * EMBER_GAIN * ember_activity(rate));
+    V3 strength = v3_scale(radiance, area * share / (2 * PI_F));
+    float weight = v3_luminance(strength);
+    if (!(weight > 0)) return;
+    V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3), size = v3_sub(scene->high, scene->low);
+    int cell[3];
+    float at[3] = {(place.x - scene->low.x) / maxf(size.x, 1e-6f), (place.y - scene->low.y) / maxf(size.y, 1e-6f),
+                   (place.z - scene->low.z) / maxf(size.z, 1e-6f)};
+    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
+    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
+    cluster->place = v3_mad(cluster->place, place, weight);
+    cluster->strength = v3_add(cluster->strength, strength);
+    cluster->weight += weight;
+}
+
+static void add_shapes(Preview *preview) {
+    Scene *scene = &preview->scene;
+    for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
+        const PreviewShape *shape = &preview->shapes[k];
+        if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;
+        float r = shape->kind == SINGE_COLLIDER_BOX ? v3_length(v3_load(shape->half_size)) * 0.6f : shape->radius;
+        V3 glow = blackbody_glow(preview->blackbody, shape->temperature);
+        V3 place = v3_load(shape->position);
+        scene->lights[scene->light_count++] = (EmberLight){place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r};
+    }
+}
+
+void light_gather(Preview *preview) {
+    Scene *scene = &preview->scene;
+    Cluster clusters[GRID * GRID * GRID] = {{{0, 0, 0}, {0, 0, 0}, 0}};
+    scene->light_count = 0;
+    add_shapes(preview);
+    for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], clusters);
+    float total = 0, kept = 0;
+    int first = scene->light_count;
+    for (int i = 0; i < GRID * GRID * GRID; i++) total += clusters[i].weight;
+    float cell = v3_length(v3_sub(scene->high, scene->low)) / GRID, softness = 0.02f * cell * cell + 4e-6f;
+    while (scene->light_count < LIGHT_LIMIT) {
+        int best = 0;
+        for (int i = 1; i < GRID * GRID * GRID; i++)
+            if (clusters[i].weight > clusters[best].weight) best = i;
+        Cluster *cluster = &clusters[best];
+        if (!(cluster->weight > 0)) break;
+        V3 place = v3_scale(cluster->place, 1 / cluster->weight);
+        scene->lights[scene->light_count++] = (EmberLight){place, cluster->strength, softness};
+        kept += cluster->weight;
+        cluster->weight = 0;
+    }
+    for (int i = first; i < scene->light_count && kept > 0; i++)
+        scene->lights[i].strength = v3_scale(scene->lights[i].strength, total / kept);
+}

@@ -1,0 +1,205 @@
+// Making and unmaking a preview: the Def is checked field by field, then everything a frame needs is allocated.
+
+#include "preview/internal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...) {
+    if (!error) return code;
+    *error = (SingeError){.code = code, .stage = "preview", .element = element};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+    return code;
+}
+
+void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_size, size_t new_size) {
+    if (!block && !new_size) return NULL;
+    if (allocator->resize) return allocator->resize(allocator->context, block, block ? old_size : 0, new_size);
+    if (!new_size) {
+        free(block);
+        return NULL;
+    }
+    return realloc(block, new_size);
+}
+
+PreviewDef preview_default(void) {
+    return (PreviewDef){
+        .width = 960, .height = 540, .samples = 8, .thread_count = 1,
+        .camera = {.eye = {0, -0.42f, 0.34f}, .target = {0, -0.01f, 0}, .up = {0, 0, 1}, .fov = 0.6f},
+        .sun_direction = {-0.55f, 0.45f, 0.62f}, .sun_angle = 0.045f,
+        .sun_colour = {1.16f, 1.04f, 0.88f}, .sky_colour = {0.25f, 0.285f, 0.34f},
+        .ground_height = 0, .ground_colour = {0.235f, 0.145f, 0.085f}, .background = {0.16f, 0.15f, 0.145f},
+        .exposure = 1,
+    };
+}
+
+static bool all_between(const float *values, int count, float low, float high) {
+    for (int i = 0; i < count; i++)
+        if (!(values[i] >= low && values[i] <= high)) return false;
+    return true;
+}
+
+static SingeResult refuse(SingeError *error, int64_t element, const char *what) {
+    return preview_fail(error, SINGE_ERROR_ARGUMENT, element, "%s", what);
+}
+
+static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) {
+    if (!all_between(camera->eye, 3, -1e4f, 1e4f) || !all_between(camera->target, 3, -1e4f, 1e4f) ||
+        !all_between(camera->up, 3, -1e4f, 1e4f))
+        return refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
+    V3 up = v3_load(camera->up), view = v3_sub(v3_load(camera->target), v3_load(camera->eye));
+    if (!(v3_dot(view, view) > 1e-12f)) return refuse(error, -1, "camera: eye and target are the same point");
+    if (!(v3_dot(up, up) > 1e-12f)) return refuse(error, -1, "camera: up has no direction");
+    if (!(camera->fov > 0.001f && camera->fov < 3.1f))
+        return refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
+    return SINGE_OK;
+}
+
+static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeError *error) {
+    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->colour, 3, 0, 1e4f) &&
+                shape->temperature >= 0 && shape->temperature < 1e5f;
+    const float *q = shape->rotation;
+    float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    switch (shape->kind) {
+    case SINGE_COLLIDER_PLANE: break;
+    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius < 1e4f; break;
+    case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
+    case SINGE_COLLIDER_CAPSULE:
+        good = good && shape->radius > 0 && shape->radius < 1e4f && shape->height >= 0 && shape->height < 1e4f;
+        break;
+    default: good = false;
+    }
+    if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
+    return good ? SINGE_OK : refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
+}
+
+static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
+    if (count && !shapes) return refuse(error, -1, "shapes: a count and no array");
+    for (uint32_t i = 0; i < count; i++) {
+        SingeResult result = check_shape(&shapes[i], i, error);
+        if (result) return result;
+    }
+    return SINGE_OK;
+}
+
+static SingeResult check_light(const PreviewDef *def, SingeError *error) {
+    V3 sun = v3_load(def->sun_direction);
+    if (!v3_finite(sun) || !(v3_dot(sun, sun) > 1e-20f) || !(v3_dot(sun, sun) < 1e20f))
+        return refuse(error, -1, "sun_direction must be finite and not zero");
+    if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
+        return refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
+    if (!all_between(def->sun_colour, 3, 0, 1e4f) || !all_between(def->sky_colour, 3, 0, 1e4f) ||
+        !all_between(def->ground_colour, 3, 0, 1e4f) || !all_between(def->background, 3, 0, 1e4f))
+        return refuse(error, -1, "colours must be finite and not negative");
+    if (!(def->exposure > 0 && def->exposure < 1e4f)) return refuse(error, -1, "exposure must be above 0");
+    float ground = def->ground_height;
+    if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
+        return refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
+    return SINGE_OK;
+}
+
+static bool image_is_good(const Image *image) {
+    return image->rgb && image->width >= 1 && image->height >= 1 && image->width <= SIZE_LIMIT &&
+           image->height <= SIZE_LIMIT;
+}
+
+static SingeResult check_def(const PreviewDef *def, SingeError *error) {
+    if (def->width < 1 || def->height < 1 || def->width > SIZE_LIMIT || def->height > SIZE_LIMIT)
+        return refuse(error, -1, "width and height must lie between 1 and 16384");
+    if (def->samples < 1 || def->samples > 4096) return refuse(error, -1, "samples must lie between 1 and 4096");
+    if (def->thread_count < 1 || def->thread_count > THREAD_LIMIT)
+        return refuse(error, -1, "thread_count must lie between 1 and 64");
+    SingeResult result = check_camera(&def->camera, error);
+    if (!result) result = check_light(def, error);
+    if (!result) result = check_shapes(def->shapes, def->shape_count, error);
+    for (uint32_t s = 0; !result && def->pictures && s < def->sheet_count; s++) {
+        if (def->pictures[s] && !image_is_good(def->pictures[s]))
+            result = refuse(error, s, "a sheet's picture is empty or too large");
+    }
+    for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
+        if (!all_between(def->colours[s], 3, 0, 1e4f)) result = refuse(error, s, "a sheet's colour is out of range");
+    return result;
+}
+
+static size_t pixel_count(const PreviewDef *def) { return (size_t)def->width * (size_t)def->height; }
+
+static size_t glow_count(const PreviewDef *def) {
+    return (size_t)((def->width + 3) / 4) * (size_t)((def->height + 3) / 4);
+}
+
+static SingeResult allocate(Preview *preview, SingeError *error) {
+    const PreviewDef *def = &preview->def;
+    const SingeAllocator *allocator = &preview->allocator;
+    preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
+    preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
+    if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
+    if (!preview->picture || !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
+                            def->height);
+    for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
+        SingeResult result = texture_create(preview, &preview->textures[s], def->pictures[s], error);
+        if (result) return result;
+    }
+    return preview_set_shapes(preview, def->shapes, def->shape_count, error);
+}
+
+static void aim(Preview *preview) {
+    preview->camera = camera_make(&preview->def);
+    preview->sun = v3_unit(v3_load(preview->def.sun_direction), v3(0, 0, 1));
+    v3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    preview->sun_spread = tanf(preview->def.sun_angle);
+    tonemap_fill_linear(preview->linear);
+    blackbody_fill(preview->blackbody);
+}
+
+SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **out, SingeError *error) {
+    *out = NULL;
+    SingeResult result = check_def(def, error);
+    if (result) return result;
+    Preview *preview = preview_resize(&allocator, NULL, 0, sizeof *preview);
+    if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
+    *preview = (Preview){.def = *def, .allocator = allocator};
+    aim(preview);
+    result = allocate(preview, error);
+    if (!result) {
+        preview->device = rtcNewDevice("threads=1,set_affinity=0");
+        if (!preview->device) result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");
+    }
+    if (result) preview_destroy(preview);
+    else *out = preview;
+    return result;
+}
+
+SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count, SingeError *error) {
+    SingeResult result = check_shapes(shapes, count, error);
+    if (result) return result;
+    uint32_t drawn = 0; // planes are left to the ground
+    for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
+    PreviewShape *copy = preview_resize(&preview->allocator, NULL, 0, drawn * sizeof *copy);
+    if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
+    for (uint32_t i = 0, next = 0; i < count; i++)
+        if (shapes[i].kind != SINGE_COLLIDER_PLANE) copy[next++] = shapes[i];
+    preview_resize(&preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    preview->shapes = copy, preview->shape_count = drawn;
+    return SINGE_OK;
+}
+
+void preview_destroy(Preview *preview) {
+    if (!preview) return;
+    const PreviewDef *def = &preview->def;
+    SingeAllocator allocator = preview->allocator;
+    tracer_free(preview);
+    if (preview->device) rtcReleaseDevice(preview->device);
+    for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
+    preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
+    preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
+    for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview, sizeof *preview, 0);
+}

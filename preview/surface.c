@@ -1,0 +1,169 @@
+// From a surface to what shading reads: fields packed by vertex, what is not finite mended or left out.
+//
+// The gradient of burn in rest space is constant on a triangle: with edges e1, e2, N = e1 x e2,
+// grad b = [(b1 - b0) e2 x N + (b2 - b0) N x e1] / |N|^2; a vertex takes the mean by area of its triangles'.
+
+#include "preview/internal.h"
+
+static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint32_t count, size_t size) {
+    void **array = array_pointer;
+    if (count <= *capacity) return true;
+    uint32_t wanted = count + count / 4 < count ? count : count + count / 4;
+    if ((size_t)wanted > SIZE_MAX / size / 2) return false;
+    void *grown = preview_resize(&preview->allocator, *array, *capacity * size, wanted * size);
+    if (!grown) return false;
+    *array = grown, *capacity = wanted;
+    return true;
+}
+
+static bool reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
+    Scene *scene = &preview->scene;
+    uint32_t capacity = scene->vertex_capacity;
+    if (!grow(preview, &scene->vertices, &capacity, vertices, sizeof *scene->vertices)) return false;
+    uint32_t positions = scene->vertex_capacity;
+    if (!grow(preview, &scene->positions, &positions, vertices, sizeof *scene->positions)) {
+        // keep both arrays the same length; shrinking back cannot be relied on, so drop them
+        preview_resize(&preview->allocator, scene->vertices, capacity * sizeof *scene->vertices, 0);
+        preview_resize(&preview->allocator, scene->positions, positions * sizeof *scene->positions, 0);
+        scene->vertices = NULL, scene->positions = NULL, scene->vertex_capacity = 0;
+        return false;
+    }
+    scene->vertex_capacity = capacity;
+    return grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
+}
+
+static float finite_or(float x, float otherwise) { return isfinite(x) ? x : otherwise; }
+
+static bool near_enough(const float p[3]) {
+    return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
+}
+
+static void pack_vertex(const SingeSurface *surface, uint32_t i, PaperVertex *out, float position[4]) {
+    const float zero[3] = {0, 0, 0};
+    const float *rest = near_enough(surface->rest_position[i]) ? surface->rest_position[i] : zero;
+    V3 normal = v3_unit(v3_load(surface->normal[i]), v3(0, 0, 0));
+    *out = (PaperVertex){
+        .normal = {normal.x, normal.y, normal.z},
+        .rest = {rest[0], rest[1], rest[2]},
+        .uv = {finite_or(surface->uv[i][0], 0), finite_or(surface->uv[i][1], 0)},
+        .temperature = clampf(finite_or(surface->temperature[i], 293), 0, 5000),
+        .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
+        .burn_rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f),
+        .sheet = surface->sheet[i],
+    };
+    for (int c = 0; c < 3; c++) position[c] = surface->position[i][c];
+    position[3] = 0;
+}
+
+/// Adds the triangle's share of the gradient to its corners: times area into `slope`, the area into `gradient`.
+static void add_gradient(Scene *scene, const uint32_t t[3]) {
+    PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
+    V3 origin = v3_load(v[0]->rest), e1 = v3_sub(v3_load(v[1]->rest), origin), e2 = v3_sub(v3_load(v[2]->rest), origin);
+    V3 n = v3_cross(e1, e2);
+    float n2 = v3_dot(n, n);
+    if (!(n2 > 1e-24f)) return;
+    V3 g = v3_scale(v3_cross(e2, n), (v[1]->burn - v[0]->burn) / n2);
+    g = v3_mad(g, v3_cross(n, e1), (v[2]->burn - v[0]->burn) / n2);
+    float area = 0.5f * sqrtf(n2);
+    for (int k = 0; k < 3; k++) {
+        v[k]->slope[0] += area * g.x, v[k]->slope[1] += area * g.y, v[k]->slope[2] += area * g.z;
+        v[k]->gradient += area;
+    }
+}
+
+static bool keep_triangle(const SingeSurface *surface, const uint32_t t[3]) {
+    for (int k = 0; k < 3; k++)
+        if (!near_enough(surface->position[t[k]])) return false;
+    V3 a = v3_load(surface->position[t[0]]), b = v3_load(surface->position[t[1]]), c = v3_load(surface->position[t[2]]);
+    V3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
+    return v3_dot(n, n) > 1e-30f;
+}
+
+static void bound(Scene *scene) {
+    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t t = 0; t < scene->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const float *p = scene->positions[scene->triangles[t][k]];
+            low = v3(minf(low.x, p[0]), minf(low.y, p[1]), minf(low.z, p[2]));
+            high = v3(maxf(high.x, p[0]), maxf(high.y, p[1]), maxf(high.z, p[2]));
+        }
+    if (!scene->triangle_count) low = high = v3(0, 0, 0);
+    scene->epsilon = maxf(2e-4f * v3_length(v3_sub(high, low)), 1e-6f);
+    V3 margin = v3(scene->epsilon, scene->epsilon, scene->epsilon);
+    scene->low = v3_sub(low, margin), scene->high = v3_add(high, margin);
+    if (!scene->triangle_count) scene->epsilon = 1e-4f;
+}
+
+static void measure_textures(Preview *preview) {
+    const Scene *scene = &preview->scene;
+    for (uint32_t s = 0; s < preview->def.sheet_count; s++) {
+        Texture *texture = &preview->textures[s];
+        double texels = 0, area = 0;
+        for (uint32_t t = 0; texture->count && t < scene->triangle_count; t++) {
+            const PaperVertex *v = scene->vertices, *a = &v[scene->triangles[t][0]];
+            const PaperVertex *b = &v[scene->triangles[t][1]], *c = &v[scene->triangles[t][2]];
+            if (a->sheet != (int32_t)s) continue;
+            float bu = b->uv[0] - a->uv[0], bv = b->uv[1] - a->uv[1];
+            float cu = c->uv[0] - a->uv[0], cv = c->uv[1] - a->uv[1];
+            texels += fabs((double)bu * (double)cv - (double)bv * (double)cu);
+            V3 o = v3_load(a->rest);
+            area += (double)v3_length(v3_cross(v3_sub(v3_load(b->rest), o), v3_sub(v3_load(c->rest), o)));
+        }
+        texels *= (double)texture->width[0] * (double)texture->height[0];
+        texture->texels_per_metre = area > 0 && texels < 1e12 ? (float)sqrt(texels / area) : 0;
+    }
+}
+
+static SingeResult check(const SingeSurface *surface, SingeError *error) {
+    if (surface->vertex_count && !(surface->position && surface->normal && surface->uv && surface->rest_position &&
+                                   surface->temperature && surface->burn && surface->burn_rate && surface->sheet))
+        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks one of the arrays that are drawn");
+    if (surface->triangle_count && !surface->triangles)
+        return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count and no triangles");
+    for (uint32_t t = 0; t < surface->triangle_count; t++)
+        for (int k = 0; k < 3; k++)
+            if (surface->triangles[t][k] >= surface->vertex_count)
+                return preview_fail(error, SINGE_ERROR_ARGUMENT, t, "triangle %u uses vertex %u of %u", t,
+                                    surface->triangles[t][k], surface->vertex_count);
+    return SINGE_OK;
+}
+
+SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error) {
+    Scene *scene = &preview->scene;
+    tracer_release(preview);
+    scene->vertex_count = scene->triangle_count = 0;
+    SingeResult result = check(surface, error);
+    if (result) return result;
+    if (!reserve(preview, surface->vertex_count, surface->triangle_count))
+        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices",
+                            surface->vertex_count);
+
+    for (uint32_t i = 0; i < surface->vertex_count; i++)
+        pack_vertex(surface, i, &scene->vertices[i], scene->positions[i]);
+    for (uint32_t t = 0; t < surface->triangle_count; t++) {
+        if (!keep_triangle(surface, surface->triangles[t])) continue;
+        uint32_t *kept = scene->triangles[scene->triangle_count++];
+        for (int k = 0; k < 3; k++) kept[k] = surface->triangles[t][k];
+        add_gradient(scene, kept);
+    }
+    scene->vertex_count = surface->vertex_count;
+    for (uint32_t i = 0; i < scene->vertex_count; i++) {
+        PaperVertex *v = &scene->vertices[i];
+        v->gradient = v->gradient > 0 ? v3_length(v3_load(v->slope)) / v->gradient : 0;
+        // no triangle of the scene uses these; the builder still reads them
+        float *p = scene->positions[i];
+        if (!near_enough(p)) p[0] = p[1] = p[2] = 0;
+    }
+    bound(scene);
+    measure_textures(preview);
+    return tracer_build(preview, error);
+}
+
+void tracer_free(Preview *preview) {
+    Scene *scene = &preview->scene;
+    tracer_release(preview);
+    preview_resize(&preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
+    preview_resize(&preview->allocator, scene->positions, scene->vertex_capacity * sizeof *scene->positions, 0);
+    preview_resize(&preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
+    *scene = (Scene){0};
+}

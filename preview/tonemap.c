@@ -1,0 +1,57 @@
+// Radiance to bytes.
+//
+// Film curve y = x (a x + b) / (x (c x + d) + 1), fitted to: slope 0.6 at black (a short toe), 0.18 -> 0.165,
+// white paper in the sun 0.85 -> 0.73 (0.87 in sRGB), 2 -> 0.95, and a / c = 1.02 so that it reaches 1.
+// Before it, each channel leaks a little into the others, as film does: what is very bright grows pale.
+// Then IEC 61966-2-1 and one level of triangular dither.
+
+#include "preview/internal.h"
+
+static float film(float x) {
+    const float a = 2.682f, b = 0.6f, c = 2.6294f, d = 0.5333f;
+    return clampf(x * (a * x + b) / (x * (c * x + d) + 1), 0, 1);
+}
+
+static float encode(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+}
+
+void tonemap_fill_linear(float table[256]) {
+    for (int i = 0; i < 256; i++) {
+        float s = (float)i / 255;
+        table[i] = s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
+    }
+}
+
+static uint8_t quantise(float s, uint32_t key) {
+    float dither = hash_unit(key) + hash_unit(key ^ 0x68bc21ebu) - 1;
+    return (uint8_t)clampf(s * 255 + 0.5f + 0.7f * dither, 0, 255);
+}
+
+enum { CURVE_COUNT = 4096 };
+
+/// The curve and the encoding as one table over sqrt(x / CURVE_MAX): film() is slow and smooth.
+#define CURVE_MAX 16.0f
+
+static float look_up(const float *curve, float x) {
+    float at = sqrtf(clampf(x, 0, CURVE_MAX) / CURVE_MAX) * (CURVE_COUNT - 1);
+    int i = (int)at < CURVE_COUNT - 2 ? (int)at : CURVE_COUNT - 2;
+    return mixf(curve[i], curve[i + 1], at - (float)i);
+}
+
+void tonemap_write(const Preview *preview, uint8_t *rgb) {
+    float curve[CURVE_COUNT];
+    for (int i = 0; i < CURVE_COUNT; i++) {
+        float s = (float)i / (CURVE_COUNT - 1);
+        curve[i] = encode(film(s * s * CURVE_MAX));
+    }
+    size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
+    for (size_t i = 0; i < count; i++) {
+        V3 c = v3_scale(preview->picture[i], preview->def.exposure);
+        float leak = 0.045f * (c.x + c.y + c.z) / 3;
+        uint32_t key = (uint32_t)i * 3u + preview->def.seed * 0x9e3779b1u;
+        rgb[3 * i] = quantise(look_up(curve, 0.955f * c.x + leak), key);
+        rgb[3 * i + 1] = quantise(look_up(curve, 0.955f * c.y + leak), key + 1);
+        rgb[3 * i + 2] = quantise(look_up(curve, 0.955f * c.z + leak), key + 2);
+    }
+}

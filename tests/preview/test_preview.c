@@ -1,0 +1,483 @@
+// Pictures of synthetic sheets: what is where, what is refused, and that threads and memory do not matter.
+
+#include "preview/preview.h"
+#include "synthetic.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { W = 96, H = 64, BYTES = W * H * 3 };
+
+static PreviewDef small(void) {
+    PreviewDef def = preview_default();
+    def.width = W, def.height = H, def.samples = 8;
+    return def;
+}
+
+/// A camera straight above the origin: the middle of the picture is the origin, x to the right.
+static PreviewDef above(void) {
+    PreviewDef def = small();
+    def.camera = (PreviewCamera){.eye = {0, 0, 0.5f}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fov = 0.7f};
+    def.sun_direction[0] = 0, def.sun_direction[1] = 0.3f, def.sun_direction[2] = 1;
+    return def;
+}
+
+static void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
+    Preview *preview = NULL;
+    SingeError error = {0};
+    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_draw(preview, surface, time, rgb, &error), SINGE_OK);
+    preview_destroy(preview);
+}
+
+static const uint8_t *pixel(const uint8_t *rgb, int x, int y) { return rgb + 3 * (y * W + x); }
+
+static float mean(const uint8_t *rgb, int channel) {
+    float sum = 0;
+    for (int i = 0; i < W * H; i++) sum += rgb[3 * i + channel];
+    return sum / (W * H);
+}
+
+/// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
+typedef struct Quad {
+    float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], burn[4], rate[4];
+    int32_t sheet[4];
+    uint32_t triangles[2][3];
+    SingeSurface surface;
+} Quad;
+
+static void quad_make(Quad *q, float half, float z) {
+    memset(q, 0, sizeof *q);
+    for (int i = 0; i < 4; i++) {
+        float x = i == 1 || i == 2 ? half : -half, y = i >= 2 ? half : -half;
+        q->position[i][0] = q->rest[i][0] = x, q->position[i][1] = q->rest[i][1] = y, q->position[i][2] = z;
+        q->normal[i][2] = 1, q->uv[i][0] = x > 0, q->uv[i][1] = y > 0, q->temperature[i] = 293;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    memcpy(q->triangles, triangles, sizeof triangles);
+    q->surface = (SingeSurface){
+        .vertex_count = 4, .triangle_count = 2, .position = q->position, .normal = q->normal, .uv = q->uv,
+        .rest_position = q->rest, .temperature = q->temperature, .burn = q->burn, .burn_rate = q->rate,
+        .sheet = q->sheet, .triangles = q->triangles};
+}
+
+static void test_threads(void **state) {
+    (void)state;
+    SingeSurface surface;
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
+    // enough tiles that every thread gets some
+    enum { BIG_W = 330, BIG_H = 250, BIG = BIG_W * BIG_H * 3 };
+    static uint8_t pictures[3][BIG];
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0, 0, 0.03f}, .radius = 0.01f, .temperature = 1200};
+    for (int threads = 1; threads <= 3; threads++) {
+        PreviewDef def = small();
+        def.width = BIG_W, def.height = BIG_H;
+        def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
+        draw(&def, &surface, 0.5, pictures[threads - 1]);
+    }
+    assert_memory_equal(pictures[0], pictures[1], BIG);
+    assert_memory_equal(pictures[0], pictures[2], BIG);
+    synthetic_free(&surface);
+}
+
+/// Drawing another frame between must leave no trace.
+static void test_repeatable(void **state) {
+    (void)state;
+    SingeSurface burning, cold;
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
+    assert_true(synthetic_make(SYNTHETIC_COLD, 30, 0.07f, &cold));
+    static uint8_t first[BYTES], between[BYTES], again[BYTES], later[BYTES];
+    PreviewDef def = small();
+    Preview *preview = NULL;
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &burning, 2, first, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &cold, 2, between, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &burning, 2, again, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &burning, 2.6, later, NULL), SINGE_OK);
+    preview_destroy(preview);
+    assert_memory_equal(first, again, BYTES);
+    assert_memory_not_equal(first, between, BYTES);
+    assert_memory_not_equal(first, later, BYTES); // embers flicker
+    synthetic_free(&burning), synthetic_free(&cold);
+}
+
+static void test_empty_surface(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    draw(&def, &nothing, 0, rgb);
+    const uint8_t *p = pixel(rgb, W / 2, H / 2);
+    assert_true(p[0] > p[1] && p[1] > p[2]); // a wooden table
+    assert_in_range(p[0], 50, 190);
+    def.ground_height = -INFINITY;
+    draw(&def, &nothing, 0, rgb);
+    p = pixel(rgb, W / 2, H / 2);
+    assert_in_range(p[0], 60, 130); // the background: 0.16 of grey
+    assert_true(abs(p[0] - p[2]) < 12);
+}
+
+static void test_white_paper(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    PreviewDef def = above(); // no sheets, no pictures: white
+    draw(&def, &q.surface, 0, rgb);
+    for (int y = H / 2 - 8; y < H / 2 + 8; y++)
+        for (int x = W / 2 - 8; x < W / 2 + 8; x++) {
+            const uint8_t *p = pixel(rgb, x, y);
+            assert_in_range(p[0], 215, 252);
+            assert_in_range(p[1], 210, 252);
+            assert_in_range(p[2], 195, 250);
+        }
+}
+
+/// Left half red, right half blue, top row darker: uv and rows must be the right way round.
+static void test_picture(void **state) {
+    (void)state;
+    uint8_t texels[2 * 2 * 3] = {255, 0, 0, 0, 0, 255, 60, 0, 0, 0, 0, 60};
+    Image image = {.width = 2, .height = 2, .rgb = texels};
+    const Image *pictures[2] = {&image, NULL};
+    static uint8_t rgb[BYTES];
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    PreviewDef def = above();
+    def.pictures = pictures, def.sheet_count = 2;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *left = pixel(rgb, W / 2 - 14, H / 2 - 14), *right = pixel(rgb, W / 2 + 13, H / 2 - 14);
+    const uint8_t *low = pixel(rgb, W / 2 - 14, H / 2 + 13);
+    assert_true(left[0] > 180 && left[1] < 90 && left[2] < 90);
+    assert_true(right[2] > 180 && right[0] < 90 && right[1] < 90);
+    assert_true(low[0] + 60 < left[0]);
+
+    for (int i = 0; i < 4; i++) q.sheet[i] = 1; // no picture
+    draw(&def, &q.surface, 0, rgb);
+    assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
+    for (int i = 0; i < 4; i++) q.sheet[i] = 7 - 9 * (i & 1); // sheets that do not exist: white
+    draw(&def, &q.surface, 0, rgb);
+    assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
+}
+
+static void test_states(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    PreviewDef def = above();
+    float fresh, brown, black;
+    quad_make(&q, 0.1f, 0.01f);
+    draw(&def, &q.surface, 0, rgb);
+    fresh = pixel(rgb, W / 2, H / 2)[1];
+    for (int i = 0; i < 4; i++) q.temperature[i] = 520;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *p = pixel(rgb, W / 2, H / 2);
+    brown = p[1];
+    assert_true(p[0] > p[1] + 15 && p[1] > p[2] + 10);
+    for (int i = 0; i < 4; i++) q.temperature[i] = 400, q.burn[i] = 0.5f;
+    draw(&def, &q.surface, 0, rgb);
+    black = pixel(rgb, W / 2, H / 2)[1];
+    assert_true(fresh > brown + 30 && brown > black + 40 && black < 80);
+}
+
+/// Only where it is hot *and* burning does the char glow.
+static void test_ember(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.7f + 0.2f * (float)(i == 1 || i == 2), q.temperature[i] = 1100;
+    draw(&def, &q.surface, 0, rgb);
+    float idle = mean(rgb, 0);
+    for (int i = 0; i < 4; i++) q.rate[i] = 1;
+    draw(&def, &q.surface, 0, rgb);
+    float burning = mean(rgb, 0), burning_blue = mean(rgb, 2);
+    for (int i = 0; i < 4; i++) q.temperature[i] = 600;
+    draw(&def, &q.surface, 0, rgb);
+    assert_true(burning > idle + 1.5f);
+    assert_true(burning - mean(rgb, 0) > 1.5f);
+    assert_true(burning > burning_blue);
+}
+
+static void test_shapes(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    PreviewShape shape = {.position = {0.1f, 0, 0.05f}, .rotation = {0, 0, 0, 1}, .radius = 0.03f,
+                          .half_size = {0.03f, 0.03f, 0.03f}, .height = 0.02f,
+                          .colour = {0.1f, 0.1f, 0.8f}, .temperature = 293};
+    def.shapes = &shape, def.shape_count = 1;
+    const SingeColliderKind kinds[3] = {SINGE_COLLIDER_SPHERE, SINGE_COLLIDER_BOX, SINGE_COLLIDER_CAPSULE};
+    for (int k = 0; k < 3; k++) {
+        shape.kind = kinds[k];
+        draw(&def, &nothing, 0, rgb);
+        // 0.1 m at distance 0.45 m; half the picture's height is 0.45 tan 0.35 there
+        int x = (int)(W / 2 + 0.1f / (0.45f * tanf(0.35f)) * (H / 2));
+        const uint8_t *on = pixel(rgb, x, H / 2), *off = pixel(rgb, W - x, H / 2);
+        assert_true(on[2] > on[0] + 50 && on[2] > 120);
+        assert_true(off[0] > off[2]);
+    }
+    shape.kind = SINGE_COLLIDER_PLANE; // planes are the ground's business
+    draw(&def, &nothing, 0, rgb);
+    const uint8_t *p = pixel(rgb, W / 2, H / 2);
+    assert_true(p[0] > p[2]);
+}
+
+static void test_hot_ball(void **state) {
+    (void)state;
+    static uint8_t hot[BYTES], cold[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0, 0, 0.03f}, .radius = 0.025f, .colour = {0.2f, 0.2f, 0.2f},
+                         .temperature = 1250};
+    def.shapes = &ball, def.shape_count = 1;
+    draw(&def, &nothing, 0, hot);
+    ball.temperature = 600;
+    draw(&def, &nothing, 0, cold);
+    const uint8_t *p = pixel(hot, W / 2, H / 2);
+    assert_true(p[0] > 230 && p[0] > p[1] + 15 && p[1] > p[2] + 40); // orange to yellow
+    // its light reaches the table beside it
+    assert_true(pixel(hot, W / 2 + 9, H / 2)[0] > pixel(cold, W / 2 + 9, H / 2)[0] + 8);
+    // with no table to light, only the halo is left
+    def.ground_height = -INFINITY;
+    draw(&def, &nothing, 0, cold);
+    ball.temperature = 1250;
+    draw(&def, &nothing, 0, hot);
+    assert_true(pixel(hot, W / 2 + 7, H / 2)[0] > pixel(cold, W / 2 + 7, H / 2)[0] + 5);
+    assert_true(abs(pixel(hot, 3, 3)[0] - pixel(cold, 3, 3)[0]) <= 2);
+}
+
+/// A sheet over the table darkens it, softly.
+static void test_shadow(void **state) {
+    (void)state;
+    static uint8_t with[BYTES], without[BYTES];
+    SingeSurface nothing = {0};
+    Quad q;
+    PreviewDef def = above();
+    def.sun_direction[0] = -1, def.sun_direction[1] = 0, def.sun_direction[2] = 1; // the shadow falls to +x
+    quad_make(&q, 0.03f, 0.08f);
+    draw(&def, &q.surface, 0, with);
+    draw(&def, &nothing, 0, without);
+    int x = (int)(W / 2 + 0.08f / (0.5f * tanf(0.35f)) * (H / 2));
+    assert_true(pixel(with, x, H / 2)[0] + 25 < pixel(without, x, H / 2)[0]);
+    assert_true(abs(pixel(with, 4, 4)[0] - pixel(without, 4, 4)[0]) <= 4);
+}
+
+static void test_bad_vertices(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    PreviewDef def = above();
+    const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        Quad q;
+        quad_make(&q, 0.1f, 0.01f);
+        q.position[3][1] = bad[k]; // the second triangle goes, the first stays
+        q.rest[1][0] = bad[k], q.normal[1][2] = bad[k], q.uv[1][0] = bad[k];
+        q.burn[1] = bad[k] > 0 ? NAN : bad[k], q.rate[1] = bad[k];
+        q.temperature[1] = bad[k] == 1e30f ? NAN : bad[k];
+        draw(&def, &q.surface, 0, rgb);
+        assert_in_range(pixel(rgb, W / 2 + 5, H / 2 + 8)[1], 200, 252);
+        assert_true(pixel(rgb, W / 2 - 8, H / 2 - 5)[1] < 190);
+    }
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    q.triangles[1][2] = 0; // degenerate
+    memset(q.normal, 0, sizeof q.normal);
+    draw(&def, &q.surface, 0, rgb);
+    assert_in_range(pixel(rgb, W / 2 + 5, H / 2 + 8)[1], 200, 252); // the good triangle
+    assert_true(pixel(rgb, W / 2 - 8, H / 2 - 5)[1] < 190);         // the table where the other was
+}
+
+static SingeResult draw_result(const SingeSurface *surface, double time, SingeError *error) {
+    static uint8_t rgb[BYTES];
+    PreviewDef def = above();
+    Preview *preview = NULL;
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, error), SINGE_OK);
+    SingeResult result = preview_draw(preview, surface, time, rgb, error);
+    preview_destroy(preview);
+    return result;
+}
+
+static void test_bad_surface(void **state) {
+    (void)state;
+    Quad q;
+    SingeError error = {0};
+    quad_make(&q, 0.1f, 0.01f);
+    q.triangles[1][1] = 4;
+    assert_int_equal(draw_result(&q.surface, 0, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(error.element, 1);
+    assert_string_equal(error.stage, "preview");
+    quad_make(&q, 0.1f, 0.01f);
+    q.surface.burn = NULL;
+    assert_int_equal(draw_result(&q.surface, 0, &error), SINGE_ERROR_ARGUMENT);
+    quad_make(&q, 0.1f, 0.01f);
+    q.surface.triangles = NULL;
+    assert_int_equal(draw_result(&q.surface, 0, &error), SINGE_ERROR_ARGUMENT);
+    quad_make(&q, 0.1f, 0.01f);
+    assert_int_equal(draw_result(&q.surface, (double)NAN, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(draw_result(&q.surface, 1e30, NULL), SINGE_OK);
+}
+
+static void refused(PreviewDef def, const char *word) {
+    Preview *preview = (Preview *)&def;
+    SingeError error = {0};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
+    assert_null(preview);
+    assert_non_null(strstr(error.message, word));
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_ERROR_ARGUMENT);
+}
+
+#define REFUSED(change, word)     \
+    do {                          \
+        PreviewDef def = small(); \
+        change;                   \
+        refused(def, word);       \
+    } while (0)
+
+static void test_bad_defs(void **state) {
+    (void)state;
+    REFUSED(def.width = 0, "width");
+    REFUSED(def.height = -3, "height");
+    REFUSED(def.width = 1 << 20, "width");
+    REFUSED(def.samples = 0, "samples");
+    REFUSED(def.thread_count = 0, "thread_count");
+    REFUSED(def.thread_count = 65, "thread_count");
+    REFUSED(def.camera.eye[1] = NAN, "camera");
+    REFUSED(def.camera.target[2] = INFINITY, "camera");
+    REFUSED(def.camera.up[0] = NAN, "camera");
+    REFUSED(memset(def.camera.up, 0, sizeof def.camera.up), "up");
+    REFUSED(memcpy(def.camera.target, def.camera.eye, sizeof def.camera.eye), "same point");
+    REFUSED(def.camera.fov = 0, "fov");
+    REFUSED(def.camera.fov = 3.2f, "fov");
+    REFUSED(memset(def.sun_direction, 0, sizeof def.sun_direction), "sun_direction");
+    REFUSED(def.sun_direction[0] = NAN, "sun_direction");
+    REFUSED(def.sun_angle = -1, "sun_angle");
+    REFUSED(def.sun_colour[2] = NAN, "colour");
+    REFUSED(def.ground_colour[2] = -1, "colour");
+    REFUSED(def.exposure = 0, "exposure");
+    REFUSED(def.ground_height = NAN, "ground_height");
+    REFUSED(def.ground_height = INFINITY, "ground_height");
+    REFUSED(def.shape_count = 1, "shapes");
+    PreviewShape shape = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0, .temperature = 293};
+    REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
+    shape.radius = 1, shape.temperature = NAN;
+    REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
+    shape.temperature = 293, shape.kind = SINGE_COLLIDER_BOX; // rotation is not a unit quaternion
+    REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
+    shape.kind = (SingeColliderKind)9;
+    REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
+    Image empty = {0};
+    const Image *pictures[1] = {&empty};
+    REFUSED((def.pictures = pictures, def.sheet_count = 1), "picture");
+    const float colours[1][3] = {{1, NAN, 1}};
+    REFUSED((def.colours = colours, def.sheet_count = 1), "colour");
+}
+
+/// Sizes that are no multiple of anything, one sample, straight down with `up` along the view.
+static void test_odd_sizes(void **state) {
+    (void)state;
+    SingeSurface surface;
+    assert_true(synthetic_make(SYNTHETIC_HANGING, 12, 0.05f, &surface));
+    const int sizes[][3] = {{1, 1, 1}, {3, 5, 2}, {17, 33, 5}, {70, 2, 7}, {33, 9, 12}};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        PreviewDef def = small();
+        def.width = sizes[k][0], def.height = sizes[k][1], def.samples = sizes[k][2], def.thread_count = 2;
+        uint8_t *rgb = malloc((size_t)(def.width * def.height * 3));
+        assert_non_null(rgb);
+        draw(&def, &surface, 1, rgb);
+        def.camera = (PreviewCamera){.eye = {0, 0, 0.9f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fov = 0.5f};
+        draw(&def, &surface, 1, rgb);
+        free(rgb);
+    }
+    synthetic_free(&surface);
+}
+
+typedef struct Budget { int left; size_t held; } Budget;
+
+static void *spend(void *context, void *block, size_t old_size, size_t new_size) {
+    Budget *budget = context;
+    if (new_size && budget->left-- <= 0) return NULL;
+    budget->held += new_size - old_size;
+    if (new_size) return realloc(block, new_size);
+    free(block);
+    return NULL;
+}
+
+/// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.
+static void test_out_of_memory(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    uint8_t texels[4 * 4 * 3] = {0};
+    Image image = {.width = 4, .height = 4, .rgb = texels};
+    const Image *pictures[1] = {&image};
+    PreviewShape shapes[2] = {{.kind = SINGE_COLLIDER_SPHERE, .radius = 0.01f, .temperature = 293},
+                              {.kind = SINGE_COLLIDER_PLANE, .rotation = {0, 0, 0, 1}, .temperature = 293}};
+    PreviewDef def = small();
+    def.samples = 1, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes, def.shape_count = 2;
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    bool succeeded = false;
+    for (int n = 0; n < 60 && !succeeded; n++) {
+        Budget budget = {.left = n};
+        SingeAllocator allocator = {spend, &budget};
+        Preview *preview = NULL;
+        SingeError error = {0};
+        SingeResult result = preview_create(&def, allocator, &preview, &error);
+        if (!result) result = preview_draw(preview, &q.surface, 0, rgb, &error);
+        succeeded = !result;
+        if (result) assert_int_equal(result, SINGE_ERROR_MEMORY);
+        if (result && preview) {
+            budget.left = 1000;
+            assert_int_equal(preview_draw(preview, &q.surface, 0, rgb, &error), SINGE_OK);
+        }
+        preview_destroy(preview);
+        assert_int_equal(budget.held, 0);
+    }
+    assert_true(succeeded);
+}
+
+static void test_set_shapes(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    Preview *preview = NULL;
+    SingeError error = {0};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0, 0, 0.03f}, .radius = 0.03f, .colour = {0.1f, 0.1f, 0.8f},
+                         .temperature = 293};
+    assert_int_equal(preview_set_shapes(preview, &ball, 1, &error), SINGE_OK);
+    ball.radius = -1; // copied: this must not matter, but is refused when set
+    assert_int_equal(preview_draw(preview, &nothing, 0, rgb, &error), SINGE_OK);
+    assert_true(pixel(rgb, W / 2, H / 2)[2] > pixel(rgb, W / 2, H / 2)[0] + 50);
+    assert_int_equal(preview_set_shapes(preview, &ball, 1, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(error.element, 0);
+    assert_int_equal(preview_draw(preview, &nothing, 0, rgb, &error), SINGE_OK);
+    assert_true(pixel(rgb, W / 2, H / 2)[2] > pixel(rgb, W / 2, H / 2)[0] + 50);
+    assert_int_equal(preview_set_shapes(preview, NULL, 0, &error), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &nothing, 0, rgb, &error), SINGE_OK);
+    assert_true(pixel(rgb, W / 2, H / 2)[0] > pixel(rgb, W / 2, H / 2)[2]);
+    preview_destroy(preview);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_threads), cmocka_unit_test(test_repeatable), cmocka_unit_test(test_empty_surface),
+        cmocka_unit_test(test_white_paper), cmocka_unit_test(test_picture), cmocka_unit_test(test_states),
+        cmocka_unit_test(test_ember), cmocka_unit_test(test_shapes), cmocka_unit_test(test_hot_ball),
+        cmocka_unit_test(test_shadow), cmocka_unit_test(test_bad_vertices), cmocka_unit_test(test_bad_surface),
+        cmocka_unit_test(test_bad_defs), cmocka_unit_test(test_odd_sizes), cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_set_shapes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
