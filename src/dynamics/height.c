@@ -2,37 +2,55 @@
 //
 //   z = (x_centre - mean of corners) . n,   n the cell's unit normal,
 //
-// must not fall below height_min thicknesses; where it does, the centre is moved along n by
-// height_gain of what is missing. Only centres move: they belong to one cell each, so all cells can be
-// treated at once, and they are not drawn, so that no drawn surface can be pushed through another.
+// must not fall below height_min thicknesses. Where it does, the one-sided constraint C = z - z_min < 0 is
+// projected with the gradients n at the centre and -n/4 at the corners (n taken as fixed):
+//
+//   lambda = gain C / (w_centre + sum w_i / 16),   x_centre -= w_centre lambda n,   x_i += w_i lambda n / 4
+//
+// which keeps momentum: what holds a centre up presses its corners down. Cells of one family share no
+// corner; family follows family.
 #include "dynamics/plan.h"
 
 typedef struct Height {
     DynamicsPlan *plan;
     const Shell *shell;
     const AblateState *ablate;
-    DynamicsState *dynamics;
+    float (*position)[4];
+    const uint32_t *cells; ///< of the family
 } Height;
 
-static void height_cells(void *task, int begin, int end) {
-    Height *job = task;
+static void height_cell(const Height *job, uint32_t c) {
+    const float *w = job->plan->inverse_mass;
+    float(*x)[4] = job->position;
     const SingeSolverDef *solver = &job->plan->settings.solver;
-    float(*x)[4] = job->dynamics->position;
-    for (int c = begin; c < end; c++) {
-        uint32_t centre = shell_centre(job->shell, (uint32_t)c);
-        if (!(job->ablate->cell_flags[c] & SINGE_ALIVE) || job->plan->inverse_mass[centre] == 0) continue;
-        const uint32_t *corner = job->shell->cells[c];
-        Vec p0 = vec_load(x[corner[0]]), p1 = vec_load(x[corner[1]]), p2 = vec_load(x[corner[2]]), p3 = vec_load(x[corner[3]]);
-        Vec normal = vec_unit(vec_cross(vec_sub(p2, p0), vec_sub(p3, p1)));
-        Vec mean = vec_scale(vec_add(vec_add(p0, p1), vec_add(p2, p3)), 0.25f);
-        float height = vec_dot(vec_sub(vec_load(x[centre]), mean), normal);
-        float missing = solver->height_min * job->shell->matter.thickness[centre] - height;
-        if (missing > 0) vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, solver->height_gain * missing));
-    }
+    uint32_t centre = shell_centre(job->shell, c);
+    const uint32_t *corner = job->shell->cells[c];
+    Vec p[4];
+    for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]);
+    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
+    float height = vec_dot(vec_sub(vec_load(x[centre]), mean), normal);
+    float missing = solver->height_min * job->shell->matter.thickness[centre] - height;
+    if (missing <= 0) return;
+    float weight = w[centre] + (w[corner[0]] + w[corner[1]] + w[corner[2]] + w[corner[3]]) / 16;
+    if (weight <= 0) return;
+    float lambda = solver->height_gain * missing / weight;
+    vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, w[centre] * lambda));
+    for (int i = 0; i < 4; i++) vec_store(x[corner[i]], vec_mad(p[i], normal, -0.25f * w[corner[i]] * lambda));
+}
+
+static void height_range(void *task, int begin, int end) {
+    const Height *job = task;
+    for (int k = begin; k < end; k++)
+        if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) height_cell(job, job->cells[k]);
 }
 
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, DynamicsState *dynamics) {
     if (plan->settings.solver.height_min <= 0) return;
-    Height job = {plan, shell, ablate, dynamics};
-    pool_for(pool, (int)shell->cell_count, POOL_BLOCK, height_cells, &job);
+    Height job = {plan, shell, ablate, dynamics->position, NULL};
+    for (uint32_t f = 0; f < shell->cell_family_count; f++) {
+        uint32_t first = shell->cell_family_first[f];
+        job.cells = shell->cell_order + first;
+        pool_for(pool, (int)(shell->cell_family_first[f + 1] - first), POOL_BLOCK, height_range, &job);
+    }
 }

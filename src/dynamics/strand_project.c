@@ -98,6 +98,10 @@ static void strand_solve_ring(const Project *job, uint32_t first, uint32_t last,
     Row row_first = strand_row(job, first, w[ends[first][0]], w[ends[first][1]], compliance);
     Row row_end = strand_row(job, end, w[ends[end][0]], w[ends[end][1]], compliance);
     float corner = -w[ends[first][0]] * vec_dot(row_first.u, row_end.u);
+    if (corner == 0) { // the closing node is pinned, or a spring beside it is gone: no ring any more
+        strand_solve_chain(job, first, last, compliance);
+        return;
+    }
     // A = T + p q^T with p = (g, 0.., corner), q = (1, 0.., corner/g) and g = -diagonal of the first row
     float g = -row_first.diagonal;
     Vec u_before = {0, 0, 0};

@@ -30,7 +30,7 @@ SingeMaterialDef singe_default_material(void) {
         .shrink_back = singe_param(0.5f),
         .ablate = true,
         .compliance = {0, 0, 0, 0},
-        .char_weight = 0.3f,
+        .char_weight = 0.4f,
         .drag = 1.3f,
         .damping = 0.5f,
     };

@@ -1,0 +1,67 @@
+#include "sheets.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <setjmp.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
+    uint32_t columns = wrap_x ? nx : nx + 1;
+    Quads quads = {columns * (ny + 1), nx * ny, NULL, NULL};
+    quads.positions = malloc(3 * quads.vertex_count * sizeof(float));
+    quads.cells = malloc(4 * quads.cell_count * sizeof(uint32_t));
+    float radius = sx * (float)nx / (2 * 3.14159265f);
+    for (uint32_t j = 0; j <= ny; j++)
+        for (uint32_t i = 0; i < columns; i++) {
+            float *p = quads.positions + 3 * (j * columns + i), angle = 2 * 3.14159265f * (float)i / (float)nx;
+            p[0] = wrap_x ? radius * cosf(angle) : sx * (float)i;
+            p[1] = sy * (float)j;
+            p[2] = wrap_x ? -radius * sinf(angle) : 0;
+        }
+    for (uint32_t j = 0; j < ny; j++)
+        for (uint32_t i = 0; i < nx; i++) {
+            uint32_t *c = quads.cells + 4 * (j * nx + i), right = (i + 1) % columns;
+            c[0] = j * columns + i, c[1] = j * columns + right;
+            c[2] = (j + 1) * columns + right, c[3] = (j + 1) * columns + i;
+        }
+    return quads;
+}
+
+void quads_free(Quads *quads) {
+    free(quads->positions);
+    free(quads->cells);
+}
+
+void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
+    *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
+    bench->settings = (DynamicsSettings){{0, 0, -9.81f}, 1.2f, singe_default_solver()};
+    SingeSheetDef def = singe_default_sheet();
+    def.vertex_count = quads.vertex_count, def.positions = quads.positions;
+    def.cell_count = quads.cell_count, def.cells = quads.cells;
+    if (material) def.material = *material;
+    assert_int_equal(sheet_source_create(&bench->memory, &def, &bench->source, &bench->error), SINGE_OK);
+    assert_int_equal(shell_create(&bench->memory, &bench->source, 1, &bench->shell, &bench->error), SINGE_OK);
+    assert_int_equal(state_create(&bench->memory, &bench->shell, &bench->state), SINGE_OK);
+    assert_int_equal(dynamics_plan_create(&bench->memory, &bench->shell, &bench->settings, &bench->plan), SINGE_OK);
+    assert_int_equal(pool_create(&bench->memory, (SingeTasks){0}, threads, &bench->pool), SINGE_OK);
+    quads_free(&quads);
+}
+
+void bench_close(Bench *bench) {
+    pool_destroy(&bench->memory, bench->pool);
+    dynamics_plan_free(&bench->memory, bench->plan);
+    state_free(&bench->memory, &bench->state);
+    shell_free(&bench->memory, &bench->shell);
+    sheet_source_free(&bench->memory, &bench->source);
+    assert_int_equal(bench->memory.held, 0);
+}
+
+void bench_step(Bench *bench, float h) {
+    SingeResult result = dynamics_step(bench->plan, &bench->shell, &bench->state, &bench->pins, &bench->colliders, &bench->wind,
+                                       bench->pool, h, &bench->state.dynamics, &bench->counters, &bench->error);
+    assert_int_equal(result, SINGE_OK);
+    bench->state.time += (double)h;
+    bench->state.step++;
+}

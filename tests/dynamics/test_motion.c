@@ -1,0 +1,233 @@
+// The motion of whole sheets: fall, drag, free flight, friction, moving colliders, pins, threads.
+#include "sheets.h"
+
+#include "base/random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static SingeMaterialDef plain(void) {
+    SingeMaterialDef material = singe_default_material();
+    material.drag = 0;
+    material.damping = 0;
+    return material;
+}
+
+static Vec centre_of_mass(const Bench *bench) {
+    double sum[3] = {0, 0, 0}, mass = 0;
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
+        double m = (double)bench->shell.matter.mass[i];
+        for (int k = 0; k < 3; k++) sum[k] += m * (double)bench->state.dynamics.position[i][k];
+        mass += m;
+    }
+    return vec((float)(sum[0] / mass), (float)(sum[1] / mass), (float)(sum[2] / mass));
+}
+
+static double blue_strain(const Bench *bench) {
+    const SpringSet *blue = &bench->shell.springs[SINGE_BLUE];
+    double worst = 0;
+    for (uint32_t k = 0; k < blue->count; k++) {
+        Vec d = vec_sub(vec_load(bench->state.dynamics.position[blue->ends[k][1]]), vec_load(bench->state.dynamics.position[blue->ends[k][0]]));
+        worst = fmax(worst, fabs((double)vec_length(d) / (double)blue->rest[k] - 1));
+    }
+    return worst;
+}
+
+static void add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {
+    bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
+    bench->colliders.items[0].generation = 1;
+    bench->colliders.items[0].def = def;
+    assert_int_equal(path_set(&bench->colliders.items[0].path, &bench->memory, count, keys, "collider", &bench->error), SINGE_OK);
+    assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
+}
+
+static void drop_collider(Bench *bench) {
+    path_free(&bench->colliders.items[0].path, &bench->memory);
+    free(bench->colliders.items);
+}
+
+static void test_free_fall(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(10, 10, 0.02f, 0.02f, false), &material, 1);
+    float start = centre_of_mass(&bench).z;
+    for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
+    // symplectic Euler with n substeps falls g t^2/2 (1 + 1/n)
+    double n = 240.0 * bench.settings.solver.substeps, expected = 0.5 * 9.81 * 0.25 * (1 + 1 / n);
+    assert_true(fabs((double)(start - centre_of_mass(&bench).z) - expected) < 2e-4);
+    assert_true(blue_strain(&bench) < 1e-4);
+    bench_close(&bench);
+}
+
+static void test_terminal_speed(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    material.drag = 1.3f;
+    bench_open(&bench, quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
+    for (int step = 0; step < 960; step++) bench_step(&bench, 1.0f / 480);
+    double expected = sqrt(2 * 0.080 * 9.81 / (1.2 * 1.3)), speed = 0;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) speed -= (double)bench.state.dynamics.velocity[i][2];
+    speed /= bench.shell.particle_count;
+    assert_true(fabs(speed / expected - 1) < 0.02);
+    bench_close(&bench);
+}
+
+/// A thrown, spinning sheet: lengths kept, momentum kept.
+static void test_free_flight(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(20, 20, 0.01f, 0.01f, false), &material, 1);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+        const float *r = bench.shell.rest_position[i];
+        float ripple = 0.3f * sinf(40 * r[0]) * sinf(30 * r[1]);
+        float v[4] = {0.5f, 2 * (r[0] - 0.1f), 2 * (r[0] - 0.1f) + ripple, 0};
+        memcpy(bench.state.dynamics.velocity[i], v, sizeof v);
+    }
+    Vec start = centre_of_mass(&bench);
+    double worst = 0;
+    for (int step = 0; step < 240; step++) {
+        bench_step(&bench, 1.0f / 480);
+        worst = fmax(worst, blue_strain(&bench));
+    }
+    assert_true(worst < 0.01);
+    assert_true(fabsf(centre_of_mass(&bench).x - start.x - 0.25f) < 0.002f);
+    bench_close(&bench);
+}
+
+/// Distance that a small sheet slides in 0.5 s down a plane of this slope.
+static double slide(float slope, float friction) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
+    SingeColliderDef plane = singe_default_collider();
+    plane.friction = friction;
+    plane.offset = 0;
+    // the plane turned about y, so that it falls towards +x; the sheet laid on it
+    SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
+    add_collider(&bench, plane, 1, &key);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        vec_store(bench.state.dynamics.position[i], quat_rotate(key.rotation, vec_load(bench.shell.rest_position[i])));
+    Vec start = centre_of_mass(&bench);
+    for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
+    double way = (double)vec_length(vec_sub(centre_of_mass(&bench), start));
+    drop_collider(&bench);
+    bench_close(&bench);
+    return way;
+}
+
+static void test_block_on_slope(void **unused) {
+    (void)unused;
+    float friction = 0.4f, angle = atanf(friction); // 21.8 degrees
+    assert_true(slide(angle - 0.02f, friction) < 1e-3);
+    assert_true(slide(angle + 0.02f, friction) > 5e-3);
+    for (float slope = 0.5f; slope < 0.8f; slope += 0.2f) {
+        double a = 9.81 * (sin((double)slope) - (double)friction * cos((double)slope));
+        assert_true(fabs(slide(slope, friction) / (0.5 * a * 0.25) - 1) < 0.03);
+    }
+    assert_true(fabs(slide(0.3f, 0) / (0.5 * 9.81 * sin(0.3) * 0.25) - 1) < 0.02);
+}
+
+static void test_carried_by_moving_plane(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
+    SingeColliderDef plane = singe_default_collider();
+    plane.friction = 0.8f;
+    SingePoseKey keys[] = {{0, {0, 0, -0.0005f}, {0, 0, 0, 1}}, {1, {0.2f, 0, -0.0005f}, {0, 0, 0, 1}}};
+    add_collider(&bench, plane, 2, keys);
+    float start = centre_of_mass(&bench).x;
+    for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
+    assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) < 0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
+    drop_collider(&bench);
+    bench_close(&bench);
+}
+
+static void test_never_inside_a_collider(void **unused) {
+    (void)unused;
+    for (SingeColliderKind kind = SINGE_COLLIDER_SPHERE; kind <= SINGE_COLLIDER_CAPSULE; kind++) {
+        Bench bench;
+        SingeMaterialDef material = plain();
+        bench_open(&bench, quads_grid(20, 20, 0.01f, 0.01f, false), &material, 1);
+        SingeColliderDef def = singe_default_collider();
+        def.kind = kind;
+        def.radius = 0.04f;
+        SingePoseKey keys[] = {{0, {0.1f, 0.1f, -0.06f}, {0.3f, 0, 0, 1}}, {1, {0.12f, 0.1f, 0.04f}, {0, 0.2f, 0, 1}}};
+        add_collider(&bench, def, 2, keys);
+        for (int step = 0; step < 360; step++) bench_step(&bench, 1.0f / 480);
+        Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
+        for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+            Vec normal;
+            assert_true(collider_distance(&def, pose_unapply(&pose, vec_load(bench.state.dynamics.position[i])), &normal) > def.offset - 1e-5f);
+        }
+        drop_collider(&bench);
+        bench_close(&bench);
+    }
+}
+
+static void test_same_for_any_thread_count(void **unused) {
+    (void)unused;
+    Bench one, more;
+    bench_open(&one, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, 1);
+    for (int threads = 2; threads <= 4; threads++) {
+        bench_open(&more, quads_grid(60, 50, 0.01f, 0.01f, false), NULL, threads);
+        Bench *both[] = {&one, &more};
+        for (int b = 0; b < 2; b++) {
+            both[b]->wind.gust = 2;
+            both[b]->state.dynamics.pinned[0] = both[b]->state.dynamics.pinned[60] = 1;
+        }
+        for (int step = 0; step < 10; step++) {
+            if (threads == 2) bench_step(&one, 1.0f / 480);
+            bench_step(&more, 1.0f / 480);
+        }
+        assert_memory_equal(one.state.dynamics.position, more.state.dynamics.position, one.shell.particle_count * 16);
+        bench_close(&more);
+    }
+    bench_close(&one);
+}
+
+/// A sheet held along its upper edge comes to rest with little strain, no crossed layer, no jitter.
+static void test_hangs_still(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = singe_default_material();
+    material.damping = 2; // else it swings for seconds: centres lie to one side of the held edge
+    Quads quads = quads_grid(30, 40, 0.005f, 0.005f, false);
+    for (uint32_t v = 0; v < quads.vertex_count; v++) { // stand it up
+        float *p = quads.positions + 3 * v;
+        p[2] = p[1], p[1] = 0;
+    }
+    bench_open(&bench, quads, &material, 1);
+    for (uint32_t i = 40 * 31; i < 41 * 31; i++) bench.state.dynamics.pinned[i] = 1;
+    for (int step = 0; step < 1440; step++) bench_step(&bench, 1.0f / 480);
+    double square = 0;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+        Vec v = vec_load(bench.state.dynamics.velocity[i]);
+        square += (double)vec_dot(v, v);
+    }
+    assert_true(sqrt(square / bench.shell.particle_count) < 1e-3);
+    assert_true(blue_strain(&bench) < 2e-3);
+    bench_close(&bench);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_free_fall),
+        cmocka_unit_test(test_terminal_speed),
+        cmocka_unit_test(test_free_flight),
+        cmocka_unit_test(test_block_on_slope),
+        cmocka_unit_test(test_carried_by_moving_plane),
+        cmocka_unit_test(test_never_inside_a_collider),
+        cmocka_unit_test(test_same_for_any_thread_count),
+        cmocka_unit_test(test_hangs_still),
+    };
+    return cmocka_run_group_tests_name("motion", tests, NULL, NULL);
+}

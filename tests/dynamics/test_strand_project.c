@@ -1,0 +1,153 @@
+// A strand's Newton step against a dense solve of eq 16 and 19 in double precision, chains and rings.
+#include "sheets.h"
+
+#include "base/random.h"
+#include "dynamics/plan.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { N_MAX = 64 };
+
+/// Solves a x = b of size n by Gaussian elimination with pivoting.
+static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
+    for (int k = 0; k < n; k++) {
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            if (fabs(a[i][k]) > fabs(a[p][k])) p = i;
+        for (int j = 0; j < n; j++) {
+            double t = a[k][j];
+            a[k][j] = a[p][j], a[p][j] = t;
+        }
+        double t = b[k];
+        b[k] = b[p], b[p] = t;
+        for (int i = k + 1; i < n; i++) {
+            double f = a[i][k] / a[k][k];
+            for (int j = k; j < n; j++) a[i][j] -= f * a[k][j];
+            b[i] -= f * b[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int j = k + 1; j < n; j++) b[k] -= a[k][j] * b[j];
+        b[k] /= a[k][k];
+    }
+}
+
+/// One strand by the definition: J M^-1 J^T assembled from the gradients of every spring.
+static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand, double (*x)[3]) {
+    const SpringSet *set = &bench->shell.springs[colour];
+    uint32_t first = set->strand_first[strand];
+    int n = (int)(set->strand_first[strand + 1] - first);
+    assert_true(n <= N_MAX);
+    static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3];
+    const float *w = bench->plan->inverse_mass;
+    double relative = (double)bench->settings.solver.regularisation[colour];
+    for (int k = 0; k < n; k++) {
+        const uint32_t *e = set->ends[first + (uint32_t)k];
+        double l = (double)bench->state.burn.spring_length[colour][first + (uint32_t)k], length = 0;
+        for (int i = 0; i < 3; i++) u[k][i] = x[e[1]][i] - x[e[0]][i], length += u[k][i] * u[k][i];
+        length = sqrt(length);
+        for (int i = 0; i < 3; i++) u[k][i] /= length;
+        b[k] = (double)bench->plan->weight[colour][first + (uint32_t)k] * (length * length - l * l) / (2 * length);
+    }
+    for (int p = 0; p < n; p++)
+        for (int q = 0; q < n; q++) {
+            a[p][q] = 0;
+            const uint32_t *ep = set->ends[first + (uint32_t)p], *eq = set->ends[first + (uint32_t)q];
+            double dot = u[p][0] * u[q][0] + u[p][1] * u[q][1] + u[p][2] * u[q][2];
+            for (int i = 0; i < 2; i++)
+                for (int j = 0; j < 2; j++)
+                    if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
+            if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
+            if (p == q && a[p][q] == 0) a[p][q] = 1; // pinned at both ends: an empty row
+        }
+    dense_solve(a, b, n);
+    for (int k = 0; k < n; k++) {
+        const uint32_t *e = set->ends[first + (uint32_t)k];
+        for (int i = 0; i < 3; i++) {
+            x[e[0]][i] += (double)w[e[0]] * u[k][i] * b[k];
+            x[e[1]][i] -= (double)w[e[1]] * u[k][i] * b[k];
+        }
+    }
+}
+
+static void shake(Bench *bench, float amount) {
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        for (uint32_t k = 0; k < 3; k++)
+            bench->state.dynamics.position[i][k] += amount * (random_unit(random_hash(i, k, 7, 1)) - 0.5f);
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++) bench->state.burn.mass[i] = 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
+}
+
+static void compare(Quads quads, bool pin_some) {
+    Bench bench;
+    bench_open(&bench, quads, NULL, 1);
+    if (pin_some)
+        for (uint32_t i = 0; i < bench.shell.particle_count; i += 5) bench.state.dynamics.pinned[i] = 1;
+    shake(&bench, 0.002f);
+    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL);
+    double(*x)[3] = malloc(bench.shell.particle_count * sizeof *x);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+            for (int k = 0; k < 3; k++) x[i][k] = (double)bench.state.dynamics.position[i][k];
+        // strands are stored family by family, and strands of a family do not touch: one after another is the same
+        for (uint32_t s = 0; s < bench.shell.springs[colour].strand_count; s++) dense_strand(&bench, (SingeColour)colour, s, x);
+        strand_project(bench.plan, &bench.shell, &bench.state.burn, (SingeColour)colour, NULL, 1e-3f, &bench.state.dynamics);
+        for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+            for (int k = 0; k < 3; k++) assert_true(fabs(x[i][k] - (double)bench.state.dynamics.position[i][k]) < 2e-6);
+    }
+    free(x);
+    bench_close(&bench);
+}
+
+static void test_chains_match_dense(void **unused) {
+    (void)unused;
+    compare(quads_grid(7, 9, 0.01f, 0.012f, false), false);
+    compare(quads_grid(12, 5, 0.01f, 0.008f, false), true);
+}
+
+static void test_rings_match_dense(void **unused) {
+    (void)unused;
+    compare(quads_grid(14, 4, 0.01f, 0.012f, true), false);
+    compare(quads_grid(15, 4, 0.01f, 0.012f, true), true);
+}
+
+static void test_gone_springs_decouple(void **unused) {
+    (void)unused;
+    Bench bench;
+    bench_open(&bench, quads_grid(6, 1, 0.01f, 0.01f, false), NULL, 1);
+    shake(&bench, 0.002f);
+    const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
+    for (uint32_t k = 0; k < blue->count; k++) bench.state.ablate.spring_flags[SINGE_BLUE][k] = 0;
+    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL);
+    float before[4], (*x)[4] = bench.state.dynamics.position;
+    memcpy(before, x[3], sizeof before);
+    strand_project(bench.plan, &bench.shell, &bench.state.burn, SINGE_BLUE, NULL, 1e-3f, &bench.state.dynamics);
+    assert_memory_equal(before, x[3], sizeof before);
+    bench_close(&bench);
+}
+
+static void test_pinned_at_both_ends(void **unused) {
+    (void)unused;
+    Bench bench;
+    bench_open(&bench, quads_grid(6, 2, 0.01f, 0.01f, false), NULL, 1);
+    memset(bench.state.dynamics.pinned, 1, bench.shell.particle_count);
+    bench.state.dynamics.pinned[9] = 0; // one free corner among pinned ones
+    for (int step = 0; step < 100; step++) bench_step(&bench, 0.002f);
+    assert_true(fabsf(bench.state.dynamics.position[9][2]) < 0.001f);
+    bench_close(&bench);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_chains_match_dense),
+        cmocka_unit_test(test_rings_match_dense),
+        cmocka_unit_test(test_gone_springs_decouple),
+        cmocka_unit_test(test_pinned_at_both_ends),
+    };
+    return cmocka_run_group_tests_name("strand", tests, NULL, NULL);
+}
