@@ -1,0 +1,19 @@
+// Memory of a scene: blocks that are freed together.
+#ifndef SCENE_ARENA_H
+#define SCENE_ARENA_H
+
+#include <stddef.h>
+
+typedef struct SceneArena SceneArena;
+
+/// NULL when out of memory.
+SceneArena *arena_create(void);
+void arena_destroy(SceneArena *arena);
+
+/// Zeroed bytes that live as long as the arena; NULL when out of memory, which `arena_failed` remembers.
+void *arena_new(SceneArena *arena, size_t count, size_t element_size);
+/// A zero-terminated copy.
+char *arena_text(SceneArena *arena, const char *text, size_t length);
+int arena_failed(const SceneArena *arena);
+
+#endif

@@ -1,0 +1,152 @@
+// From a scene and its files to a simulation.
+#include "scene/rotation.h"
+#include "scene/schema.h"
+
+#include <stdlib.h>
+
+typedef struct SceneBuilder {
+    const Scene *scene;
+    const SceneAssets *assets;
+    SingeSim *sim;
+    SingeSheetId *sheets;
+    SceneMessages *messages;
+} SceneBuilder;
+
+static SingeResult build_fail(SceneBuilder *builder, SingeResult result, ScenePlace place, const SingeError *error) {
+    message_add(builder->messages, builder->scene->text, place, "%s: %s", error->stage[0] ? error->stage : "simulation",
+                error->message[0] ? error->message : singe_result_name(result));
+    return result;
+}
+
+// Keys as poses; NULL only when out of memory. Free it.
+static SingePoseKey *poses(const SceneKey *keys, uint32_t count) {
+    SingePoseKey *path = calloc(count ? count : 1, sizeof *path);
+    for (uint32_t i = 0; i < count && path; i++) {
+        path[i].time = keys[i].time;
+        for (int c = 0; c < 3; c++)
+            path[i].position[c] = keys[i].position[c];
+        rotation_quaternion(keys[i].rotation, path[i].rotation);
+    }
+    return path;
+}
+
+static SingeResult no_memory(SceneBuilder *builder, ScenePlace place) {
+    message_add(builder->messages, builder->scene->text, place, "out of memory");
+    return SINGE_ERROR_MEMORY;
+}
+
+static SingeResult build_sheet(SceneBuilder *builder, uint32_t index) {
+    const SceneSheet *sheet = &builder->scene->sheets[index];
+    const Mesh *mesh = &builder->assets->meshes[index];
+    SingeSheetDef def = singe_default_sheet();
+    def.name = sheet->name;
+    def.vertex_count = mesh->vertex_count;
+    def.positions = mesh->positions;
+    def.cell_count = mesh->cell_count;
+    def.cells = mesh->cells;
+    def.uv = mesh->uv;
+    def.attribute_count = mesh->attribute_count;
+    def.attributes = mesh->attributes;
+    def.material = sheet->material.def;
+    for (int i = 0; i < SCENE_PARAM_COUNT; i++)
+        material_param(&def.material, i)->picture = builder->assets->params[index][i];
+    for (int c = 0; c < 3; c++)
+        def.velocity[c] = sheet->velocity[c];
+    def.drop_pieces_below = sheet->drop_pieces_below;
+    SingeResult result = singe_sim_add_sheet(builder->sim, &def, &builder->sheets[index]);
+    return result ? build_fail(builder, result, sheet->place, singe_sim_error(builder->sim)) : SINGE_OK;
+}
+
+static SingeResult build_source(SceneBuilder *builder, uint32_t index) {
+    const SceneSource *source = &builder->scene->sources[index];
+    SingeSourceDef def = source->def;
+    SingePoseKey *path = poses(source->keys, source->key_count);
+    if (!path)
+        return no_memory(builder, source->place);
+    def.path_count = source->key_count;
+    def.path = path;
+    def.picture = builder->assets->source_pictures[index];
+    def.strength_count = source->strength_count;
+    def.strength = source->strength;
+    SingeSourceId id;
+    SingeResult result = singe_sim_add_source(builder->sim, &def, &id);
+    free(path);
+    return result ? build_fail(builder, result, source->place, singe_sim_error(builder->sim)) : SINGE_OK;
+}
+
+static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
+    const SceneCollider *collider = &builder->scene->colliders[index];
+    SingeColliderDef def = collider->def;
+    SingePoseKey *path = poses(collider->keys, collider->key_count);
+    if (!path)
+        return no_memory(builder, collider->place);
+    def.path_count = collider->key_count;
+    def.path = path;
+    SingeColliderId id;
+    SingeResult result = singe_sim_add_collider(builder->sim, &def, &id);
+    free(path);
+    return result ? build_fail(builder, result, collider->place, singe_sim_error(builder->sim)) : SINGE_OK;
+}
+
+static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
+    const ScenePin *pin = &builder->scene->pins[index];
+    SingePinDef def = singe_default_pin();
+    SingePoseKey *path = poses(pin->keys, pin->key_count);
+    if (!path)
+        return no_memory(builder, pin->place);
+    def.sheet = builder->sheets[pin->sheet_index];
+    def.point_count = pin->point_count;
+    def.points = pin->points ? pin->points->position : NULL; // points lie one after the other
+    def.radius = pin->radius;
+    def.vertex_count = pin->vertex_count;
+    def.vertices = pin->vertices;
+    def.path_count = pin->key_count;
+    def.path = path;
+    SingePinId id;
+    SingeResult result = singe_sim_add_pin(builder->sim, &def, &id);
+    free(path);
+    return result ? build_fail(builder, result, pin->place, singe_sim_error(builder->sim)) : SINGE_OK;
+}
+
+static SingeResult build_all(SceneBuilder *builder) {
+    const Scene *scene = builder->scene;
+    SingeResult result = SINGE_OK;
+    for (uint32_t i = 0; i < scene->sheet_count && !result; i++)
+        result = build_sheet(builder, i);
+    if (!result && (result = singe_sim_commit(builder->sim)))
+        build_fail(builder, result, scene->sheet_count == 1 ? scene->sheets[0].place : (ScenePlace){0},
+                   singe_sim_error(builder->sim));
+    for (uint32_t i = 0; i < scene->source_count && !result; i++)
+        result = build_source(builder, i);
+    for (uint32_t i = 0; i < scene->collider_count && !result; i++)
+        result = build_collider(builder, i);
+    for (uint32_t i = 0; i < scene->pin_count && !result; i++)
+        result = build_pin(builder, i);
+    return result;
+}
+
+SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks, SingeSim **sim,
+                        SceneMessages *messages) {
+    SceneBuilder builder = {.scene = scene, .assets = assets, .messages = messages};
+    SingeSimDef def = scene->sim;
+    SingeError error = {0};
+    *sim = NULL;
+    def.allocator = hooks->allocator;
+    def.log = hooks->log;
+    def.tasks = hooks->tasks;
+    def.thread_count = hooks->thread_count;
+    builder.sheets = calloc(scene->sheet_count ? scene->sheet_count : 1, sizeof *builder.sheets);
+    if (!builder.sheets)
+        return no_memory(&builder, (ScenePlace){0});
+    SingeResult result = singe_sim_create(&def, &builder.sim, &error);
+    if (result)
+        build_fail(&builder, result, (ScenePlace){0}, &error);
+    else
+        result = build_all(&builder);
+    free(builder.sheets);
+    if (result)
+        singe_sim_destroy(builder.sim);
+    else
+        *sim = builder.sim;
+    return result;
+}

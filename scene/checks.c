@@ -1,0 +1,166 @@
+// Checks that need more than one key.
+#include "scene/schema.h"
+
+#include <string.h>
+
+static void complain(Reader *reader, ScenePlace place, const char *what) {
+    message_add(reader->messages, reader->text, place, "%s", what);
+}
+
+// Entries of a list whose times do not increase.
+static void check_times(Reader *reader, const Node *list, const void *items, size_t size, uint32_t count) {
+    const Node *node = list && list->kind == NODE_LIST ? list->first : NULL;
+    float before = -1;
+    for (uint32_t i = 0; node && i < count; i++, node = node->next) {
+        float time; // the first member of every kind of entry
+        memcpy(&time, (const char *)items + i * size, sizeof time);
+        if (time <= before && node_find(node, "time"))
+            complain(reader, node_find(node, "time")->place, "times must increase from one entry to the next");
+        before = time;
+    }
+}
+
+// `path` and its short forms exclude each other. Returns whether one of them is given.
+static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, uint32_t count) {
+    const Node *path = node_find(map, "path"), *position = node_find(map, "position");
+    const Node *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
+    if (path && other)
+        message_add(reader->messages, reader->text, other->key_place,
+                    "'%s' is short for a path of one entry; give it or 'path'", other->key);
+    if (path && path->kind == NODE_LIST && path->count == 0)
+        complain(reader, path->place, "a path needs at least one entry");
+    check_times(reader, path, keys, sizeof *keys, count);
+    return path || position;
+}
+
+void finish_sheet(Reader *reader, const Node *map, void *object) {
+    SceneSheet *sheet = object;
+    const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
+    if (mesh && grid)
+        complain(reader, grid->key_place, "'grid' and 'mesh' exclude each other; give one");
+    if (!mesh && !grid)
+        complain(reader, map->place, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
+    const Node *thickening = node_find(node_find(map, "material"), "thickening");
+    float value = sheet->material.def.thickening;
+    if (thickening && value > 0 && value < 1)
+        complain(reader, thickening->place, "thickening must be 0 (as little as the cells need) or 1 and more");
+    if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
+        complain(reader, grid->place, "a grid has at most 100 million cells");
+}
+
+void finish_source(Reader *reader, const Node *map, void *object) {
+    SceneSource *source = object;
+    if (!node_find(map, "kind"))
+        return;
+    if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
+        complain(reader, map->place, "a ball needs 'path' or 'position'");
+    const Node *end = node_find(map, "end");
+    if (source->def.end < source->def.start)
+        complain(reader, end ? end->place : map->place, "a source must not end before its start");
+    check_times(reader, node_find(map, "strength"), source->strength, sizeof *source->strength, source->strength_count);
+}
+
+void finish_collider(Reader *reader, const Node *map, void *object) {
+    SceneCollider *collider = object;
+    check_path(reader, map, collider->keys, collider->key_count);
+}
+
+void finish_pin(Reader *reader, const Node *map, void *object) {
+    ScenePin *pin = object;
+    if (!node_find(map, "points") && !node_find(map, "vertices"))
+        complain(reader, map->place, "a pin needs 'points' or 'vertices'");
+    const Node *path = node_find(map, "path");
+    check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
+}
+
+void finish_camera(Reader *reader, const Node *map, void *object) {
+    const PreviewCamera *camera = object;
+    double view[3], cross[3], length = 0, across = 0;
+    for (int i = 0; i < 3; i++) {
+        view[i] = (double)camera->target[i] - (double)camera->eye[i];
+        length += view[i] * view[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        cross[i] = view[j] * (double)camera->up[k] - view[k] * (double)camera->up[j];
+        across += cross[i] * cross[i];
+    }
+    if (!(length > 0))
+        complain(reader, map->place, "the camera's eye and target are the same point");
+    else if (!(across > 0))
+        complain(reader, map->place, "the camera's up must point away from the line of sight");
+}
+
+void finish_preview(Reader *reader, const Node *map, void *object) {
+    const ScenePreview *preview = object;
+    const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
+    const float *d = preview->light_direction;
+    if (direction && d[0] == 0 && d[1] == 0 && d[2] == 0)
+        complain(reader, direction->place, "the light's direction must not be zero");
+}
+
+// Sheets without a name are numbered; two must not share one.
+static void check_names(Reader *reader, const Node *list, Scene *scene) {
+    const Node *node = list->first;
+    for (uint32_t i = 0; i < scene->sheet_count && node; i++, node = node->next) {
+        if (!scene->sheets[i].name) {
+            char name[24];
+            int length = snprintf(name, sizeof name, "sheet%u", (unsigned)i + 1);
+            scene->sheets[i].name = arena_text(reader->arena, name, (size_t)length);
+        }
+        for (uint32_t j = 0; j < i && scene->sheets[i].name && scene->sheets[j].name; j++)
+            if (strcmp(scene->sheets[i].name, scene->sheets[j].name) == 0) {
+                const Node *name = node_find(node, "name");
+                message_add(reader->messages, reader->text, name ? name->place : node->place,
+                            "two sheets are called '%s'; give each its own name", scene->sheets[i].name);
+                break;
+            }
+    }
+}
+
+static bool sheet_number(const char *text, uint32_t *number) {
+    uint32_t value = 0;
+    for (const char *c = text; *c; c++) {
+        if (*c < '0' || *c > '9' || c - text > 8)
+            return false;
+        value = value * 10 + (uint32_t)(*c - '0');
+    }
+    *number = value;
+    return *text != 0;
+}
+
+static void resolve_pin(Reader *reader, const Node *node, Scene *scene, ScenePin *pin) {
+    Nearest nearest = {.word = pin->sheet};
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        const char *name = scene->sheets[i].name;
+        if (name && strcmp(name, pin->sheet) == 0) {
+            pin->sheet_index = i;
+            return;
+        }
+        if (name)
+            nearest_offer(&nearest, name);
+    }
+    if (sheet_number(pin->sheet, &pin->sheet_index) && pin->sheet_index < scene->sheet_count)
+        return;
+    const Node *sheet = node_find(node, "sheet");
+    char hint[80];
+    message_add(reader->messages, reader->text, sheet ? sheet->place : node->place, "there is no sheet '%s'%s",
+                pin->sheet, nearest_hint(&nearest, hint, sizeof hint));
+}
+
+void finish_scene(Reader *reader, const Node *map, void *object) {
+    Scene *scene = object;
+    const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
+    if (sheets && sheets->kind == NODE_LIST) {
+        if (!sheets->count)
+            complain(reader, sheets->place, "a scene needs at least one sheet");
+        else if (sheets->count > 1000)
+            complain(reader, sheets->place, "a scene has at most 1000 sheets");
+        else
+            check_names(reader, sheets, scene);
+    }
+    const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
+    for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
+        if (scene->pins[i].sheet && scene->sheet_count && sheets && sheets->count <= 1000)
+            resolve_pin(reader, node, scene, &scene->pins[i]);
+}

@@ -1,0 +1,83 @@
+// What a scene has before it is read. Objects of the simulation start from the library's own defaults.
+#include "scene/schema.h"
+
+#include <math.h>
+
+#define DEGREE (3.14159265358979323846f / 180)
+
+static void set3(float v[3], float x, float y, float z) {
+    v[0] = x;
+    v[1] = y;
+    v[2] = z;
+}
+
+static void default_preview(ScenePreview *preview) {
+    preview->size[0] = 960;
+    preview->size[1] = 540;
+    preview->samples = 16;
+    set3(preview->camera.eye, 0, -0.5f, 0.4f);
+    set3(preview->camera.target, 0, 0, 0);
+    set3(preview->camera.up, 0, 0, 1);
+    preview->camera.fov = 35 * DEGREE;
+    set3(preview->light_direction, -0.5f, -0.3f, 1);
+    preview->light_angle = 3 * DEGREE;
+    set3(preview->light_colour, 2.2f, 2.1f, 2);
+    set3(preview->sky, 0.4f, 0.43f, 0.5f);
+    preview->ground_height = -INFINITY;
+    set3(preview->ground_colour, 0.25f, 0.2f, 0.16f);
+    set3(preview->background, 0.03f, 0.03f, 0.035f);
+    preview->exposure = 1;
+}
+
+bool default_scene(SceneArena *arena, void *object) {
+    (void)arena;
+    Scene *scene = object;
+    scene->frames = 100;
+    scene->fps = 24;
+    scene->steps = 20;
+    scene->sim = singe_default_sim();
+    default_preview(&scene->preview);
+    return true;
+}
+
+bool default_sheet(SceneArena *arena, void *object) {
+    (void)arena;
+    SceneSheet *sheet = object;
+    SingeSheetDef def = singe_default_sheet();
+    sheet->material.def = def.material;
+    sheet->drop_pieces_below = def.drop_pieces_below;
+    set3(sheet->velocity, def.velocity[0], def.velocity[1], def.velocity[2]);
+    set3(sheet->colour, 1, 1, 1);
+    sheet->scale = 1;
+    return true;
+}
+
+bool default_source(SceneArena *arena, void *object) {
+    (void)arena;
+    SceneSource *source = object;
+    source->def = singe_default_source();
+    source->visible = true;
+    return true;
+}
+
+bool default_collider(SceneArena *arena, void *object) {
+    SceneCollider *collider = object;
+    collider->def = singe_default_collider();
+    set3(collider->colour, 0.5f, 0.5f, 0.5f);
+    collider->visible = true;
+    collider->keys = arena_new(arena, 1, sizeof *collider->keys); // at the origin
+    collider->key_count = 1;
+    return collider->keys != NULL;
+}
+
+bool default_pin(SceneArena *arena, void *object) {
+    (void)arena;
+    ((ScenePin *)object)->radius = singe_default_pin().radius;
+    return true;
+}
+
+bool default_noise(SceneArena *arena, void *object) {
+    (void)arena;
+    *(SingeNoise *)object = singe_param(0).noise;
+    return true;
+}

@@ -1,0 +1,104 @@
+// What a row takes, in words.
+#include "scene/schema.h"
+
+#include <math.h>
+#include <string.h>
+
+// A bound in the unit of bare numbers, without digits that nobody wrote.
+static void bound_print(const SchemaRow *row, double bound, char *buffer, size_t size) {
+    if (row->type == ROW_INT || row->type == ROW_INTS || row->type == ROW_INDICES || row->type == ROW_UINT32)
+        snprintf(buffer, size, "%.0f", bound);
+    else
+        quantity_print((float)bound, row->dimension, buffer, size);
+}
+
+void row_range(const SchemaRow *row, char *buffer, size_t size) {
+    char low[32], high[32];
+    buffer[0] = 0;
+    if (row->type == ROW_PARAM || row->type == ROW_FLOAT || row->type == ROW_VECTOR || row->type == ROW_INT ||
+        row->type == ROW_INTS || row->type == ROW_STRENGTH) {
+        bool wide = row->max >= 1e6;
+        bound_print(row, row->min, low, sizeof low);
+        if (!wide)
+            bound_print(row, row->max, high, sizeof high);
+        if (row->min <= -1e6 && wide)
+            snprintf(buffer, size, "-1e6 to 1e6");
+        else if (wide)
+            snprintf(buffer, size, row->flags & ROW_OPEN_MIN ? "> %s" : ">= %s", low);
+        else
+            snprintf(buffer, size, "%s%s to %s%s", row->flags & ROW_OPEN_MIN ? "> " : "", low,
+                     row->flags & ROW_OPEN_MAX ? "< " : "", high);
+    }
+}
+
+static size_t add(char *buffer, size_t size, const char *text) {
+    size_t used = strlen(buffer);
+    snprintf(buffer + used, size - used, "%s", text);
+    return strlen(buffer);
+}
+
+static void add_names(char *buffer, size_t size, const char *const *names) {
+    for (int i = 0; names[i]; i++) {
+        if (i)
+            add(buffer, size, names[i + 1] ? ", " : " or ");
+        add(buffer, size, names[i]);
+    }
+}
+
+static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
+    char units[80];
+    quantity_units(row->dimension, units, sizeof units);
+    add(buffer, size, quantity_name(row->dimension));
+    if (units[0]) {
+        add(buffer, size, " (");
+        add(buffer, size, units);
+        add(buffer, size, ")");
+    }
+    if (row->flags & ROW_INF)
+        add(buffer, size, " or inf");
+    if (row->flags & ROW_NONE)
+        add(buffer, size, " or none");
+}
+
+void row_expected(const SchemaRow *row, char *buffer, size_t size) {
+    char count[40];
+    snprintf(count, sizeof count, "a list of %d ", row->length);
+    buffer[0] = 0;
+    switch (row->type) {
+    case ROW_BOOL: add(buffer, size, "true or false"); break;
+    case ROW_INT:
+    case ROW_UINT32:
+    case ROW_UINT64: add(buffer, size, "a whole number"); break;
+    case ROW_STRENGTH: add(buffer, size, "a number or a list of {time, value}"); break;
+    case ROW_FLOAT:
+    case ROW_PARAM:
+        add(buffer, size, "a ");
+        add_quantity(buffer, size, row);
+        if (row->type == ROW_PARAM)
+            add(buffer, size, " or a map {from, to, picture | attribute | noise}");
+        break;
+    case ROW_POSITION:
+    case ROW_ROTATION:
+    case ROW_VECTOR:
+        add(buffer, size, count);
+        add(buffer, size, row->dimension ? "numbers, each a " : "numbers");
+        if (row->dimension)
+            add_quantity(buffer, size, row);
+        break;
+    case ROW_INTS:
+        add(buffer, size, count);
+        add(buffer, size, "whole numbers");
+        break;
+    case ROW_TEXT: add(buffer, size, "a text"); break;
+    case ROW_NAME:
+        add(buffer, size, "a name of at most 100 characters without / \\ : * ? \" < > | % or a dot in front");
+        break;
+    case ROW_FILE: add(buffer, size, "the name of a file"); break;
+    case ROW_ENUM: add_names(buffer, size, row->names); break;
+    case ROW_ORDER: add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
+    case ROW_MAP: add(buffer, size, "a map (key: value)"); break;
+    case ROW_LIST: add(buffer, size, "a list of maps"); break;
+    case ROW_POINTS: add(buffer, size, "a list of points [x, y, z], at least one"); break;
+    case ROW_INDICES: add(buffer, size, "a list of whole numbers, at least one"); break;
+    }
+}

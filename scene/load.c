@@ -1,0 +1,168 @@
+// The files of a scene: meshes, transformed, and pictures.
+#include "scene/rotation.h"
+#include "scene/schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Loader {
+    const Scene *scene;
+    SceneAssets *assets;
+    SceneMessages *messages;
+    bool no_memory;
+} Loader;
+
+static SingeResult loader_fail(Loader *loader, const SceneFile *file, SingeResult result, const char *why) {
+    message_add(loader->messages, loader->scene->text, file->place, "%s", why);
+    if (result == SINGE_ERROR_MEMORY)
+        loader->no_memory = true;
+    return result;
+}
+
+static SingeResult load_image(Loader *loader, const SceneFile *file, Image *image) {
+    Bytes bytes = {0};
+    SingeError error = {0};
+    SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
+    if (!result)
+        result = image_read(file->path, bytes.data, bytes.size, (SingeAllocator){0}, image, &error);
+    bytes_free(&bytes);
+    return result ? loader_fail(loader, file, result, error.message) : SINGE_OK;
+}
+
+static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *picture) {
+    Image image = {0};
+    SingeError error = {0};
+    if (load_image(loader, file, &image))
+        return;
+    SingeResult result = image_luminance(&image, (SingeAllocator){0}, picture, &error);
+    if (result)
+        loader_fail(loader, file, result, error.message);
+    image_free(&image);
+}
+
+static void transform(const SceneSheet *sheet, Mesh *mesh) {
+    double r[9];
+    rotation_matrix(sheet->rotate, r);
+    bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        float *p = mesh->positions + 3 * (size_t)v;
+        double x = (double)p[0] * sheet->scale, y = (double)p[1] * sheet->scale, z = (double)p[2] * sheet->scale;
+        double q[3] = {x, y, z};
+        for (int i = 0; i < 3 && turned; i++)
+            q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
+        for (int i = 0; i < 3; i++)
+            p[i] = (float)(q[i] + (double)sheet->translate[i]);
+    }
+}
+
+static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
+    SingeError error = {0};
+    SceneFile file = sheet->mesh;
+    SingeResult result;
+    if (file.name) {
+        Bytes bytes = {0};
+        result = file_read(file.path, (SingeAllocator){0}, &bytes, &error);
+        if (!result)
+            result = mesh_read(file.path, bytes.data, bytes.size, (SingeAllocator){0}, mesh, &error);
+        bytes_free(&bytes);
+    } else {
+        file.place = sheet->place;
+        result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
+                           (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
+    }
+    if (result)
+        loader_fail(loader, &file, result, error.message);
+    else
+        transform(sheet, mesh);
+}
+
+static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
+                            const Mesh *mesh) {
+    Nearest nearest = {.word = param->attribute};
+    for (uint32_t i = 0; i < mesh->attribute_count; i++) {
+        if (strcmp(mesh->attributes[i].name, param->attribute) == 0)
+            return;
+        nearest_offer(&nearest, mesh->attributes[i].name);
+    }
+    char hint[80];
+    message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no attribute '%s'%s", key,
+                param->attribute, nearest_hint(&nearest, hint, sizeof hint));
+}
+
+static void load_sheet(Loader *loader, uint32_t index) {
+    const SceneSheet *sheet = &loader->scene->sheets[index];
+    SceneAssets *assets = loader->assets;
+    Mesh *mesh = &assets->meshes[index];
+    load_mesh(loader, sheet, mesh);
+    memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
+    if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
+        assets->pictures[index] = &assets->images[index];
+    SingeMaterialDef material = sheet->material.def;
+    for (int i = 0; i < SCENE_PARAM_COUNT; i++) {
+        const SingeParam *param = material_param(&material, i);
+        const SceneFile *file = &sheet->material.pictures[i];
+        if (param->field == SINGE_FIELD_PICTURE) {
+            load_luminance(loader, file, &assets->params[index][i]);
+            if (mesh->positions && !mesh->uv)
+                message_add(loader->messages, loader->scene->text, file->place,
+                            "%s follows a picture, but the mesh has no uv", scene_param_keys[i]);
+        } else if (param->field == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
+            check_attribute(loader, scene_param_keys[i], param, file, mesh);
+        }
+    }
+}
+
+static void *many(Loader *loader, size_t count, size_t size) {
+    void *items = calloc(count ? count : 1, size);
+    loader->no_memory = loader->no_memory || !items;
+    return items;
+}
+
+SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
+    Loader loader = {scene, assets, messages, false};
+    uint32_t before = message_total(messages);
+    *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count};
+    assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
+    assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
+    assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
+    assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
+    assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
+    assets->source_pictures = many(&loader, scene->source_count, sizeof *assets->source_pictures);
+    if (loader.no_memory)
+        message_add(messages, scene->text, (ScenePlace){0}, "out of memory");
+    for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
+        load_sheet(&loader, i);
+    for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
+        if (scene->sources[i].picture.name)
+            load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
+    if (message_total(messages) == before && !loader.no_memory)
+        return SINGE_OK;
+    scene_assets_free(assets);
+    return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
+}
+
+static void picture_free(SingePicture *picture) {
+    free((void *)picture->values); // image_luminance allocated them with libc's allocator
+    *picture = (SingePicture){0};
+}
+
+void scene_assets_free(SceneAssets *assets) {
+    for (uint32_t i = 0; i < assets->sheet_count; i++) {
+        if (assets->meshes)
+            mesh_free(&assets->meshes[i]);
+        if (assets->images)
+            image_free(&assets->images[i]);
+        for (int p = 0; p < SCENE_PARAM_COUNT && assets->params; p++)
+            picture_free(&assets->params[i][p]);
+    }
+    for (uint32_t i = 0; i < assets->source_count && assets->source_pictures; i++)
+        picture_free(&assets->source_pictures[i]);
+    free(assets->meshes);
+    free(assets->images);
+    free(assets->pictures);
+    free(assets->colours);
+    free(assets->params);
+    free(assets->source_pictures);
+    *assets = (SceneAssets){0};
+}

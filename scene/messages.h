@@ -1,0 +1,26 @@
+// Mistakes in a scene, collected with their places.
+#ifndef SCENE_MESSAGES_H
+#define SCENE_MESSAGES_H
+
+#include "scene/scene.h"
+
+/// What a place refers to: the scene's name and bytes, and the --set texts.
+typedef struct SceneText {
+    const char *name;
+    const char *bytes;
+    size_t size;
+    const char *const *sets;
+    int set_count;
+} SceneText;
+
+/// Adds a mistake at a place. Never fails: what memory does not suffice for is counted in left_out.
+void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...)
+    SINGE_PRINTF(4, 5);
+
+/// Puts the messages from `first` on into the order of the file, those of --set last.
+void messages_sort(SceneMessages *messages, uint32_t first);
+
+/// How many there are; more than before a call means that it found something.
+static inline uint32_t message_total(const SceneMessages *messages) { return messages->count + messages->left_out; }
+
+#endif

@@ -1,0 +1,285 @@
+// From the tree to the scene, row by row of the schema: maps, lists and parameters that vary.
+#include "scene/values.h"
+
+#include <string.h>
+
+static void *at(void *object, size_t offset) { return (char *)object + offset; }
+
+// ---- parameters that may vary
+
+static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param) {
+    if (node->kind != NODE_MAP) {
+        message_add(reader->messages, reader->text, node->place, "%s.noise must be a map {scale: , octaves: , seed: }",
+                    row->key);
+        return;
+    }
+    if (default_noise(reader->arena, &param->noise))
+        schema_read(reader, &schema_noise, node, &param->noise);
+}
+
+// What the parameter follows; returns how many such keys there are.
+static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeParam *param, SceneFile *file) {
+    const Node *picture = node_find(map, "picture"), *attribute = node_find(map, "attribute"),
+               *noise = node_find(map, "noise");
+    if (picture) {
+        SchemaRow part = {.key = "picture", .type = ROW_FILE};
+        param->field = SINGE_FIELD_PICTURE;
+        value_file(reader, &part, picture, file);
+    }
+    if (attribute) {
+        SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
+        param->field = SINGE_FIELD_ATTRIBUTE;
+        file->place = attribute->place;
+        if (value_is_text(attribute))
+            param->attribute = attribute->text;
+        else
+            value_wrong(reader, attribute, &part);
+    }
+    if (noise) {
+        param->field = SINGE_FIELD_NOISE;
+        file->place = noise->place;
+        read_noise(reader, row, noise, param);
+    }
+    return !!picture + !!attribute + !!noise;
+}
+
+static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
+    static const char *const keys[] = {"from", "to", "picture", "attribute", "noise"};
+    SingeParam result = singe_param(param->value);
+    if (node->kind != NODE_MAP) {
+        if (value_float(reader, row, node, &result.value)) {
+            result.to = result.value;
+            *param = result;
+        }
+        return;
+    }
+    unsigned given = 0;
+    for (const Node *child = node->first; child; child = child->next) {
+        Nearest nearest = {.word = child->key};
+        int i = 0;
+        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++)
+            nearest_offer(&nearest, keys[i]);
+        char hint[80];
+        if (i == 5)
+            message_add(reader->messages, reader->text, child->key_place, "unknown key '%s' in %s%s", child->key,
+                        row->key, nearest_hint(&nearest, hint, sizeof hint));
+        else if (given & 1u << i)
+            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", child->key,
+                        row->key);
+        else
+            given |= 1u << i;
+    }
+    const Node *from = node_find(node, "from"), *to = node_find(node, "to");
+    bool good = from && to;
+    good = (!from || value_float(reader, row, from, &result.value)) && good;
+    good = (!to || value_float(reader, row, to, &result.to)) && good;
+    int fields = read_field(reader, row, node, &result, file);
+    if (!from || !to || fields != 1)
+        message_add(reader->messages, reader->text, node->place,
+                    "%s as a map needs 'from', 'to' and one of 'picture', 'attribute' and 'noise'", row->key);
+    else if (good)
+        *param = result;
+}
+
+// ---- lists
+
+static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32_t count, size_t size) {
+    void *items = arena_new(reader->arena, count, size);
+    memcpy(at(object, row->offset), &items, sizeof items);
+    *(uint32_t *)at(object, row->extra) = items ? count : 0;
+    return items;
+}
+
+static void read_list(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    const Schema *schema = row->sub;
+    if (node->kind != NODE_LIST) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    char *items = list_new(reader, object, row, node->count, schema->size);
+    for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
+        if (schema->defaults && !schema->defaults(reader->arena, items))
+            return;
+        if (schema->place)
+            *schema->place(items) = child->place;
+        if (child->kind == NODE_MAP) {
+            schema_read(reader, schema, child, items);
+        } else {
+            char seen[80];
+            message_add(reader->messages, reader->text, child->place, "an entry of '%s' must be a map, not %s",
+                        row->key, node_describe(child, seen, sizeof seen));
+        }
+    }
+}
+
+static void read_strength(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    if (node->kind == NODE_LIST) {
+        read_list(reader, row, node, object);
+        return;
+    }
+    float value;
+    if (!value_float(reader, row, node, &value))
+        return;
+    SingeValueKey *items = list_new(reader, object, row, 1, sizeof *items);
+    if (items)
+        items[0] = (SingeValueKey){0, value};
+}
+
+static void read_points(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    if (node->kind != NODE_LIST || !node->count) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    ScenePoint *points = list_new(reader, object, row, node->count, sizeof *points);
+    SchemaRow element = *row;
+    element.type = ROW_VECTOR;
+    for (const Node *child = node->first; points && child; child = child->next)
+        value_vector(reader, &element, child, (points++)->position);
+}
+
+static void read_indices(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    if (node->kind != NODE_LIST || !node->count) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    uint32_t *indices = list_new(reader, object, row, node->count, sizeof *indices);
+    SchemaRow element = *row;
+    element.type = ROW_UINT32;
+    for (const Node *child = node->first; indices && child; child = child->next)
+        value_integer(reader, &element, child, indices++);
+}
+
+static SceneKey *only_key(Reader *reader, const SchemaRow *row, void *object) {
+    SceneKey *keys;
+    memcpy(&keys, at(object, row->offset), sizeof keys);
+    return keys && *(uint32_t *)at(object, row->extra) == 1 ? keys : list_new(reader, object, row, 1, sizeof *keys);
+}
+
+static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    SceneKey *key = only_key(reader, row, object);
+    if (key)
+        value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
+}
+
+// ---- maps
+
+static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    if (row->extra)
+        *(bool *)at(object, row->extra) = true;
+    if (node->kind == NODE_MAP)
+        schema_read(reader, row->sub, node, at(object, row->offset));
+    else
+        value_wrong(reader, node, row);
+}
+
+static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    void *field = at(object, row->offset);
+    switch (row->type) {
+    case ROW_BOOL: value_bool(reader, row, node, field); break;
+    case ROW_INT:
+    case ROW_UINT32:
+    case ROW_UINT64: value_integer(reader, row, node, field); break;
+    case ROW_FLOAT: {
+        float value;
+        if (value_float(reader, row, node, &value))
+            *(float *)field = value;
+        break;
+    }
+    case ROW_VECTOR: value_vector(reader, row, node, field); break;
+    case ROW_INTS: value_ints(reader, row, node, field); break;
+    case ROW_TEXT:
+        if (value_is_text(node))
+            *(char **)field = node->text;
+        else
+            value_wrong(reader, node, row);
+        break;
+    case ROW_NAME: value_name(reader, row, node, field); break;
+    case ROW_FILE: value_file(reader, row, node, field); break;
+    case ROW_ENUM: {
+        int value;
+        if (value_word(reader, row, node, row->names, &value))
+            memcpy(field, &value, sizeof value);
+        break;
+    }
+    case ROW_ORDER: value_order(reader, row, node, field); break;
+    case ROW_PARAM: read_param(reader, row, node, field, at(object, row->extra)); break;
+    case ROW_MAP: read_submap(reader, row, node, object); break;
+    case ROW_LIST: read_list(reader, row, node, object); break;
+    case ROW_POINTS: read_points(reader, row, node, object); break;
+    case ROW_INDICES: read_indices(reader, row, node, object); break;
+    case ROW_STRENGTH: read_strength(reader, row, node, object); break;
+    case ROW_POSITION:
+    case ROW_ROTATION: read_key_part(reader, row, node, object); break;
+    }
+}
+
+// A key that no row of this kind has: say whose it is, or which was meant.
+static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, const SchemaRow *other,
+                        const Node *child) {
+    if (reader->messages->left_out) { // no need to say it well
+        message_add(reader->messages, reader->text, child->key_place, "unknown key");
+        return;
+    }
+    if (other) {
+        const char *const *names = schema->rows[0].names; // the row "kind" is the first
+        int mine = 0;
+        while (kind > 1u << mine)
+            mine++;
+        message_add(reader->messages, reader->text, child->key_place, "a %s has no '%s'", names[mine], child->key);
+        return;
+    }
+    char hint[80];
+    Nearest nearest = {.word = child->key};
+    for (int i = 0; i < schema->row_count; i++)
+        if (row_allowed(&schema->rows[i], kind))
+            nearest_offer(&nearest, schema->rows[i].key);
+    message_add(reader->messages, reader->text, child->key_place, "unknown key '%s' in %s%s", child->key, schema->title,
+                nearest_hint(&nearest, hint, sizeof hint));
+}
+
+static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
+                       uint64_t *given) {
+    const SchemaRow *other = NULL;
+    for (int i = 0; i < schema->row_count; i++) {
+        const SchemaRow *row = &schema->rows[i];
+        if (strcmp(row->key, child->key) != 0)
+            continue;
+        if (!row_allowed(row, kind)) {
+            other = row;
+            continue;
+        }
+        if (*given & 1ull << i)
+            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", child->key,
+                        schema->title);
+        else
+            read_row(reader, row, child, object);
+        *given |= 1ull << i;
+        return;
+    }
+    unknown_key(reader, schema, kind, other, child);
+}
+
+void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object) {
+    uint64_t given = 0;
+    unsigned kind = ~0u;
+    const Node *first = schema->kind_offset ? node_find(map, "kind") : NULL;
+    if (first) {
+        uint32_t before = message_total(reader->messages);
+        read_row(reader, &schema->rows[0], first, object);
+        given |= 1;
+        // with an unknown kind, only the keys that no kind has are wrong
+        kind = message_total(reader->messages) == before ? schema_kind(schema, object) : ~0u;
+    }
+    for (const Node *child = map->first; child; child = child->next)
+        if (child != first && !arena_failed(reader->arena))
+            read_child(reader, schema, kind, child, object, &given);
+    for (int i = 0; i < schema->row_count; i++) {
+        const SchemaRow *row = &schema->rows[i];
+        bool due = (row->flags & ROW_REQUIRED) && row_allowed(row, kind) && (kind != ~0u || !row->kinds);
+        if (due && !(given & 1ull << i))
+            message_add(reader->messages, reader->text, map->place, "%s needs '%s': %s", schema->title, row->key,
+                        row->doc);
+    }
+    if (schema->finish)
+        schema->finish(reader, map, object);
+}

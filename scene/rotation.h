@@ -1,0 +1,10 @@
+// Rotations as scenes write them: about x, then y, then z, all fixed in the world. R = Rz Ry Rx.
+#ifndef SCENE_ROTATION_H
+#define SCENE_ROTATION_H
+
+/// A row-major 3 × 3 matrix from angles in radians.
+void rotation_matrix(const float angles[3], double matrix[9]);
+/// The unit quaternion x, y, z, w of the same rotation.
+void rotation_quaternion(const float angles[3], float quaternion[4]);
+
+#endif

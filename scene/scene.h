@@ -1,0 +1,215 @@
+// Scenes: what a scene file describes, apart from its syntax, and the way from a file to a simulation.
+//
+//   scene_read  file → Scene      every mistake at once, each with its place
+//   scene_load  Scene → meshes and pictures
+//   scene_build Scene, meshes, pictures → SingeSim
+//
+// A Scene holds the Defs of include/singe/types.h filled in, without the arrays they point to; those come
+// with scene_load. Lengths are metres, angles radians, temperatures kelvin, as in the Defs.
+#ifndef SCENE_SCENE_H
+#define SCENE_SCENE_H
+
+#include <stdio.h>
+
+#include "formats/formats.h"
+#include "preview/preview.h"
+#include "singe/singe.h"
+
+// ---- places and messages
+
+/// Where something in a scene was written. A zeroed place is nowhere.
+typedef struct ScenePlace {
+    int line, column; ///< counted from 1; 0 for nothing
+    int set;          ///< 1 + index of the --set that it came from, 0 for the file
+} ScenePlace;
+
+/// One mistake. `source` and the caret are absent (NULL, 0) where there is no line to show.
+typedef struct SceneMessage {
+    char *origin; ///< "letter.yaml:12:9", "letter.yaml" or "--set frames=x"
+    char *text;   ///< what is wrong and what was expected
+    ScenePlace place;
+    char *source; ///< the line of the file, or NULL
+    int caret;    ///< column of `source`, from 1, that the mistake begins at; 0 for none
+} SceneMessage;
+
+/// All mistakes of a call, in the order of the file. Zero it before the first use.
+typedef struct SceneMessages {
+    uint32_t count;
+    SceneMessage *items;
+    uint32_t left_out; ///< mistakes beyond the first 200, counted only
+} SceneMessages;
+
+/// Prints each as "ORIGIN: error: TEXT", the source line and a caret under it.
+void scene_messages_print(const SceneMessages *messages, FILE *file);
+void scene_messages_free(SceneMessages *messages);
+
+// ---- the model
+
+/// A file named in a scene.
+typedef struct SceneFile {
+    char *name; ///< as written; NULL when not given
+    char *path; ///< resolved against the scene's folder
+    ScenePlace place;
+} SceneFile;
+
+/// A moment of a motion as it is written: the rotation turns about x, then y, then z (fixed axes).
+typedef struct SceneKey {
+    float time, position[3];
+    float rotation[3]; ///< radians
+} SceneKey;
+
+/// A sheet made by the program.
+typedef struct SceneGrid {
+    bool given;
+    float size[2];  ///< m
+    int cells[2];
+} SceneGrid;
+
+/// The parameters of a material that may vary over the sheet, in the order of `scene_param_offsets`.
+enum { SCENE_PARAM_COUNT = 16 };
+
+typedef struct SceneMaterial {
+    SingeMaterialDef def;                  ///< pictures have no values before scene_load
+    SceneFile pictures[SCENE_PARAM_COUNT]; ///< of parameters that follow a picture
+} SceneMaterial;
+
+typedef struct SceneSheet {
+    ScenePlace place;
+    char *name;
+    SceneFile mesh;       ///< or grid
+    SceneGrid grid;
+    SceneFile picture;    ///< drawn on both sides, may be absent
+    float colour[3];      ///< linear tint
+    float scale;          ///< metres per unit of the mesh file
+    float rotate[3];      ///< radians about x, then y, then z, after the scaling
+    float translate[3];   ///< m, after the rotation
+    float velocity[3];    ///< m/s at the start
+    float drop_pieces_below; ///< m2
+    SceneMaterial material;
+} SceneSheet;
+
+typedef struct SceneSource {
+    ScenePlace place;
+    SingeSourceDef def;   ///< path, picture and strength pointers are empty
+    uint32_t key_count;
+    SceneKey *keys;
+    SceneFile picture;
+    uint32_t strength_count;
+    SingeValueKey *strength;
+    bool visible;         ///< balls: drawn in the preview
+} SceneSource;
+
+typedef struct SceneCollider {
+    ScenePlace place;
+    SingeColliderDef def; ///< its path pointer is empty
+    uint32_t key_count;   ///< at least 1
+    SceneKey *keys;
+    float colour[3];      ///< linear, in the preview
+    bool visible;
+} SceneCollider;
+
+typedef struct ScenePoint {
+    float position[3];
+} ScenePoint;
+
+typedef struct ScenePin {
+    ScenePlace place;
+    char *sheet;          ///< a sheet's name or number from 0; NULL is the first
+    uint32_t sheet_index;
+    uint32_t point_count;
+    ScenePoint *points;   ///< m, in the world at rest
+    float radius;
+    uint32_t vertex_count;
+    uint32_t *vertices;
+    uint32_t key_count;
+    SceneKey *keys;
+} ScenePin;
+
+typedef struct ScenePreview {
+    int size[2]; ///< pixels
+    int samples;
+    PreviewCamera camera;
+    float light_direction[3], light_angle, light_colour[3];
+    float sky[3];
+    float ground_height; ///< -INFINITY for none
+    float ground_colour[3];
+    float background[3];
+    float exposure;
+} ScenePreview;
+
+typedef struct Scene {
+    char *name;   ///< of the outputs; the scene file's name without its ending by default
+    int frames;   ///< frames to make after frame 0, which is the start
+    float fps;    ///< frames a second
+    int steps;    ///< steps a frame
+    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    uint32_t sheet_count, source_count, collider_count, pin_count;
+    SceneSheet *sheets;
+    SceneSource *sources;
+    SceneCollider *colliders;
+    ScenePin *pins;
+    ScenePreview preview;
+    struct SceneText *text;   ///< the source, for messages after parsing
+    struct SceneArena *arena; ///< owns all of the above
+} Scene;
+
+// ---- syntax
+
+/// Reads a scene file (YAML, and so JSON). `sets` are texts PATH=VALUE laid over the file. On failure
+/// *scene is NULL and *messages holds every mistake. Results: SINGE_ERROR_FORMAT for mistakes in the scene,
+/// SINGE_ERROR_FILE when the file itself cannot be read, SINGE_ERROR_LIMIT above 1 MiB,
+/// SINGE_ERROR_MEMORY.
+SINGE_NODISCARD SingeResult scene_read(const char *path, const char *const *sets, int set_count, Scene **scene,
+                                       SceneMessages *messages);
+
+/// The same from memory. `name` is used in messages. Files are looked for in `base_dir`; NULL: the files
+/// that the scene names are not looked for at all.
+SINGE_NODISCARD SingeResult scene_parse(const char *name, const char *bytes, size_t size, const char *base_dir,
+                                        const char *const *sets, int set_count, Scene **scene, SceneMessages *messages);
+
+void scene_free(Scene *scene);
+
+typedef enum SceneSyntax { SCENE_YAML = 0, SCENE_JSON = 1 } SceneSyntax;
+
+/// Writes the scene with every value that it uses; it reads back as the same scene. `indent` is the number
+/// of spaces before each line but the first (for a JSON dump inside another document).
+void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file);
+
+/// Writes docs/scene.md, the reference of scene files, from the schema.
+void scene_document(FILE *file);
+
+// ---- from scene to simulation
+
+/// The meshes (transforms applied) and pictures that a scene names.
+typedef struct SceneAssets {
+    uint32_t sheet_count, source_count;
+    Mesh *meshes;                 ///< [sheet_count]
+    Image *images;                ///< [sheet_count], zeroed where there is none
+    const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
+    float (*colours)[3];          ///< [sheet_count], for PreviewDef
+    SingePicture (*params)[SCENE_PARAM_COUNT]; ///< [sheet_count]
+    SingePicture *source_pictures; ///< [source_count]
+} SceneAssets;
+
+/// Reads every file that the scene names. On failure *assets is empty and *messages points at the names.
+SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages);
+void scene_assets_free(SceneAssets *assets);
+
+/// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
+/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object.
+SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
+                                        SingeSim **sim, SceneMessages *messages);
+
+// ---- from scene to preview
+
+/// Fills *def; the scene and the assets must outlive it. Threads: 1. Shapes: none (scene_shapes).
+void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def);
+
+/// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most
+/// `max`, and returns how many the scene has then. shapes may be NULL when max is 0.
+uint32_t scene_shapes(const Scene *scene, double time, PreviewShape *shapes, uint32_t max);
+
+/// Seconds from one frame to the next, and the simulation's step.
+static inline double scene_frame_time(const Scene *scene) { return 1.0 / (double)scene->fps; }
+
+#endif

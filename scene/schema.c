@@ -1,0 +1,427 @@
+#include "scene/schema.h"
+
+#include <math.h>
+#include <string.h>
+
+#define AT(type, member) .offset = offsetof(type, member)
+#define EXTRA(type, member) .extra = offsetof(type, member)
+#define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
+
+// ranges, in held units
+#define ANY .min = -1e6, .max = 1e6
+#define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = INFINITY
+#define FROM(low) .min = (low), .max = INFINITY
+#define WITHIN(low, high) .min = (low), .max = (high)
+#define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
+
+static const char *const operator_names[] = {
+    [SINGE_HEAT_SURFACE] = "surface", [SINGE_HEAT_UMBRELLA] = "umbrella", NULL};
+static const char *const source_names[] = {
+    [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_PICTURE] = "picture", [SINGE_SOURCE_SPOT] = "spot",
+    [SINGE_SOURCE_PLUME] = "plume", NULL};
+static const char *const collider_names[] = {
+    [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
+    [SINGE_COLLIDER_CAPSULE] = "capsule", NULL};
+
+enum {
+    BALL = 1 << SINGE_SOURCE_BALL, PICTURE = 1 << SINGE_SOURCE_PICTURE,
+    SPOT = 1 << SINGE_SOURCE_SPOT, PLUME = 1 << SINGE_SOURCE_PLUME,
+    PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
+    BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
+};
+
+// ---- parts that several objects share
+
+static const SchemaRow key_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SceneKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
+    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, ANY, .doc = "where"},
+    {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, ANY,
+     .doc = "turned about the x axis, then y, then z, all fixed in the world"},
+};
+static const Schema schema_key = {
+    .title = "a path's entry", .size = sizeof(SceneKey), ROWS(key_rows),
+    .doc = "Where something is at a time. Positions move in straight lines from entry to entry and rest before the "
+           "first and after the last; times must increase."};
+
+static const SchemaRow strength_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
+    {"value", ROW_FLOAT, DIM_FRACTION, AT(SingeValueKey, value), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
+     .doc = "how strong, 1 being the full flux"},
+};
+static const Schema schema_strength = {
+    .title = "a strength's entry", .size = sizeof(SingeValueKey), ROWS(strength_rows),
+    .doc = "How strong a picture source is at a time; straight lines in between. Times must increase."};
+
+static const SchemaRow noise_rows[] = {
+    {"scale", ROW_FLOAT, DIM_LENGTH, AT(SingeNoise, scale), OVER(0), .doc = "size of the largest features"},
+    {"octaves", ROW_INT, DIM_NONE, AT(SingeNoise, octaves), WITHIN(1, 8),
+     .doc = "layers of detail, each half the size and half the strength of the one before"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SingeNoise, seed), .doc = "another seed, another noise"},
+};
+const Schema schema_noise = {
+    .title = "a noise", .size = sizeof(SingeNoise), ROWS(noise_rows), .defaults = default_noise,
+    .doc = "A random field from 0 to 1, smooth at its scale, fixed to the sheet."};
+
+// ---- sheets
+
+static const SchemaRow grid_rows[] = {
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, .min = 0, .max = 1e6,
+     .flags = ROW_OPEN_MIN | ROW_REQUIRED, .doc = "along x and y"},
+    {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
+     .doc = "how many cells along x and y"},
+};
+static const Schema schema_grid = {
+    .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows),
+    .doc = "A flat rectangle around the origin in the x-y plane, facing up (+z)."};
+
+#define WEIGHT(name, colour, index, text) \
+    {name, ROW_PARAM, DIM_FRACTION, AT(SceneMaterial, def.weight[colour]), EXTRA(SceneMaterial, pictures[index]), \
+     WITHIN(0, 1), .doc = text}
+static const SchemaRow weight_rows[] = {
+    WEIGHT("red", SINGE_RED, 12, "centre to corner: thickness"),
+    WEIGHT("green", SINGE_GREEN, 13, "centre to centre: stretch of the back layer"),
+    WEIGHT("blue", SINGE_BLUE, 14, "mesh edges: stretch of the front layer"),
+    WEIGHT("yellow", SINGE_YELLOW, 15, "diagonals: shear"),
+};
+static const Schema schema_weight = {
+    .title = "weights", .size = sizeof(SceneMaterial), ROWS(weight_rows),
+    .doc = "How firmly springs are held to their length, W of eq 19, by colour of spring: 1 is full, small is soft."};
+
+#define COLOUR_ROW(name, colour, text, dim, ...) \
+    {name, ROW_FLOAT, dim, .offset = (colour) * sizeof(float), __VA_ARGS__, .doc = text}
+#define PER_COLOUR(dim, ...)                                                \
+    COLOUR_ROW("red", SINGE_RED, "centre to corner", dim, __VA_ARGS__),     \
+    COLOUR_ROW("green", SINGE_GREEN, "centre to centre", dim, __VA_ARGS__), \
+    COLOUR_ROW("blue", SINGE_BLUE, "mesh edges", dim, __VA_ARGS__),         \
+    COLOUR_ROW("yellow", SINGE_YELLOW, "diagonals", dim, __VA_ARGS__)
+static const SchemaRow compliance_rows[] = {PER_COLOUR(DIM_COMPLIANCE, FROM(0))};
+static const Schema schema_compliance = {
+    .title = "compliances", .size = 4 * sizeof(float), ROWS(compliance_rows),
+    .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding."};
+static const SchemaRow regularisation_rows[] = {PER_COLOUR(DIM_NONE, OVER(0))};
+static const Schema schema_regularisation = {
+    .title = "regularisations", .size = 4 * sizeof(float), ROWS(regularisation_rows),
+    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. Larger is "
+           "safer and softer."};
+
+#define PARAM(name, member, index, dim, range_, text) \
+    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, pictures[index]), range_, .doc = text}
+#define NUMBER(name, member, dim, range_, text)                                                                        \
+    { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
+static const SchemaRow material_rows[] = {
+    NUMBER("grammage", grammage, DIM_GRAMMAGE, OVER(0), "mass per area before it burns"),
+    NUMBER("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, OVER(0), "heat to warm a kilogram by a kelvin"),
+    PARAM("thickness", thickness, 0, DIM_LENGTH, OVER(0),
+          "distance of the model's two layers; it sets the size of the wrinkles, and is larger than the real sheet's"),
+    {"heat_operator", ROW_ENUM, DIM_NONE, AT(SceneMaterial, def.heat_operator), .names = operator_names,
+     .doc = "`surface`: finite volumes in each layer; `umbrella`: the paper's eq 3"},
+    PARAM("diffusivity", diffusivity, 1, DIM_DIFFUSIVITY, FROM(0), "alpha of eq 2: how fast heat spreads in the sheet"),
+    NUMBER("layer_exchange", layer_exchange, DIM_RATE, FROM(0),
+           "rate at which the two layers' temperatures even out (`surface` only)"),
+    NUMBER("convection", convection, DIM_CONDUCTANCE, FROM(0), "heat lost to still air, a side"),
+    NUMBER("emissivity", emissivity, DIM_FRACTION, WITHIN(0, 1), "share of a black body's radiation"),
+    {"loss_mass_floor", ROW_FLOAT, DIM_FRACTION, AT(SceneMaterial, def.loss_mass_floor), .flags = ROW_OPEN_MIN,
+     WITHIN(0, 1), .doc = "heat losses divide by the mass that is left, but by no less than this share of it"},
+    NUMBER("thickening", thickening, DIM_NONE, FROM(0),
+           "widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as "
+           "little as the cells need"),
+    PARAM("temperature", temperature, 2, DIM_TEMPERATURE, OVER(0), "at the start"),
+    PARAM("ignition_temperature", ignition_temperature, 3, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
+    PARAM("heating", heating, 4, DIM_TEMPERATURE_DIFFERENCE, FROM(0),
+          "eta of eq 1: warming when all of the mass burns with no losses"),
+    PARAM("mass_rate", mass_rate, 5, DIM_RATE_PER_KELVIN, FROM(0),
+          "mu of eq 4: mass lost per second and kelvin above ignition"),
+    PARAM("ash_exponent", ash_exponent, 6, DIM_NONE, FROM(0),
+          "p: slows eq 4 near the end by ((m - m_min)/(1 - m_min))^p, so that flakes of ash stay; 0 is the paper"),
+    PARAM("mass_min", mass_min, 7, DIM_FRACTION, BELOW(0, 1), "m_min: share that never burns"),
+    PARAM("mass_loss", mass_loss, 8, DIM_FRACTION, BELOW(0, 1),
+          "m_loss: below this share the sheet is gone; under mass_min it wrinkles but stays whole"),
+    PARAM("ash_density", ash_density, 9, DIM_FRACTION, OVER(0),
+          "density at mass_min over the density at the start; with mass_min it sets the shrinkage, eq 5"),
+    PARAM("shrink_front", shrink_front, 10, DIM_FRACTION, WITHIN(0, 2),
+          "share of the shrinkage that the corner layer takes"),
+    PARAM("shrink_back", shrink_back, 11, DIM_FRACTION, WITHIN(0, 2),
+          "the same for the centre layer; 5 to 10 % of difference curls the sheet"),
+    {"ablate", ROW_BOOL, DIM_NONE, AT(SceneMaterial, def.ablate), .doc = "no: nothing is removed (Fig 4 b)"},
+    {"weight", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_weight, .doc = "firmness by colour of spring"},
+    {"compliance", ROW_MAP, DIM_NONE, AT(SceneMaterial, def.compliance), .sub = &schema_compliance,
+     .doc = "give by colour of spring"},
+    NUMBER("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
+    NUMBER("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
+    NUMBER("damping", damping, DIM_RATE, FROM(0), "of all motion"),
+};
+static const Schema schema_material = {
+    .title = "a material",
+    .size = sizeof(SceneMaterial),
+    ROWS(material_rows),
+    .doc =
+        "What a sheet is made of and how it burns. The defaults are office paper of 80 g/m2 at its real pace. Mass is "
+        "always a fraction of the mass at the start. A value marked *varies* may also follow a picture, an attribute "
+        "or a noise (see *Values that vary*)."};
+
+static ScenePlace *sheet_place(void *object) { return &((SceneSheet *)object)->place; }
+static const SchemaRow sheet_rows[] = {
+    {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
+     .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneSheet, mesh), .doc = "a quad mesh, OBJ or PLY; this or `grid`"},
+    {"grid", ROW_MAP, DIM_NONE, AT(SceneSheet, grid), EXTRA(SceneSheet, grid.given), .sub = &schema_grid,
+     .doc = "a rectangle made by the program"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
+     .doc = "PNG or JPEG, printed on both sides in the preview"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
+     .doc = "linear red, green, blue; tints the picture"},
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), OVER(0),
+     .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
+    {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, ANY,
+     .doc = "about x, then y, then z, after the scaling"},
+    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, ANY, .doc = "after the rotation"},
+    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
+    {"drop_pieces_below", ROW_FLOAT, DIM_AREA, AT(SceneSheet, drop_pieces_below), FROM(0),
+     .doc = "loose pieces smaller than this vanish; 0 keeps all"},
+    {"material", ROW_MAP, DIM_NONE, AT(SceneSheet, material), .sub = &schema_material, .doc = "what it is made of"},
+};
+static const Schema schema_sheet = {
+    .title = "a sheet", .size = sizeof(SceneSheet), ROWS(sheet_rows), .defaults = default_sheet, .finish = finish_sheet,
+    .place = sheet_place, .doc = "A piece of cloth or paper: a mesh of quads, or a grid, and a material."};
+
+// ---- sources, colliders, pins
+
+static ScenePlace *source_place(void *object) { return &((SceneSource *)object)->place; }
+#define SOURCE(name, member, dim, kinds_, range_, text) \
+    {name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text}
+static const SchemaRow source_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
+     .doc =
+         "`ball`: a hot ball on a path; `spot`: a disc of heat fixed in space; `picture`: a flux drawn on the sheet; "
+         "`plume`: hot gas rising from what burns"},
+    SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
+    {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
+     .doc = "to here; `inf` is for ever"},
+    SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, OVER(0), "of the ball or the flame"),
+    SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "how well its heat reaches the sheet"),
+    SOURCE("radius", radius, DIM_LENGTH, BALL | SPOT, FROM(0), "full heat within it"),
+    SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
+           "beyond the radius, over which the heat falls to nothing"),
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
+     .kinds = SPOT, .flags = ROW_REQUIRED, ANY, .doc = "its centre"},
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
+     .kinds = BALL, .flags = ROW_SHORT, ANY, .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
+     .sub = &schema_key, .doc = "its way; this or `position`"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneSource, picture), .kinds = PICTURE, .flags = ROW_REQUIRED,
+     .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
+    SOURCE("flux", flux, DIM_FLUX, PICTURE, FROM(0), "where the picture is white"),
+    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
+     .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
+     .doc = "multiplies the flux over time; 1 when not given"},
+    SOURCE("share", plume_share, DIM_FRACTION, PLUME, WITHIN(0, 1),
+           "part of the heat of combustion that the gas carries"),
+    SOURCE("height", plume_height, DIM_LENGTH, PLUME, OVER(0), "over which the gas cools to 1/e"),
+    SOURCE("conductance", plume_conductance, DIM_CONDUCTANCE, PLUME, FROM(0), "from the gas to the sheet"),
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
+};
+static const Schema schema_source = {
+    .title = "a source", .size = sizeof(SceneSource), ROWS(source_rows), .kind_offset = offsetof(SceneSource, def.kind),
+    .defaults = default_source, .finish = finish_source, .place = source_place,
+    .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
+
+static ScenePlace *collider_place(void *object) { return &((SceneCollider *)object)->place; }
+#define COLLIDER(name, member, dim, kinds_, range_, text) \
+    {name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text}
+static const SchemaRow collider_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
+     .doc = "`plane` (its normal is its own z axis), `sphere`, `box` or `capsule` (along its own z axis)"},
+    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, OVER(0), "of the sphere or the capsule"),
+    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX, OVER(0),
+     .doc = "half of the box's lengths along its own axes"},
+    COLLIDER("height", height, DIM_LENGTH, CAPSULE, FROM(0), "between the centres of the capsule's caps"),
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
+     .flags = ROW_SHORT, ANY, .doc = "of its centre, when it does not move; instead of `path`"},
+    {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
+     .flags = ROW_SHORT, ANY, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
+     .doc = "its way"},
+    COLLIDER("friction", friction, DIM_NONE, 0, FROM(0), "Coulomb's coefficient"),
+    COLLIDER("offset", offset, DIM_LENGTH, 0, FROM(0), "distance that sheets keep from the surface"),
+    COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, OVER(0), "matters when `conductance` is not 0"),
+    COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
+    COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, FROM(0), "how near counts as contact for heat"),
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = SPHERE | BOX | CAPSULE,
+     WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = SPHERE | BOX | CAPSULE,
+     .doc = "drawn in the preview"},
+};
+static const Schema schema_collider = {
+    .title = "a collider",
+    .size = sizeof(SceneCollider),
+    ROWS(collider_rows),
+    .kind_offset = offsetof(SceneCollider, def.kind),
+    .defaults = default_collider,
+    .finish = finish_collider,
+    .place = collider_place,
+    .doc = "A rigid thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
+
+static ScenePlace *pin_place(void *object) { return &((ScenePin *)object)->place; }
+static const SchemaRow pin_rows[] = {
+    {"sheet", ROW_TEXT, DIM_NONE, AT(ScenePin, sheet),
+     .doc = "name of the sheet, or its number from 0; the first by default"},
+    {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
+     .doc = "places [x, y, z] in the world at the start"},
+    {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), FROM(0),
+     .doc = "what is this near to one of the points is held; 0 holds the nearest vertex of each"},
+    {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
+     .doc = "numbers of the mesh's vertices, from 0"},
+    {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
+     .doc = "how what is held moves, relative to the path's place at the start; held still without"},
+};
+static const Schema schema_pin = {
+    .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
+    .place = pin_place, .doc = "Holds part of a sheet. Small patches hold better than single points."};
+
+// ---- wind, solver, preview
+
+static const SchemaRow wind_rows[] = {
+    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, ANY,
+     .doc = "mean of the air's motion"},
+    {"gust", ROW_FLOAT, DIM_SPEED, AT(SingeWindDef, gust), FROM(0), .doc = "how strong gusts are"},
+    {"gust_time", ROW_FLOAT, DIM_TIME, AT(SingeWindDef, gust_time), OVER(0), .doc = "how long a gust lasts"},
+    {"gust_size", ROW_FLOAT, DIM_LENGTH, AT(SingeWindDef, gust_size), OVER(0), .doc = "how far a gust reaches"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SingeWindDef, seed), .doc = "another seed, other gusts"},
+};
+static const Schema schema_wind = {
+    .title = "the wind", .size = sizeof(SingeWindDef), ROWS(wind_rows), .doc = "The air's motion."};
+
+static const SchemaRow solver_rows[] = {
+    {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(1, 1000),
+     .doc = "projections a step; more is stiffer and slower"},
+    {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),
+     .doc = "of the springs' colours, each once; the last is held best"},
+    {"regularisation", ROW_MAP, DIM_NONE, AT(SingeSolverDef, regularisation), .sub = &schema_regularisation,
+     .doc = "by colour of spring"},
+    {"height_min", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, height_min), WITHIN(0, 1),
+     .doc = "smallest height of a cell's centre over its corners, in thicknesses; 0 is off"},
+    {"height_gain", ROW_FLOAT, DIM_FRACTION, AT(SingeSolverDef, height_gain), WITHIN(0, 1),
+     .doc = "share of a height's error that is mended in a substep"},
+};
+static const Schema schema_solver = {.title = "the solver",
+                                     .size = sizeof(SingeSolverDef),
+                                     ROWS(solver_rows),
+                                     .doc = "How springs are kept at their lengths."};
+
+static const SchemaRow camera_rows[] = {
+    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, ANY, .doc = "where it stands"},
+    {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, ANY, .doc = "what it looks at"},
+    {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, ANY, .doc = "which way is up in the picture"},
+    {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), .flags = ROW_OPEN_MIN | ROW_OPEN_MAX,
+     WITHIN(0, 3.14159265358979), .doc = "angle of view from bottom to top"},
+};
+static const Schema schema_camera = {.title = "the camera",
+                                     .size = sizeof(PreviewCamera),
+                                     ROWS(camera_rows),
+                                     .finish = finish_camera,
+                                     .doc = "From where the preview is drawn."};
+
+static const SchemaRow light_rows[] = {
+    {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, ANY,
+     .doc = "towards the light, any length"},
+    {"angle", ROW_FLOAT, DIM_ANGLE, AT(ScenePreview, light_angle), WITHIN(0, 1.57079632679490),
+     .doc = "its apparent radius: larger is softer"},
+    {"colour", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_colour), .length = 3, .min = 0, .max = 1e6,
+     .doc = "linear red, green, blue; may exceed 1"},
+};
+static const Schema schema_light = {
+    .title = "the light", .size = sizeof(ScenePreview), ROWS(light_rows), .doc = "One distant light."};
+
+static const SchemaRow ground_rows[] = {
+    {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, ground_height), .flags = ROW_NONE, ANY,
+     .doc = "its z; `none`: no ground is drawn"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(ScenePreview, ground_colour), .length = 3, WITHIN(0, 1),
+     .doc = "linear red, green, blue"},
+};
+static const Schema schema_ground = {
+    .title = "the ground", .size = sizeof(ScenePreview), ROWS(ground_rows),
+    .doc = "A floor that is drawn. To let sheets rest on it, add a plane to `colliders` as well."};
+
+static const SchemaRow preview_rows[] = {
+    {"size", ROW_INTS, DIM_NONE, AT(ScenePreview, size), .length = 2, WITHIN(16, 16384),
+     .doc = "width and height in pixels, even numbers for video"},
+    {"samples", ROW_INT, DIM_NONE, AT(ScenePreview, samples), WITHIN(1, 4096),
+     .doc = "rays a pixel: more is smoother and slower"},
+    {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "from where"},
+    {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the one light"},
+    {"sky", ROW_VECTOR, DIM_NONE, AT(ScenePreview, sky), .length = 3, .min = 0, .max = 1e6,
+     .doc = "light from all around, linear red, green, blue"},
+    {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
+    {"background", ROW_VECTOR, DIM_NONE, AT(ScenePreview, background), .length = 3, .min = 0, .max = 1e6,
+     .doc = "behind everything, linear red, green, blue"},
+    {"exposure", ROW_FLOAT, DIM_NONE, AT(ScenePreview, exposure), OVER(0), .doc = "multiplies all light"},
+};
+static const Schema schema_preview = {
+    .title = "the preview", .size = sizeof(ScenePreview), ROWS(preview_rows), .finish = finish_preview,
+    .doc = "How frames are drawn. Nothing here changes the simulation."};
+
+// ---- the scene
+
+static const SchemaRow scene_rows[] = {
+    {"name", ROW_NAME, DIM_NONE, AT(Scene, name),
+     .doc = "of the outputs; the scene file's name without its ending by default"},
+    {"frames", ROW_INT, DIM_NONE, AT(Scene, frames), WITHIN(0, 1000000), .doc = "how many to make after the start"},
+    {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames a second"},
+    {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
+    {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), OVER(0),
+     .doc = "seconds of fire per second of motion; 1 is real, 4 burns four times as fast"},
+    {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), .doc = "for everything random"},
+    {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), OVER(0),
+     .doc = "of the air and all around"},
+    {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, ANY, .doc = "z is up"},
+    {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), FROM(0), .doc = "for drag and wind"},
+    {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), .flags = ROW_OPEN_MIN, WITHIN(0, 1),
+     .doc = "to which the heat equation is solved, relative"},
+    {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
+     .flags = ROW_REQUIRED, .doc = "what burns, at least one"},
+    {"sources", ROW_LIST, DIM_NONE, AT(Scene, sources), EXTRA(Scene, source_count), .sub = &schema_source,
+     .doc = "what heats"},
+    {"colliders", ROW_LIST, DIM_NONE, AT(Scene, colliders), EXTRA(Scene, collider_count), .sub = &schema_collider,
+     .doc = "what is in the way"},
+    {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin, .doc = "what holds"},
+    {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
+    {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
+     .doc = "how springs are kept at their lengths"},
+    {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
+};
+const Schema schema_scene = {
+    .title = "the scene", .size = sizeof(Scene), ROWS(scene_rows), .defaults = default_scene, .finish = finish_scene,
+    .doc = "The whole file is one map."};
+
+#define PARAM_AT(member) offsetof(SingeMaterialDef, member)
+const size_t scene_param_offsets[SCENE_PARAM_COUNT] = {
+    PARAM_AT(thickness),
+    PARAM_AT(diffusivity),
+    PARAM_AT(temperature),
+    PARAM_AT(ignition_temperature),
+    PARAM_AT(heating),
+    PARAM_AT(mass_rate),
+    PARAM_AT(ash_exponent),
+    PARAM_AT(mass_min),
+    PARAM_AT(mass_loss),
+    PARAM_AT(ash_density),
+    PARAM_AT(shrink_front),
+    PARAM_AT(shrink_back),
+    PARAM_AT(weight[SINGE_RED]),
+    PARAM_AT(weight[SINGE_GREEN]),
+    PARAM_AT(weight[SINGE_BLUE]),
+    PARAM_AT(weight[SINGE_YELLOW]),
+};
+const char *const scene_param_keys[SCENE_PARAM_COUNT] = {
+    "thickness", "diffusivity", "temperature", "ignition_temperature", "heating", "mass_rate", "ash_exponent",
+    "mass_min", "mass_loss", "ash_density", "shrink_front", "shrink_back", "weight.red", "weight.green", "weight.blue",
+    "weight.yellow",
+};
+
+unsigned schema_kind(const Schema *schema, const void *object) {
+    if (!schema->kind_offset)
+        return ~0u;
+    int kind;
+    memcpy(&kind, (const char *)object + schema->kind_offset, sizeof kind);
+    return 1u << kind;
+}

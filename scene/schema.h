@@ -1,0 +1,127 @@
+// The schema of scene files: one table for each map that a scene may hold. The reader, --set, the dump and
+// docs/scene.md are all made from these tables.
+#ifndef SCENE_SCHEMA_H
+#define SCENE_SCHEMA_H
+
+#include "scene/scene.h"
+#include "scene/tree.h"
+#include "scene/units.h"
+
+typedef enum RowType {
+    ROW_BOOL,
+    ROW_INT,      ///< int
+    ROW_UINT32,
+    ROW_UINT64,
+    ROW_FLOAT,
+    ROW_VECTOR,   ///< float[length]
+    ROW_INTS,     ///< int[length]
+    ROW_TEXT,     ///< char *
+    ROW_NAME,     ///< char *, fit to be part of a file's name
+    ROW_FILE,     ///< SceneFile
+    ROW_ENUM,     ///< an enum, by `names`
+    ROW_ORDER,    ///< SingeColour[4], each once
+    ROW_PARAM,    ///< SingeParam, with its SceneFile at `extra`
+    ROW_MAP,      ///< a map by `sub`; `extra`, when not 0, is the bool that says it is given
+    ROW_LIST,     ///< pointer to maps by `sub`; their count at `extra`
+    ROW_POINTS,   ///< ScenePoint *, count at `extra`
+    ROW_INDICES,  ///< uint32_t *, count at `extra`
+    ROW_STRENGTH, ///< a number or a list of maps by `sub`; count at `extra`
+    ROW_POSITION, ///< SceneKey *: the position of its only key
+    ROW_ROTATION, ///< SceneKey *: the rotation of its only key
+} RowType;
+
+enum {
+    ROW_REQUIRED = 1,
+    ROW_OPEN_MIN = 2,   ///< min itself is outside
+    ROW_OPEN_MAX = 4,
+    ROW_INF = 8,        ///< "inf" is allowed
+    ROW_NONE = 16,      ///< "none" is allowed: -INFINITY
+    ROW_SHORT = 32,     ///< short for another key; not dumped
+};
+
+typedef struct SchemaRow {
+    const char *key;
+    RowType type;
+    Dimension dimension;
+    size_t offset, extra;
+    int length;
+    unsigned flags, kinds; ///< kinds: bits of the kinds that have this key, 0 for all
+    double min, max;
+    const char *const *names; ///< ROW_ENUM: NULL-terminated
+    const struct Schema *sub;
+    const char *doc;
+} SchemaRow;
+
+/// What the reader knows while it works.
+typedef struct Reader {
+    SceneArena *arena;
+    const SceneText *text;
+    SceneMessages *messages;
+    const char *base_dir; ///< NULL: files are not looked for
+    Scene *scene;
+} Reader;
+
+typedef struct Schema {
+    const char *title; ///< "a sheet": for messages and headings
+    const char *doc;   ///< opening paragraph in docs/scene.md
+    size_t size;
+    const SchemaRow *rows;
+    int row_count;
+    size_t kind_offset; ///< of the enum that `kinds` are bits of; the row is called "kind"
+    /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
+    bool (*defaults)(SceneArena *arena, void *object);
+    /// Checks what one row cannot see.
+    void (*finish)(Reader *reader, const Node *map, void *object);
+    /// Where the object keeps its place; NULL when it does not.
+    ScenePlace *(*place)(void *object);
+} Schema;
+
+extern const Schema schema_scene;
+extern const Schema schema_noise;
+
+/// The bit of an object's kind; all bits for a schema without kinds.
+unsigned schema_kind(const Schema *schema, const void *object);
+static inline bool row_allowed(const SchemaRow *row, unsigned kind) { return !row->kinds || (row->kinds & kind); }
+
+/// "> 0", "0 to 1", "0 to < 1" or "" for a row's range, in the unit of bare numbers.
+void row_range(const SchemaRow *row, char *buffer, size_t size);
+/// What a row's value must be, for messages: "a temperature (K, C, F)".
+void row_expected(const SchemaRow *row, char *buffer, size_t size);
+
+/// Where each parameter of a material lies in its SingeMaterialDef, and the key it is written under.
+extern const size_t scene_param_offsets[SCENE_PARAM_COUNT];
+extern const char *const scene_param_keys[SCENE_PARAM_COUNT];
+static inline SingeParam *material_param(SingeMaterialDef *def, int index) {
+    return (SingeParam *)((char *)def + scene_param_offsets[index]);
+}
+
+/// Reads a map into an object whose defaults are set.
+void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
+
+// checks (checks.c)
+void finish_scene(Reader *reader, const Node *map, void *object);
+void finish_sheet(Reader *reader, const Node *map, void *object);
+void finish_source(Reader *reader, const Node *map, void *object);
+void finish_collider(Reader *reader, const Node *map, void *object);
+void finish_pin(Reader *reader, const Node *map, void *object);
+void finish_camera(Reader *reader, const Node *map, void *object);
+void finish_preview(Reader *reader, const Node *map, void *object);
+
+// defaults (defaults.c)
+bool default_scene(SceneArena *arena, void *object);
+bool default_sheet(SceneArena *arena, void *object);
+bool default_source(SceneArena *arena, void *object);
+bool default_collider(SceneArena *arena, void *object);
+bool default_pin(SceneArena *arena, void *object);
+bool default_noise(SceneArena *arena, void *object);
+
+/// The candidate nearest to a mistyped word, or NULL when none is near. (nearest.c)
+typedef struct Nearest {
+    const char *word, *best;
+    int distance;
+} Nearest;
+void nearest_offer(Nearest *nearest, const char *candidate);
+/// "" or "; did you mean 'best'?"
+const char *nearest_hint(const Nearest *nearest, char *buffer, size_t size);
+
+#endif

@@ -1,0 +1,95 @@
+// What the preview draws of a scene.
+#include "scene/rotation.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def) {
+    const ScenePreview *preview = &scene->preview;
+    *def = (PreviewDef){
+        .width = preview->size[0],
+        .height = preview->size[1],
+        .samples = preview->samples,
+        .thread_count = 1,
+        .camera = preview->camera,
+        .sun_angle = preview->light_angle,
+        .ground_height = preview->ground_height,
+        .exposure = preview->exposure,
+        .seed = (uint32_t)scene->sim.seed,
+        .pictures = assets->pictures,
+        .colours = (const float(*)[3])assets->colours,
+        .sheet_count = assets->sheet_count,
+    };
+    memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
+    memcpy(def->sun_colour, preview->light_colour, sizeof def->sun_colour);
+    memcpy(def->sky_colour, preview->sky, sizeof def->sky_colour);
+    memcpy(def->ground_colour, preview->ground_colour, sizeof def->ground_colour);
+    memcpy(def->background, preview->background, sizeof def->background);
+}
+
+// As the library moves things: linear positions, normalised linear quaternions, held beyond the ends.
+static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+    uint32_t next = 0;
+    while (next < count && (double)keys[next].time <= time)
+        next++;
+    const SceneKey *a = &keys[next ? next - 1 : 0], *b = &keys[next < count ? next : count - 1];
+    double span = (double)b->time - (double)a->time, s = span > 0 ? (time - (double)a->time) / span : 0;
+    float qa[4], qb[4];
+    rotation_quaternion(a->rotation, qa);
+    rotation_quaternion(b->rotation, qb);
+    double dot = 0, norm = 0, q[4];
+    for (int i = 0; i < 4; i++)
+        dot += (double)qa[i] * (double)qb[i];
+    for (int i = 0; i < 4; i++) {
+        q[i] = (1 - s) * (double)qa[i] + s * (dot < 0 ? -(double)qb[i] : (double)qb[i]);
+        norm += q[i] * q[i];
+    }
+    for (int i = 0; i < 4; i++)
+        shape->rotation[i] = (float)(q[i] / sqrt(norm));
+    for (int i = 0; i < 3; i++)
+        shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
+}
+
+static bool source_shape(const SceneSource *source, double time, PreviewShape *shape) {
+    bool drawn = source->def.kind == SINGE_SOURCE_BALL && source->visible && source->key_count &&
+                 source->def.radius > 0 && time >= (double)source->def.start && time <= (double)source->def.end;
+    if (!drawn)
+        return false;
+    *shape = (PreviewShape){.kind = SINGE_COLLIDER_SPHERE,
+                            .radius = source->def.radius,
+                            .colour = {0.05f, 0.05f, 0.05f},
+                            .temperature = source->def.temperature};
+    shape_pose(source->keys, source->key_count, time, shape);
+    return true;
+}
+
+static bool collider_shape(const Scene *scene, const SceneCollider *collider, double time, PreviewShape *shape) {
+    if (collider->def.kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count)
+        return false;
+    const SingeColliderDef *def = &collider->def;
+    *shape = (PreviewShape){.kind = def->kind, .radius = def->radius, .height = def->height,
+                            .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
+    memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
+    memcpy(shape->colour, collider->colour, sizeof shape->colour);
+    shape_pose(collider->keys, collider->key_count, time, shape);
+    return true;
+}
+
+uint32_t scene_shapes(const Scene *scene, double time, PreviewShape *shapes, uint32_t max) {
+    uint32_t count = 0;
+    PreviewShape shape;
+    for (uint32_t i = 0; i < scene->collider_count; i++)
+        if (collider_shape(scene, &scene->colliders[i], time, &shape)) {
+            if (count < max)
+                shapes[count] = shape;
+            count++;
+        }
+    for (uint32_t i = 0; i < scene->source_count; i++)
+        if (source_shape(&scene->sources[i], time, &shape)) {
+            if (count < max)
+                shapes[count] = shape;
+            count++;
+        }
+    return count;
+}

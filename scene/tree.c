@@ -1,0 +1,268 @@
+#include "scene/tree.h"
+
+#include <libfyaml.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DEPTH_MOST = 64 };
+
+typedef struct Builder {
+    SceneArena *arena;
+    const SceneText *text;
+    SceneMessages *messages;
+    int set;
+    Node *stack[DEPTH_MOST]; // open lists and maps
+    char *keys[DEPTH_MOST];  // key that waits for its value, in each open map
+    ScenePlace key_places[DEPTH_MOST];
+    int depth;
+    Node *root;
+    int documents;
+    bool bad;
+} Builder;
+
+static void builder_fail(Builder *builder, ScenePlace place, const char *what) {
+    message_add(builder->messages, builder->text, place, "%s", what);
+    builder->bad = true;
+}
+
+static ScenePlace event_place(const Builder *builder, struct fy_event *event) {
+    ScenePlace place = {0, 0, builder->set};
+    const struct fy_mark *mark = fy_event_start_mark(event);
+    if (mark && !builder->set) {
+        place.line = mark->line + 1;
+        place.column = mark->column + 1;
+        // libfyaml's mark of a quoted text lies behind the quote, that of an alias behind the star
+        struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
+        enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
+        bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
+        if (behind && place.column > 1)
+            place.column--;
+    }
+    return place;
+}
+
+static void builder_attach(Builder *builder, Node *node) {
+    if (!builder->depth) {
+        builder->root = node;
+        return;
+    }
+    int top = builder->depth - 1;
+    Node *parent = builder->stack[top];
+    if (parent->kind == NODE_MAP) {
+        node->key = builder->keys[top];
+        node->key_place = builder->key_places[top];
+        builder->keys[top] = NULL;
+    }
+    if (!node->place.line) // an empty value has no place of its own
+        node->place = parent->kind == NODE_MAP ? node->key_place : parent->place;
+    if (parent->last)
+        parent->last->next = node;
+    else
+        parent->first = node;
+    parent->last = node;
+    parent->count++;
+}
+
+// True when the next node is a key of the innermost map.
+static bool builder_wants_key(const Builder *builder) {
+    int top = builder->depth - 1;
+    return top >= 0 && builder->stack[top]->kind == NODE_MAP && !builder->keys[top];
+}
+
+static void builder_open(Builder *builder, NodeKind kind, ScenePlace place) {
+    if (builder_wants_key(builder)) {
+        builder_fail(builder, place, "a key must be a single word");
+        return;
+    }
+    if (builder->depth == DEPTH_MOST) {
+        builder_fail(builder, place, "lists and maps are nested more than 64 deep");
+        return;
+    }
+    Node *node = arena_new(builder->arena, 1, sizeof *node);
+    if (!node) {
+        builder->bad = true;
+        return;
+    }
+    node->kind = kind;
+    node->place = place;
+    builder_attach(builder, node);
+    builder->stack[builder->depth] = node;
+    builder->keys[builder->depth++] = NULL;
+}
+
+static void builder_value(Builder *builder, struct fy_event *event, ScenePlace place) {
+    size_t length = 0;
+    const char *bytes = fy_token_get_text(event->scalar.value, &length);
+    char *text = arena_text(builder->arena, bytes ? bytes : "", bytes ? length : 0);
+    if (!text) {
+        builder->bad = true;
+        return;
+    }
+    if (bytes && strlen(text) != length) {
+        builder_fail(builder, place, "a text must not contain a zero character");
+        return;
+    }
+    if (builder_wants_key(builder)) {
+        builder->keys[builder->depth - 1] = text;
+        builder->key_places[builder->depth - 1] = place;
+        return;
+    }
+    Node *node = arena_new(builder->arena, 1, sizeof *node);
+    if (!node) {
+        builder->bad = true;
+        return;
+    }
+    node->kind = NODE_VALUE;
+    node->place = place;
+    node->text = text;
+    node->quoted = event->scalar.value && fy_token_scalar_style(event->scalar.value) != FYSS_PLAIN;
+    builder_attach(builder, node);
+}
+
+static void builder_take(Builder *builder, struct fy_event *event) {
+    ScenePlace place = event_place(builder, event);
+    struct fy_token *tag = NULL, *anchor = NULL;
+    if (event->type == FYET_SCALAR)
+        tag = event->scalar.tag, anchor = event->scalar.anchor;
+    else if (event->type == FYET_MAPPING_START)
+        tag = event->mapping_start.tag, anchor = event->mapping_start.anchor;
+    else if (event->type == FYET_SEQUENCE_START)
+        tag = event->sequence_start.tag, anchor = event->sequence_start.anchor;
+    if (anchor || event->type == FYET_ALIAS)
+        builder_fail(builder, place, "anchors and aliases (&name, *name) are not supported; write the value out");
+    else if (tag)
+        builder_fail(builder, place, "tags (!name) are not supported; each key knows the type of its value");
+    else if (event->type == FYET_SCALAR)
+        builder_value(builder, event, place);
+    else if (event->type == FYET_MAPPING_START)
+        builder_open(builder, NODE_MAP, place);
+    else if (event->type == FYET_SEQUENCE_START)
+        builder_open(builder, NODE_LIST, place);
+    else if (event->type == FYET_MAPPING_END || event->type == FYET_SEQUENCE_END)
+        builder->depth--;
+    else if (event->type == FYET_DOCUMENT_START && builder->documents++)
+        builder_fail(builder, place, "a second document (---) begins here; a scene is one document");
+}
+
+// What libfyaml has found, or a plain sentence where it does not say.
+static void builder_report(Builder *builder, struct fy_diag *diag) {
+    void *iterator = NULL;
+    struct fy_diag_error *found;
+    bool any = false;
+    while ((found = fy_diag_errors_iterate(diag, &iterator))) {
+        ScenePlace place = {found->line > 0 ? found->line : 0, found->column > 0 ? found->column : 1, builder->set};
+        message_add(builder->messages, builder->text, place, "not valid YAML: %s", found->msg ? found->msg : "?");
+        any = true;
+    }
+    if (!any)
+        message_add(builder->messages, builder->text, (ScenePlace){0, 0, builder->set}, "not valid YAML");
+    builder->bad = true;
+}
+
+// libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
+static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
+    int line = 1, column = 1;
+    const unsigned char *c = (const unsigned char *)bytes, *end = c + size;
+    while (c < end) {
+        int more = *c < 0x80                 ? 0
+                   : *c >= 0xc2 && *c < 0xe0 ? 1
+                   : *c >= 0xe0 && *c < 0xf0 ? 2
+                   : *c >= 0xf0 && *c < 0xf5 ? 3
+                                             : -1;
+        bool good = more >= 0 && end - c > more && (*c >= 0x20 || *c == '\n' || *c == '\r' || *c == '\t');
+        for (int i = 1; good && i <= more; i++)
+            good = (c[i] & 0xc0) == 0x80;
+        if (!good) {
+            ScenePlace place = {builder->set ? 0 : line, builder->set ? 0 : column, builder->set};
+            builder_fail(builder, place, "this byte is not text; a scene is UTF-8 without control characters");
+            return false;
+        }
+        if (column == 1 && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
+            ScenePlace place = {builder->set ? 0 : line, builder->set ? 0 : column, builder->set};
+            builder_fail(builder, place, "a line must not begin with %; directives of YAML are not supported");
+            return false;
+        }
+        column++;
+        if (*c == '\n')
+            line++, column = 1;
+        c += more + 1;
+    }
+    return true;
+}
+
+static void builder_run(Builder *builder, struct fy_diag *diag, const char *bytes, size_t size) {
+    struct fy_parse_cfg config = {.flags = FYPCF_QUIET | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_AUTO, .diag = diag};
+    struct fy_parser *parser = fy_parser_create(&config);
+    if (!parser || fy_parser_set_string(parser, bytes, size)) {
+        builder->bad = true;
+        fy_parser_destroy(parser);
+        return;
+    }
+    struct fy_event *event;
+    bool ended = false;
+    while (!builder->bad && !ended && (event = fy_parser_parse(parser))) {
+        ended = event->type == FYET_STREAM_END;
+        builder_take(builder, event);
+        fy_parser_event_free(parser, event);
+    }
+    if (!builder->bad && (!ended || fy_parser_get_stream_error(parser)))
+        builder_report(builder, diag);
+    fy_parser_destroy(parser);
+}
+
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, int set,
+                SceneMessages *messages) {
+    Builder builder = {.arena = arena, .text = text, .messages = messages, .set = set};
+    if (!bytes_are_text(&builder, bytes, size))
+        return NULL;
+    if (size == 0) { // libfyaml takes length 0 for "count yourself"
+        bytes = "\n";
+        size = 1;
+    }
+    struct fy_diag_cfg config;
+    fy_diag_cfg_default(&config);
+    config.fp = NULL;
+    config.level = FYET_ERROR;
+    struct fy_diag *diag = fy_diag_create(&config);
+    if (!diag)
+        return NULL;
+    fy_diag_set_collect_errors(diag, true);
+    builder_run(&builder, diag, bytes, size);
+    fy_diag_destroy(diag);
+    if (builder.bad)
+        return NULL;
+    if (!builder.root && set) { // PATH= with nothing behind it
+        builder.root = arena_new(arena, 1, sizeof *builder.root);
+        if (builder.root) {
+            builder.root->text = arena_text(arena, "", 0);
+            builder.root->place.set = set;
+        }
+    } else if (!builder.root && !arena_failed(arena)) {
+        message_add(messages, text, (ScenePlace){0}, "the scene is empty; at least 'sheets' is needed");
+    }
+    return builder.root;
+}
+
+Node *node_find(const Node *map, const char *key) {
+    Node *found = NULL;
+    for (Node *child = map && map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
+        if (strcmp(child->key, key) == 0)
+            found = child;
+    return found;
+}
+
+const char *node_describe(const Node *node, char *buffer, size_t size) {
+    if (node->kind == NODE_MAP)
+        return "a map";
+    if (node->kind == NODE_LIST) {
+        snprintf(buffer, size, "a list of %u", (unsigned)node->count);
+        return buffer;
+    }
+    if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null")))
+        return "nothing";
+    int most = strlen(node->text) > 40 ? 37 : 40;
+    while (most < 40 && ((unsigned char)node->text[most] & 0xc0) == 0x80)
+        most--;
+    snprintf(buffer, size, "'%.*s%s'", most, node->text, most < 40 ? "..." : "");
+    return buffer;
+}

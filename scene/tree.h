@@ -1,0 +1,34 @@
+// The text of a scene as a tree of lists, maps and single values, each with its place. Knows YAML, not scenes.
+#ifndef SCENE_TREE_H
+#define SCENE_TREE_H
+
+#include "scene/arena.h"
+#include "scene/messages.h"
+
+typedef enum NodeKind { NODE_VALUE, NODE_LIST, NODE_MAP } NodeKind;
+
+typedef struct Node {
+    NodeKind kind;
+    ScenePlace place;
+    bool quoted;          ///< value: it was written in quotes or as a block
+    char *text;           ///< value: zero-terminated, has no zero inside
+    char *key;            ///< its name when it is in a map
+    ScenePlace key_place;
+    uint32_t count;       ///< of children
+    struct Node *first, *last, *next;
+} Node;
+
+/// Reads one YAML document. NULL after a mistake or when out of memory. `set` is the number for places.
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, int set,
+                SceneMessages *messages);
+
+/// Lays --set texts over a tree; their values' places name them. Returns false when out of memory.
+bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessages *messages);
+
+/// The last child with this key, or NULL.
+Node *node_find(const Node *map, const char *key);
+
+/// "a map", "a list of 3", "nothing" or the value itself in quotes, for messages.
+const char *node_describe(const Node *node, char *buffer, size_t size);
+
+#endif

@@ -1,0 +1,166 @@
+#include "scene/units.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "formats/number.h"
+
+#define PI 3.14159265358979323846
+
+typedef struct Unit {
+    const char *name;
+    double factor, offset; // held = factor * (number + offset)
+} Unit;
+
+enum { UNIT_MOST = 6 };
+
+typedef struct DimensionRow {
+    const char *name;
+    Unit units[UNIT_MOST]; // the first is that of bare numbers
+} DimensionRow;
+
+static const DimensionRow dimensions[DIM_COUNT] = {
+    [DIM_NONE] = {"number", {{"", 1, 0}}},
+    [DIM_FRACTION] = {"fraction", {{"", 1, 0}, {"%", 0.01, 0}}},
+    [DIM_TEMPERATURE] = {"temperature", {{"K", 1, 0}, {"C", 1, 273.15}, {"F", 5.0 / 9.0, 459.67}}},
+    [DIM_TEMPERATURE_DIFFERENCE] = {"temperature difference", {{"K", 1, 0}}},
+    [DIM_LENGTH] = {"length", {{"m", 1, 0}, {"cm", 1e-2, 0}, {"mm", 1e-3, 0}, {"um", 1e-6, 0}, {"in", 0.0254, 0}}},
+    [DIM_AREA] = {"area", {{"m2", 1, 0}, {"cm2", 1e-4, 0}, {"mm2", 1e-6, 0}}},
+    [DIM_TIME] = {"time", {{"s", 1, 0}, {"ms", 1e-3, 0}, {"min", 60, 0}}},
+    [DIM_ANGLE] = {"angle", {{"deg", PI / 180, 0}, {"rad", 1, 0}}},
+    [DIM_SPEED] = {"speed", {{"m/s", 1, 0}, {"cm/s", 1e-2, 0}, {"mm/s", 1e-3, 0}}},
+    [DIM_ACCELERATION] = {"acceleration", {{"m/s2", 1, 0}}},
+    [DIM_GRAMMAGE] = {"mass per area", {{"kg/m2", 1, 0}, {"g/m2", 1e-3, 0}}},
+    [DIM_DENSITY] = {"density", {{"kg/m3", 1, 0}, {"g/cm3", 1e3, 0}}},
+    [DIM_FLUX] = {"heat flux", {{"W/m2", 1, 0}, {"kW/m2", 1e3, 0}}},
+    [DIM_CONDUCTANCE] = {"heat transfer coefficient", {{"W/(m2 K)", 1, 0}, {"W/m2/K", 1, 0}, {"kW/(m2 K)", 1e3, 0}}},
+    [DIM_SPECIFIC_HEAT] = {"specific heat", {{"J/(kg K)", 1, 0}, {"kJ/(kg K)", 1e3, 0}}},
+    [DIM_DIFFUSIVITY] = {"diffusivity", {{"m2/s", 1, 0}, {"cm2/s", 1e-4, 0}, {"mm2/s", 1e-6, 0}}},
+    [DIM_RATE] = {"rate", {{"1/s", 1, 0}, {"1/min", 1.0 / 60.0, 0}}},
+    [DIM_RATE_PER_KELVIN] = {"rate per kelvin", {{"1/(K s)", 1, 0}}},
+    [DIM_COMPLIANCE] = {"compliance", {{"m/N", 1, 0}, {"mm/N", 1e-3, 0}}},
+    [DIM_FRAME_RATE] = {"frame rate", {{"1/s", 1, 0}, {"fps", 1, 0}, {"Hz", 1, 0}}},
+};
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// The length of a decimal number at the start of a text; 0 where there is none.
+static size_t number_length(const char *text) {
+    const char *c = text + (*text == '+' || *text == '-');
+    const char *digits = c;
+    while (is_digit(*c))
+        c++;
+    size_t count = (size_t)(c - digits);
+    if (*c == '.') {
+        const char *point = ++c;
+        while (is_digit(*c))
+            c++;
+        count += (size_t)(c - point);
+    }
+    if (!count)
+        return 0;
+    if (*c == 'e' || *c == 'E') {
+        const char *power = c + 1 + (c[1] == '+' || c[1] == '-');
+        if (is_digit(*power)) {
+            while (is_digit(*power))
+                power++;
+            c = power;
+        }
+    }
+    return (size_t)(c - text);
+}
+
+// A unit as it is compared: without blanks, dots and degree signs, powers as digits.
+static void unit_normalise(const char *text, char *unit, size_t size) {
+    static const struct { const char *from, *to;
+    } same[] = {
+        {" ", ""}, {"\u00b0", ""},  {"\u00b7", ""},  {"*", ""},
+        {"^", ""}, {"\u00b2", "2"}, {"\u00b3", "3"}, {"\u00b5", "u"},
+    };
+    size_t used = 0;
+    while (*text && used + 1 < size) {
+        size_t i = 0, count = sizeof same / sizeof *same;
+        while (i < count && strncmp(text, same[i].from, strlen(same[i].from)) != 0)
+            i++;
+        if (i == count) {
+            unit[used++] = *text++;
+        } else {
+            if (*same[i].to)
+                unit[used++] = *same[i].to;
+            text += strlen(same[i].from);
+        }
+    }
+    unit[used] = 0;
+}
+
+NumberFault quantity_read(const char *text, Dimension dimension, double *value) {
+    const DimensionRow *row = &dimensions[dimension];
+    size_t length = number_length(text);
+    const uint8_t *at = (const uint8_t *)text, *end = at + length;
+    char unit[32];
+    double bare = 0;
+    if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end)
+        return NUMBER_NOT_ONE;
+    unit_normalise(text + length, unit, sizeof unit);
+    const Unit *found = &row->units[0];
+    if (unit[0]) {
+        found = NULL;
+        for (int i = 0; i < UNIT_MOST && row->units[i].name; i++) {
+            char name[32];
+            unit_normalise(row->units[i].name, name, sizeof name);
+            if (strcmp(name, unit) == 0)
+                found = &row->units[i];
+        }
+        if (!found)
+            return NUMBER_BAD_UNIT;
+    }
+    *value = found->factor * (bare + found->offset);
+    return NUMBER_GOOD;
+}
+
+const char *quantity_unit(Dimension dimension) { return dimensions[dimension].units[0].name; }
+
+const char *quantity_name(Dimension dimension) { return dimensions[dimension].name; }
+
+void quantity_units(Dimension dimension, char *buffer, size_t size) {
+    size_t used = 0;
+    buffer[0] = 0;
+    for (int i = 0; i < UNIT_MOST && dimensions[dimension].units[i].name && used < size; i++)
+        if (dimensions[dimension].units[i].name[0])
+            used += (size_t)snprintf(buffer + used, size - used, "%s%s", used ? ", " : "",
+                                     dimensions[dimension].units[i].name);
+}
+
+// The locale's decimal sign, whatever and however long it is, becomes a point.
+static void point_mend(char *number) {
+    char *to = number;
+    for (const char *c = number; *c; c++) {
+        if (strchr("0123456789eE+-", *c))
+            *to++ = *c;
+        else if (to == number || to[-1] != '.')
+            *to++ = '.';
+    }
+    *to = 0;
+}
+
+// %g turns 1200 into 1.2e+03; where a plain notation is as short, it is written so.
+static void number_print_plain(double bare, int digits, char *buffer, size_t size) {
+    double magnitude = fabs(bare);
+    int whole = 1;
+    for (double limit = 10; limit <= magnitude; limit *= 10)
+        whole++;
+    if (magnitude >= 1 && magnitude < 1e9)
+        snprintf(buffer, size, "%.*f", digits > whole ? digits - whole : 0, bare);
+    else
+        snprintf(buffer, size, "%.*g", digits, bare);
+    point_mend(buffer);
+}
+
+void quantity_print(float value, Dimension dimension, char *buffer, size_t size) {
+    double bare = (double)value / dimensions[dimension].units[0].factor, again = 0;
+    for (int digits = 1; digits <= 17; digits++) {
+        number_print_plain(bare, digits, buffer, size);
+        if (quantity_read(buffer, dimension, &again) == NUMBER_GOOD && (float)again == value)
+            return;
+    }
+}

@@ -1,0 +1,50 @@
+// Quantities: numbers with units, by dimension.
+#ifndef SCENE_UNITS_H
+#define SCENE_UNITS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/// What a number measures. Bare numbers are in the first unit of each, which is SI but for angles (degrees).
+typedef enum Dimension {
+    DIM_NONE,
+    DIM_FRACTION,
+    DIM_TEMPERATURE,
+    DIM_TEMPERATURE_DIFFERENCE,
+    DIM_LENGTH,
+    DIM_AREA,
+    DIM_TIME,
+    DIM_ANGLE, ///< held in radians
+    DIM_SPEED,
+    DIM_ACCELERATION,
+    DIM_GRAMMAGE,
+    DIM_DENSITY,
+    DIM_FLUX,
+    DIM_CONDUCTANCE,
+    DIM_SPECIFIC_HEAT,
+    DIM_DIFFUSIVITY,
+    DIM_RATE,
+    DIM_RATE_PER_KELVIN,
+    DIM_COMPLIANCE,
+    DIM_FRAME_RATE,
+    DIM_COUNT
+} Dimension;
+
+typedef enum NumberFault { NUMBER_GOOD, NUMBER_NOT_ONE, NUMBER_BAD_UNIT } NumberFault;
+
+/// Reads all of `text` as a number and perhaps a unit, in the "C" locale's notation. *value is in the
+/// dimension's held unit (SI, radians).
+NumberFault quantity_read(const char *text, Dimension dimension, double *value);
+
+/// "meter", "kg/m2": the unit of bare numbers; "" for pure numbers.
+const char *quantity_unit(Dimension dimension);
+const char *quantity_name(Dimension dimension);
+
+/// All units of a dimension, "K, C, F".
+void quantity_units(Dimension dimension, char *buffer, size_t size);
+
+/// The shortest bare number that quantity_read, rounded to float, reads back as `value`.
+void quantity_print(float value, Dimension dimension, char *buffer, size_t size);
+
+#endif

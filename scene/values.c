@@ -1,0 +1,233 @@
+// Single values: numbers, words and names of files.
+#include "scene/values.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void value_wrong(Reader *reader, const Node *node, const SchemaRow *row) {
+    char expected[240], seen[80];
+    row_expected(row, expected, sizeof expected);
+    message_add(reader->messages, reader->text, node->place, "%s must be %s, not %s", row->key, expected,
+                node_describe(node, seen, sizeof seen));
+}
+
+// ---- numbers
+
+static bool in_range(const SchemaRow *row, double value) {
+    return (row->flags & ROW_OPEN_MIN ? value > row->min : value >= row->min) &&
+           (row->flags & ROW_OPEN_MAX ? value < row->max : value <= row->max);
+}
+
+bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *result) {
+    double value = 0;
+    if (node->kind != NODE_VALUE) {
+        value_wrong(reader, node, row);
+        return false;
+    }
+    if ((row->flags & ROW_INF) && strcmp(node->text, "inf") == 0) {
+        *result = INFINITY;
+        return true;
+    }
+    if ((row->flags & ROW_NONE) && strcmp(node->text, "none") == 0) {
+        *result = -INFINITY;
+        return true;
+    }
+    NumberFault fault = quantity_read(node->text, row->dimension, &value);
+    if (fault == NUMBER_BAD_UNIT) {
+        char units[80], seen[80];
+        quantity_units(row->dimension, units, sizeof units);
+        message_add(reader->messages, reader->text, node->place, "%s has an unknown unit for a %s; possible are: %s",
+                    node_describe(node, seen, sizeof seen), quantity_name(row->dimension),
+                    units[0] ? units : "none, only a bare number");
+        return false;
+    }
+    if (fault) {
+        value_wrong(reader, node, row);
+        return false;
+    }
+    float narrow = (float)value;
+    if (!isfinite(narrow) || !in_range(row, narrow)) {
+        char range[80], seen[80];
+        row_range(row, range, sizeof range);
+        message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s %s",
+                    node_describe(node, seen, sizeof seen), row->key, range[0] ? range : "smaller",
+                    quantity_unit(row->dimension));
+        return false;
+    }
+    *result = narrow;
+    return true;
+}
+
+static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, uint64_t most, bool negative,
+                       int64_t *result) {
+    const char *c = node->kind == NODE_VALUE ? node->text : "";
+    bool minus = negative && *c == '-';
+    uint64_t value = 0;
+    bool good = c[minus] != 0;
+    bool large = false;
+    for (c += minus; good && *c; c++) {
+        good = *c >= '0' && *c <= '9';
+        uint64_t digit = (uint64_t)(*c - '0');
+        large = large || (good && value > (most - digit) / 10);
+        value = value * 10 + digit;
+    }
+    if (!good) {
+        value_wrong(reader, node, row);
+        return false;
+    }
+    int64_t number = large ? 0 : minus ? -(int64_t)value : (int64_t)value;
+    if (large || (row->max > row->min && !in_range(row, (double)number))) {
+        char range[80], seen[80];
+        row_range(row, range, sizeof range);
+        message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s",
+                    node_describe(node, seen, sizeof seen), row->key, range[0] ? range : "smaller");
+        return false;
+    }
+    *result = number;
+    return true;
+}
+
+bool value_vector(Reader *reader, const SchemaRow *row, const Node *node, float *result) {
+    if (node->kind != NODE_LIST || (int)node->count != row->length) {
+        value_wrong(reader, node, row);
+        return false;
+    }
+    SchemaRow element = *row;
+    element.type = ROW_FLOAT;
+    bool good = true;
+    int i = 0;
+    for (const Node *child = node->first; child; child = child->next, i++)
+        good = value_float(reader, &element, child, &result[i]) && good;
+    return good;
+}
+
+void value_integer(Reader *reader, const SchemaRow *row, const Node *node, void *field) {
+    int64_t value;
+    if (row->type == ROW_UINT64) {
+        if (read_whole(reader, row, node, UINT64_MAX, false, &value))
+            *(uint64_t *)field = (uint64_t)value;
+    } else if (row->type == ROW_UINT32) {
+        if (read_whole(reader, row, node, UINT32_MAX, false, &value))
+            *(uint32_t *)field = (uint32_t)value;
+    } else if (read_whole(reader, row, node, INT32_MAX, true, &value)) {
+        *(int *)field = (int)value;
+    }
+}
+
+void value_ints(Reader *reader, const SchemaRow *row, const Node *node, int *field) {
+    if (node->kind != NODE_LIST || (int)node->count != row->length) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    SchemaRow element = *row;
+    element.type = ROW_INT;
+    for (const Node *child = node->first; child; child = child->next)
+        value_integer(reader, &element, child, field++);
+}
+
+// ---- words
+
+void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *field) {
+    static const char *const words[] = {"false", "true", "no", "yes", "off", "on"};
+    if (node->kind == NODE_VALUE)
+        for (int i = 0; i < 6; i++)
+            if (strcmp(node->text, words[i]) == 0) {
+                *field = i % 2;
+                return;
+            }
+    value_wrong(reader, node, row);
+}
+
+bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const char *const *names, int *result) {
+    if (node->kind != NODE_VALUE) {
+        value_wrong(reader, node, row);
+        return false;
+    }
+    Nearest nearest = {.word = node->text};
+    for (int i = 0; names[i]; i++) {
+        if (strcmp(node->text, names[i]) == 0) {
+            *result = i;
+            return true;
+        }
+        nearest_offer(&nearest, names[i]);
+    }
+    char expected[240], seen[80], hint[80];
+    SchemaRow choice = *row;
+    choice.type = ROW_ENUM;
+    choice.names = names;
+    row_expected(&choice, expected, sizeof expected);
+    message_add(reader->messages, reader->text, node->place, "%s must be %s, not %s%s", row->key, expected,
+                node_describe(node, seen, sizeof seen), nearest_hint(&nearest, hint, sizeof hint));
+    return false;
+}
+
+void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field) {
+    static const char *const names[] = {
+        [SINGE_RED] = "red", [SINGE_GREEN] = "green", [SINGE_BLUE] = "blue", [SINGE_YELLOW] = "yellow", NULL};
+    if (node->kind != NODE_LIST || node->count != SINGE_COLOUR_COUNT) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    int seen = 0;
+    for (const Node *child = node->first; child; child = child->next) {
+        int colour = 0;
+        if (!value_word(reader, row, child, names, &colour))
+            return;
+        if (seen & 1 << colour) {
+            message_add(reader->messages, reader->text, child->place, "'%s' is there twice; each colour comes once",
+                        names[colour]);
+            return;
+        }
+        seen |= 1 << colour;
+        *field++ = (SingeColour)colour;
+    }
+}
+
+bool value_is_text(const Node *node) {
+    char seen[80];
+    return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];
+}
+
+void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
+    bool good = value_is_text(node) && strlen(node->text) <= 100;
+    for (const char *c = good ? node->text : ""; *c; c++)
+        good = good && (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c) &&
+               !(c == node->text && *c == '.');
+    if (good)
+        *field = node->text;
+    else
+        value_wrong(reader, node, row);
+}
+
+void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field) {
+    if (!value_is_text(node) || strlen(node->text) > 4000) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    field->name = field->path = node->text;
+    field->place = node->place;
+    if (!reader->base_dir)
+        return;
+    if (node->text[0] != '/' && reader->base_dir[0]) {
+        size_t folder = strlen(reader->base_dir), length = strlen(node->text);
+        char *path = arena_new(reader->arena, folder + length + 2, 1);
+        if (!path)
+            return;
+        memcpy(path, reader->base_dir, folder);
+        path[folder] = '/';
+        memcpy(path + folder + 1, node->text, length);
+        field->path = path;
+    }
+    struct stat status;
+    const char *fault = NULL;
+    if (stat(field->path, &status))
+        fault = "there is no such file";
+    else if (S_ISDIR(status.st_mode))
+        fault = "this is a folder";
+    else if (access(field->path, R_OK))
+        fault = "the file cannot be read";
+    if (fault)
+        message_add(reader->messages, reader->text, node->place, "%s: %s (%s)", row->key, fault, field->path);
+}

@@ -1,0 +1,25 @@
+// From one node of the tree to one value, checked against its row. What is wrong is told with its place and
+// leaves the value as it was.
+#ifndef SCENE_VALUES_H
+#define SCENE_VALUES_H
+
+#include "scene/schema.h"
+
+/// "KEY must be WHAT THE ROW TAKES, not WHAT IS THERE".
+void value_wrong(Reader *reader, const Node *node, const SchemaRow *row);
+
+bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *result);
+bool value_vector(Reader *reader, const SchemaRow *row, const Node *node, float *result);
+/// `field` is an int, uint32_t or uint64_t by the row's type.
+void value_integer(Reader *reader, const SchemaRow *row, const Node *node, void *field);
+void value_ints(Reader *reader, const SchemaRow *row, const Node *node, int *field);
+void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *field);
+/// The index of the node's word in `names`.
+bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const char *const *names, int *result);
+void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field);
+bool value_is_text(const Node *node);
+void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field);
+/// Also looks whether the file is there, where the reader knows a folder.
+void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field);
+
+#endif

@@ -1,0 +1,186 @@
+// From a scene to a simulation and a preview.
+#include "parsing.h"
+
+#include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "scene/rotation.h"
+
+static void turn(const float q[4], const double v[3], double out[3]) {
+    double x = q[0], y = q[1], z = q[2], w = q[3];
+    double t[3] = {2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])};
+    out[0] = v[0] + w * t[0] + (y * t[2] - z * t[1]);
+    out[1] = v[1] + w * t[1] + (z * t[0] - x * t[2]);
+    out[2] = v[2] + w * t[2] + (x * t[1] - y * t[0]);
+}
+
+// About x, then y, then z: a quarter about x takes y to z, then one about z leaves it; and matrix = quaternion.
+static void test_rotation(void **state) {
+    (void)state;
+    const float quarter = 1.57079633f, angles[3] = {quarter, 0, quarter}, any[3] = {0.3f, -1.2f, 2.5f};
+    const double y[3] = {0, 1, 0}, x[3] = {1, 0, 0}, v[3] = {0.2, -0.7, 1.1};
+    float q[4];
+    double out[3], m[9];
+    rotation_quaternion(angles, q);
+    turn(q, y, out);
+    assert_true(fabs(out[0]) < 1e-6 && fabs(out[1]) < 1e-6 && fabs(out[2] - 1) < 1e-6);
+    turn(q, x, out);
+    assert_true(fabs(out[0]) < 1e-6 && fabs(out[1] - 1) < 1e-6 && fabs(out[2]) < 1e-6);
+    rotation_quaternion(any, q);
+    rotation_matrix(any, m);
+    turn(q, v, out);
+    for (int i = 0; i < 3; i++)
+        assert_true(fabs(out[i] - (m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2])) < 1e-6);
+}
+
+static void test_sim(void **state) {
+    (void)state;
+    Scene *scene =
+        good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
+                   "    translate: [0, 0, 1]\n    scale: 2\n"
+                   "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
+                   "  - grid: {size: [1, 1], cells: [3, 3]}\n"
+                   "sources: [{kind: spot, position: [0, 0, 1]}, {kind: plume}, {kind: ball, position: [0, 0, 0]}]\n"
+                   "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
+                   "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
+                   NULL, 0);
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim;
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
+    scene_messages_print(&messages, stderr);
+    assert_int_equal(result, SINGE_OK);
+    SingeCensus census = singe_sim_census(sim);
+    assert_int_equal(census.particles, 15 + 8 + 16 + 9);
+    SingeView view = singe_sim_view(sim);
+    // the first grid, doubled and upright: x from -0.2 to 0.2, z from 0.9 to 1.1
+    assert_true(fabsf(view.position[0][0] + 0.2f) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f &&
+                fabsf(view.position[0][2] - 0.9f) < 1e-6f);
+    int pinned = 0;
+    for (uint32_t i = 0; i < view.particle_count; i++)
+        pinned += (view.particle_flags[i] & SINGE_PINNED) != 0;
+    assert_int_equal(pinned, 3);
+    assert_int_equal(singe_sim_step(sim), SINGE_OK);
+    singe_sim_destroy(sim);
+    scene_assets_free(&assets);
+    scene_free(scene);
+}
+
+// What the library refuses is told at the object that it is about.
+static void test_refused(void **state) {
+    (void)state;
+    Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim;
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    assert_int_not_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    assert_null(sim);
+    assert_int_equal(messages.count, 1);
+    assert_string_equal(messages.items[0].origin, "test.yaml:5:5");
+    scene_messages_free(&messages);
+    scene_assets_free(&assets);
+    scene_free(scene);
+}
+
+// Files that are there but are not what they should be: every one is told, at the line of its name.
+static void test_bad_files(void **state) {
+    (void)state;
+    char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/bad.obj", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", file);
+    fclose(file);
+    static const char text[] = "sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
+                               "  - grid: {size: [1, 1], cells: [2, 2]}\n"
+                               "    material: {mass_rate: {from: 1, to: 2, attribute: density}}\n";
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_ERROR_FORMAT);
+    assert_int_equal(messages.count, 3);
+    assert_string_equal(messages.items[0].origin, "t.yaml:2:11");
+    assert_non_null(strstr(messages.items[0].text, "bad.obj:4"));
+    assert_string_equal(messages.items[1].origin, "t.yaml:3:14");
+    assert_string_equal(messages.items[2].origin, "t.yaml:5:55");
+    assert_non_null(strstr(messages.items[2].text, "no attribute 'density'"));
+    assert_null(assets.meshes);
+    scene_messages_free(&messages);
+    scene_free(scene);
+    unlink(path);
+    rmdir(folder);
+}
+
+static void test_preview(void **state) {
+    (void)state;
+    Scene *scene = good_scene(
+        SHEET "    colour: [0.5, 0.25, 1]\n"
+              "sources:\n"
+              "  - {kind: ball, radius: 2 cm, temperature: 1300, start: 1, end: 3,\n"
+              "     path: [{time: 1, position: [0, 0, 0]}, {time: 3, position: [2, 0, 4]}]}\n"
+              "  - {kind: ball, position: [0, 0, 0], visible: no}\n"
+              "colliders:\n  - {kind: plane}\n  - {kind: sphere, radius: 1, position: [1, 2, 3], temperature: 900}\n"
+              "preview: {size: [64, 32], ground: {height: 1 cm}, camera: {fov: 60}}\n",
+        NULL, 0);
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    PreviewDef def;
+    scene_preview(scene, &assets, &def);
+    assert_true(def.width == 64 && def.height == 32 && def.sheet_count == 1 && def.colours[0][1] == 0.25f);
+    assert_true(def.ground_height == 0.01f && fabsf(def.camera.fov - 1.04719755f) < 1e-6f && !def.pictures[0]);
+    PreviewShape shapes[2];
+    assert_int_equal(scene_shapes(scene, 0.5, NULL, 0), 1); // before the ball's start
+    assert_int_equal(scene_shapes(scene, 2, shapes, 2), 2);
+    assert_true(shapes[0].kind == SINGE_COLLIDER_SPHERE && shapes[0].position[1] == 2);
+    assert_true(shapes[0].temperature == scene->sim.ambient_temperature); // it gives no heat
+    assert_true(shapes[1].position[0] == 1 && shapes[1].position[2] == 2 && shapes[1].temperature == 1300);
+    assert_true(shapes[1].radius == 0.02f && shapes[1].rotation[3] == 1);
+    assert_int_equal(scene_shapes(scene, 2, shapes, 1), 2);
+    scene_assets_free(&assets);
+    scene_free(scene);
+}
+
+static void test_examples(void **state) {
+    (void)state;
+    static const char *const paths[] = {"examples/letter/letter.yaml", "examples/letter-hanging/letter-hanging.yaml",
+                                        "examples/hot-sphere/hot-sphere.yaml"};
+    for (int i = 0; i < 3; i++) {
+        Scene *scene;
+        SceneAssets assets;
+        SceneMessages messages = {0};
+        SingeSim *sim;
+        SingeSimDef hooks = singe_default_sim();
+        SingeResult result = scene_read(paths[i], NULL, 0, &scene, &messages);
+        if (!result)
+            result = scene_load(scene, &assets, &messages);
+        if (!result) {
+            result = scene_build(scene, &assets, &hooks, &sim, &messages);
+            scene_assets_free(&assets);
+        }
+        scene_messages_print(&messages, stderr);
+        assert_int_equal(result, SINGE_OK);
+        SingeView view = singe_sim_view(sim);
+        uint32_t pinned = 0;
+        for (uint32_t p = 0; p < view.particle_count; p++)
+            pinned += (view.particle_flags[p] & SINGE_PINNED) != 0;
+        assert_true(scene->pin_count ? pinned >= 4 * scene->pins[0].point_count : pinned == 0);
+        singe_sim_destroy(sim);
+        scene_free(scene);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rotation),  cmocka_unit_test(test_sim),     cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_preview), cmocka_unit_test(test_examples),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

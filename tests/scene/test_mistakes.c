@@ -1,0 +1,318 @@
+// Bad scenes: each mistake at its exact place, all at once, and no bytes that crash the reader.
+#include "parsing.h"
+
+static SceneMessages failing(const char *text, size_t size, const char *base_dir, const char *const *sets,
+                             int set_count, SingeResult expected) {
+    Scene *scene = (Scene *)&expected;
+    SceneMessages messages = {0};
+    SingeResult result = scene_parse("bad.yaml", text, size, base_dir, sets, set_count, &scene, &messages);
+    if (result != expected)
+        print_error("in:\n%s\n", text);
+    assert_int_equal(result, expected);
+    assert_null(scene);
+    assert_true(messages.count > 0);
+    return messages;
+}
+
+static void expect_message(const SceneMessages *messages, uint32_t index, const char *origin, const char *part) {
+    assert_true(index < messages->count);
+    const SceneMessage *message = &messages->items[index];
+    if (strcmp(message->origin, origin) != 0 || !strstr(message->text, part))
+        print_error("expected %s ... %s\n", origin, part), scene_messages_print(messages, stderr);
+    assert_string_equal(message->origin, origin);
+    assert_non_null(strstr(message->text, part));
+}
+
+// SHEET with one more line (line 3), which is wrong in one way.
+static void one(const char *line, const char *origin, const char *part) {
+    char text[2000];
+    snprintf(text, sizeof text, "%s%s\n", SHEET, line);
+    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    expect_message(&messages, 0, origin, part);
+    if (messages.count != 1)
+        scene_messages_print(&messages, stderr);
+    assert_int_equal(messages.count, 1);
+    scene_messages_free(&messages);
+}
+
+static void test_values(void **state) {
+    (void)state;
+    one("fps: fast", "bad.yaml:3:6", "fps must be a frame rate (1/s, fps, Hz), not 'fast'");
+    one("fps: [1]", "bad.yaml:3:6", "not a list");
+    one("fps: {}", "bad.yaml:3:6", "not a map");
+    one("fps:", "bad.yaml:3:1", "not nothing");
+    one("gravity: [0, 0, '']", "bad.yaml:3:17", "not ''");
+    one("fps: nan", "bad.yaml:3:6", "not 'nan'");
+    one("fps: inf", "bad.yaml:3:6", "not 'inf'");
+    one("fps: 24 24", "bad.yaml:3:6", "");
+    one("fps: 0", "bad.yaml:3:6", "out of range: fps must be 0.001 to 100000");
+    one("pace: 0", "bad.yaml:3:7", "pace must be > 0");
+    one("pace: 1e60", "bad.yaml:3:7", "out of range");
+    one("pace: 1e999999", "bad.yaml:3:7", "");
+    one("pace: 1e-60", "bad.yaml:3:7", "pace must be > 0");
+    one("frames: 1e3", "bad.yaml:3:9", "whole number");
+    one("frames: 2.0", "bad.yaml:3:9", "whole number");
+    one("frames: -1", "bad.yaml:3:9", "frames must be >= 0");
+    one("frames: 99999999999999999999999", "bad.yaml:3:9", "out of range");
+    one("frames: -99999999999999999999999", "bad.yaml:3:9", "out of range");
+    one("seed: 18446744073709551616", "bad.yaml:3:7", "out of range");
+    one("seed: -1", "bad.yaml:3:7", "whole number");
+    one("ambient_temperature: 20 m", "bad.yaml:3:22", "unknown unit for a temperature; possible are: K, C, F");
+    one("ambient_temperature: -300 C", "bad.yaml:3:22", "> 0 K");
+    one("gravity: [0, 0]", "bad.yaml:3:10", "a list of 3 numbers");
+    one("gravity: [0, 0, down]", "bad.yaml:3:17", "not 'down'");
+    one("name: a/b", "bad.yaml:3:7", "name must be");
+    one("name: .hidden", "bad.yaml:3:7", "name must be");
+    one("solver: {order: [red, green, blue, red]}", "bad.yaml:3:36", "'red' is there twice");
+    one("solver: {order: [red, green, blue, yelow]}", "bad.yaml:3:36", "did you mean 'yellow'?");
+    one("solver: {order: [red]}", "bad.yaml:3:17", "each once");
+    one("wind: 3", "bad.yaml:3:7", "wind must be a map");
+    one("preview: {camera: {eye: [0, 0, 0], target: [0, 0, 0]}}", "bad.yaml:3:19", "same point");
+    one("preview: {camera: {fov: 180}}", "bad.yaml:3:25", "out of range");
+    one("preview: {light: {direction: [0, 0, 0]}}", "bad.yaml:3:30", "must not be zero");
+}
+
+static void test_keys(void **state) {
+    (void)state;
+    one("frame: 3", "bad.yaml:3:1", "unknown key 'frame' in the scene; did you mean 'frames'?");
+    one("Sources: []", "bad.yaml:3:1", "did you mean 'sources'?");
+    one("zzzzzzzz: 3", "bad.yaml:3:1", "unknown key 'zzzzzzzz' in the scene");
+    one("fps: 24\nfps: 25", "bad.yaml:4:1", "'fps' is given twice");
+    one("preview: {cmaera: {}}", "bad.yaml:3:11", "did you mean 'camera'?");
+    one("preview: {light: {colour: [1, 1, 1], color: [1, 1, 1]}}", "bad.yaml:3:38", "did you mean 'colour'?");
+}
+
+static void test_objects(void **state) {
+    (void)state;
+    one("sources: [{}]", "bad.yaml:3:11", "needs 'kind'");
+    one("sources: [3]", "bad.yaml:3:11", "must be a map, not '3'");
+    one("sources: {kind: ball}", "bad.yaml:3:10", "a list of maps");
+    one("sources: [{kind: bal, position: [0, 0, 0]}]", "bad.yaml:3:18", "did you mean 'ball'?");
+    one("sources: [{kind: ball}]", "bad.yaml:3:11", "a ball needs 'path' or 'position'");
+    one("sources: [{kind: ball, path: []}]", "bad.yaml:3:30", "at least one entry");
+    one("sources: [{kind: ball, path: [{time: 0}], position: [0, 0, 0]}]", "bad.yaml:3:43", "short for a path");
+    one("sources: [{kind: ball, path: [{position: [0, 0, 0]}]}]", "bad.yaml:3:31", "needs 'time'");
+    one("sources: [{kind: ball, path: [{time: 1}, {time: 1}]}]", "bad.yaml:3:49", "times must increase");
+    one("sources: [{flux: 3, kind: spot, position: [0, 0, 0]}]", "bad.yaml:3:12", "a spot has no 'flux'");
+    one("sources: [{kind: spot}]", "bad.yaml:3:11", "needs 'position'");
+    one("sources: [{kind: spot, position: [0, 0, 0], path: []}]", "bad.yaml:3:45", "a spot has no 'path'");
+    one("sources: [{kind: spot, position: [0, 0, 0], start: 2, end: 1}]", "bad.yaml:3:60", "end before its start");
+    one("sources: [{kind: picture}]", "bad.yaml:3:11", "needs 'picture'");
+    one("sources: [{kind: picture, picture: ''}]", "bad.yaml:3:36", "name of a file");
+    one("colliders: [{kind: sphere, half_size: [1, 1, 1]}]", "bad.yaml:3:28", "a sphere has no 'half_size'");
+    one("colliders: [{kind: box, half_size: [1, 0, 1]}]", "bad.yaml:3:40", "half_size must be > 0 m");
+    one("pins: [{}]", "bad.yaml:3:8", "a pin needs 'points' or 'vertices'");
+    one("pins: [{points: []}]", "bad.yaml:3:17", "at least one");
+    one("pins: [{points: [[0, 0]]}]", "bad.yaml:3:18", "a list of 3");
+    one("pins: [{vertices: [-1]}]", "bad.yaml:3:20", "whole number");
+    one("pins: [{sheet: shet1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet 'shet1'; did you mean 'sheet1'?");
+    one("pins: [{sheet: 1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet '1'");
+}
+
+static void test_sheets(void **state) {
+    (void)state;
+    one("    mesh: x.obj", "bad.yaml:2:5", "exclude each other");
+    one("  - name: x", "bad.yaml:3:5", "needs 'mesh' (a file) or 'grid'");
+    one("  - {grid: {size: [1, 1], cells: [1, 1]}, name: sheet1}", "bad.yaml:3:49", "two sheets are called 'sheet1'");
+    one("  - {grid: {size: [1, 1], cells: [0, 1]}}", "bad.yaml:3:35", "cells must be 1 to 20000");
+    one("  - {grid: {size: [1, 1], cells: [20000, 20000]}}", "bad.yaml:3:12", "100 million");
+    one("  - {grid: {size: [1, 1]}}", "bad.yaml:3:12", "needs 'cells'");
+    one("    material: {grammage: 80 mm}", "bad.yaml:3:26", "possible are: kg/m2, g/m2");
+    one("    material: {thickening: 0.5}", "bad.yaml:3:28", "0 (as little as the cells need) or 1 and more");
+    one("    material: {ablate: maybe}", "bad.yaml:3:24", "true or false");
+    one("    material: {mass_rate: {from: 1}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
+    one("    material: {mass_rate: {from: 1, to: 2}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
+    one("    material: {mass_rate: {from: 1, to: 2, picture: a, attribute: b}}", "bad.yaml:3:27", "one of");
+    one("    material: {mass_rate: {from: 1, to: -2, attribute: b}}", "bad.yaml:3:41", "mass_rate must be >= 0");
+    one("    material: {mass_rate: {from: 1, to: 2, attribute: b, atribute: c}}", "bad.yaml:3:58",
+        "did you mean 'attribute'?");
+    one("    material: {mass_rate: {from: 1, to: 2, noise: {octaves: 9}}}", "bad.yaml:3:61", "octaves must be 1 to 8");
+    one("    material: {mass_rate: {from: 1, to: 2, noise: 4}}", "bad.yaml:3:51", "noise must be a map");
+    one("    material: {mass_min: 1}", "bad.yaml:3:26", "0 to < 1");
+    one("    material: {weight: {purple: 1}}", "bad.yaml:3:25", "unknown key 'purple'");
+}
+
+static void whole(const char *text, const char *origin, const char *part) {
+    SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    expect_message(&messages, 0, origin, part);
+    scene_messages_free(&messages);
+}
+
+static void test_syntax(void **state) {
+    (void)state;
+    whole("", "bad.yaml", "empty");
+    whole("# nothing\n", "bad.yaml", "empty");
+    whole("- 1\n", "bad.yaml:1:1", "a scene must be a map");
+    whole("hello", "bad.yaml:1:1", "a scene must be a map");
+    whole("frames: 3\n", "bad.yaml:1:1", "needs 'sheets'");
+    whole("sheets: []\n", "bad.yaml:1:9", "at least one sheet");
+    whole("frames: [1, 2\n", "bad.yaml:2:1", "not valid YAML");
+    whole("frames: \"abc\n", "bad.yaml:1:10", "not valid YAML");
+    whole("a: &x 1\n", "bad.yaml:1:7", "anchors and aliases");
+    whole("a: *x\n", "bad.yaml:1:4", "anchors and aliases");
+    whole("a: !!int 1\n", "bad.yaml:1:10", "tags");
+    whole("? [a, b]\n: 1\n", "bad.yaml:1:3", "a key must be a single word");
+    whole("a: 1\n---\nb: 2\n", "bad.yaml:2:1", "second document");
+    whole("a: \"\\0\"\n", "bad.yaml:1:4", "zero character");
+    whole("%YAML 1.2\n---\nframes: 3\n", "bad.yaml:1:1", "directives");
+    whole("frames: 3\x01\n", "bad.yaml:1:10", "not text");
+    whole("frames: 3\nname: \xff\n", "bad.yaml:2:7", "not text");
+}
+
+static void expect_origin_prefix(const SceneMessages *messages, const char *prefix) {
+    assert_true(messages->count > 0);
+    assert_memory_equal(messages->items[0].origin, prefix, strlen(prefix));
+}
+
+static void test_limits(void **state) {
+    (void)state;
+    size_t size = (1 << 20) + 1;
+    char *text = malloc(size + 1);
+    memset(text, ' ', size);
+    text[size] = 0;
+    SceneMessages messages = failing(text, size, NULL, NULL, 0, SINGE_ERROR_LIMIT);
+    expect_message(&messages, 0, "bad.yaml", "at most 1 MiB");
+    scene_messages_free(&messages);
+    memset(text, '[', 100000); // nested far too deep
+    messages = failing(text, 100000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    expect_origin_prefix(&messages, "bad.yaml:1:");
+    scene_messages_free(&messages);
+    for (int i = 0; i < 50000; i++) // unknown keys without end: the first 200 are told, the rest counted
+        snprintf(text + 10 * i, 11, "k%07d:\n", i);
+    messages = failing(text, 500000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    assert_int_equal(messages.count, 200);
+    assert_true(messages.left_out >= 49800);
+    scene_messages_free(&messages);
+    free(text);
+}
+
+static void test_all_at_once(void **state) {
+    (void)state;
+    static const char text[] = "frames: x\n"
+                               "sheets:\n"
+                               "  - gird: {}\n"
+                               "    material: {gramage: 3, thickness: 3 K}\n"
+                               "sources: [{kind: ball}]\n"
+                               "steps: 0\n";
+    static const char *const sets[] = {"fps=-1", "nme=x", "sources.3.kind=ball", "steps.x=1", "novalue", "=3",
+                                       "pace=[", "a..b=1"};
+    SceneMessages messages = failing(text, strlen(text), NULL, sets, 8, SINGE_ERROR_FORMAT);
+    expect_message(&messages, 0, "bad.yaml:1:9", "frames must be a whole number, not 'x'");
+    expect_message(&messages, 1, "bad.yaml:3:5", "did you mean 'grid'?");
+    expect_message(&messages, 2, "bad.yaml:3:5", "needs 'mesh'");
+    expect_message(&messages, 3, "bad.yaml:4:16", "did you mean 'grammage'?");
+    expect_message(&messages, 4, "bad.yaml:4:39", "possible are: m, cm, mm, um, in");
+    expect_message(&messages, 5, "bad.yaml:5:11", "a ball needs");
+    expect_message(&messages, 6, "bad.yaml:6:8", "steps must be 1 to 100000");
+    expect_message(&messages, 7, "--set fps=-1", "out of range");
+    expect_message(&messages, 8, "--set nme=x", "did you mean 'name'?");
+    expect_message(&messages, 9, "--set sources.3.kind=ball", "'3' is not an entry of that list, which has 1");
+    expect_message(&messages, 10, "--set steps.x=1", "'0' has no 'x' in it");
+    expect_message(&messages, 11, "--set novalue", "expected PATH=VALUE");
+    expect_message(&messages, 12, "--set =3", "expected PATH=VALUE");
+    expect_message(&messages, 13, "--set pace=[", "not valid YAML");
+    expect_message(&messages, messages.count - 1, "--set a..b=1", "expected PATH=VALUE");
+    assert_string_equal(messages.items[4].source, "    material: {gramage: 3, thickness: 3 K}");
+    assert_int_equal(messages.items[4].caret, 39);
+    scene_messages_free(&messages);
+}
+
+static void test_print(void **state) {
+    (void)state;
+    static const char bad[] = SHEET "\tx: 1\nfps: \u00e9\u00e9 9\nname: [\u00e9, 1]\n";
+    Scene *scene;
+    SceneMessages messages = {0};
+    static const char text[] = SHEET "name: x\nfps: {\u00e9: 9, \u00e9b: 3}\n";
+    assert_int_equal(scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_ERROR_FORMAT);
+    char *printed = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&printed, &size);
+    scene_messages_print(&messages, file);
+    fclose(file);
+    assert_string_equal(printed, "t.yaml:4:6: error: fps must be a frame rate (1/s, fps, Hz), not a map\n"
+                                 "    fps: {\u00e9: 9, \u00e9b: 3}\n"
+                                 "         ^\n");
+    free(printed);
+    scene_messages_free(&messages);
+    assert_int_not_equal(scene_parse("t.yaml", bad, strlen(bad), NULL, NULL, 0, &scene, &messages), SINGE_OK);
+    scene_messages_free(&messages);
+}
+
+static void test_files(void **state) {
+    (void)state;
+    static const char text[] = "sheets:\n  - {mesh: missing.obj, picture: scene}\n";
+    SceneMessages messages = failing(text, strlen(text), ".", NULL, 0, SINGE_ERROR_FORMAT);
+    expect_message(&messages, 0, "bad.yaml:2:12", "mesh: there is no such file (./missing.obj)");
+    expect_message(&messages, 1, "bad.yaml:2:34", "picture: this is a folder (./scene)");
+    scene_messages_free(&messages);
+    Scene *scene;
+    assert_int_equal(scene_read("tests/scene/none.yaml", NULL, 0, &scene, &messages), SINGE_ERROR_FILE);
+    assert_null(scene);
+    assert_non_null(strstr(messages.items[0].text, "none.yaml"));
+    scene_messages_free(&messages);
+    assert_int_equal(scene_read("tests/scene", NULL, 0, &scene, &messages), SINGE_ERROR_FILE);
+    scene_messages_free(&messages);
+}
+
+// Every prefix of a scene in flow style is incomplete and must be refused.
+static void test_truncated(void **state) {
+    (void)state;
+    static const char text[] =
+        "{frames: 20, 'name': \"a\\u00e9\", sheets: [{grid: {size: [20 cm, 0.3], cells: [2, 3]}, material: {mass_rate:"
+        " {from: 1, to: 2, noise: {seed: 3}}}}], sources: [{kind: spot, position: [0, 0, 0]}], # c\n preview: {size: "
+        "[32, 32]}}";
+    size_t size = strlen(text);
+    Scene *scene = good_scene(text, NULL, 0);
+    scene_free(scene);
+    for (size_t length = 0; length < size; length++) {
+        char *prefix = malloc(length + 1); // its end is the end of a block, for the sanitizer
+        memcpy(prefix, text, length);
+        prefix[length] = 0;
+        SceneMessages messages = {0};
+        assert_int_equal(scene_parse("t", prefix, length, NULL, NULL, 0, &scene, &messages), SINGE_ERROR_FORMAT);
+        assert_true(messages.count > 0);
+        scene_messages_free(&messages);
+        free(prefix);
+    }
+}
+
+// Prefixes in block style may be scenes of their own; then they must read back from their dump.
+static void test_truncated_block(void **state) {
+    (void)state;
+    static const char text[] =
+        SHEET "    material:\n      grammage: 80 g/m2\n      mass_rate:\n        from: 1\n        to: 2\n"
+              "        attribute: x\nsources:\n  - kind: ball\n    position: [1, 2, 3]\nframes: 1234\n";
+    int good = 0;
+    for (size_t length = 0; length <= strlen(text); length++) {
+        Scene *scene;
+        SceneMessages messages = {0};
+        char *prefix = malloc(length + 1);
+        memcpy(prefix, text, length);
+        prefix[length] = 0;
+        SingeResult result = scene_parse("t", prefix, length, NULL, NULL, 0, &scene, &messages);
+        assert_true(result == SINGE_OK || (result == SINGE_ERROR_FORMAT && messages.count > 0));
+        if (result == SINGE_OK) {
+            good++;
+            char *dump = dump_text(scene, SCENE_YAML);
+            Scene *again = good_scene(dump, NULL, 0);
+            scene_free(again);
+            free(dump);
+        }
+        scene_free(scene);
+        scene_messages_free(&messages);
+        free(prefix);
+    }
+    // Whole at: the grid's line and blanks behind it (6), grammage 8, 80, "80 ", 80 g/m2 and blanks (11), the
+    // attribute's line (2), the position's (2), frames 1 to 1234 (5).
+    assert_int_equal(good, 26);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),    cmocka_unit_test(test_keys),   cmocka_unit_test(test_objects),
+        cmocka_unit_test(test_sheets),    cmocka_unit_test(test_syntax), cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_all_at_once), cmocka_unit_test(test_print), cmocka_unit_test(test_files),
+        cmocka_unit_test(test_truncated), cmocka_unit_test(test_truncated_block),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

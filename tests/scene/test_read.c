@@ -1,0 +1,180 @@
+// Good scenes: values arrive, defaults stand, dumps read back, --set and JSON do what the file does.
+#include "parsing.h"
+
+#include <math.h>
+
+static const char full[] =
+    "name: all\n"
+    "frames: 12\nfps: 25\nsteps: 10\npace: 4\nseed: 18446744073709551615\nambient_temperature: 20 C\n"
+    "gravity: [0, 1, -2.5]\nair_density: 1.25\nheat_tolerance: 1e-6\n"
+    "sheets:\n"
+    "  - name: one\n    mesh: one.obj\n    picture: \"pic \\\"x\\\".png\"\n    colour: [0.5, 1, 0]\n    scale: 0.001\n"
+    "    rotate: [90, 0, 45]\n    translate: [0, 1 cm, 2 mm]\n    velocity: [1, 2, 3]\n    drop_pieces_below: 4 mm2\n"
+    "    material:\n      grammage: 60 g/m2\n      thickness: {from: 1 mm, to: 2 mm, picture: t.png}\n"
+    "      heat_operator: umbrella\n      mass_rate: {to: 0.02, from: 0.01, noise: {scale: 3 mm, octaves: 2, seed: "
+    "7}}\n"
+    "      mass_loss: {from: 0.1, to: 0.3, attribute: density}\n      ablate: off\n      thickening: 2.5\n"
+    "      weight: {red: 0.5, blue: {from: 0, to: 1, picture: w.png}}\n      compliance: {yellow: 1e-4}\n"
+    "  - grid: {size: [20 cm, 300 mm], cells: [4, 6]}\n"
+    "sources:\n"
+    "  - {kind: ball, temperature: 1300, path: [{time: 0, position: [0, 0, 1]}, {time: 2, position: [1, 0, 1]}]}\n"
+    "  - {kind: ball, position: [1, 2, 3], visible: no}\n"
+    "  - {kind: spot, position: [1, 2, 3], start: 1, end: 1250 ms}\n"
+    "  - {kind: picture, picture: f.png, flux: 20 kW/m2, strength: [{time: 0, value: 0}, {time: 1, value: 50 %}]}\n"
+    "  - {kind: plume, share: 25 %, height: 5 cm, conductance: 12}\n"
+    "colliders:\n"
+    "  - {kind: plane, friction: 0.25}\n"
+    "  - {kind: box, half_size: [1, 2, 3], rotation: [0, 90, 0], position: [0, 0, 5], colour: [1, 0, 0]}\n"
+    "  - {kind: capsule, radius: 1, height: 2, path: [{time: 1}, {time: 2, rotation: [10, 20, 30]}]}\n"
+    "pins:\n"
+    "  - {sheet: sheet2, points: [[0, 0, 1], [1 cm, 0, 0]], radius: 3 mm}\n"
+    "  - {sheet: 0, vertices: [3, 1, 2], path: [{time: 0}, {time: 1, position: [0, 0, 1]}]}\n"
+    "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
+    "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
+    "preview:\n  size: [320, 180]\n  samples: 4\n  camera: {eye: [1, 1, 1], fov: 50}\n"
+    "  light: {direction: [0, 0, 1], angle: 5, colour: [3, 2, 1]}\n  ground: {height: -0.5}\n  sky: [1, 1, 1]\n";
+
+static void check_full(const Scene *scene) {
+    assert_string_equal(scene->name, "all");
+    assert_int_equal(scene->frames, 12);
+    assert_true(scene->fps == 25 && scene->steps == 10 && scene->sim.pace == 4);
+    assert_true(scene->sim.seed == UINT64_MAX && scene->sim.wind.seed == UINT32_MAX);
+    assert_true(scene->sim.time_step == (float)(1.0 / 250));
+    assert_true(scene->sim.ambient_temperature == 293.15f && scene->sim.gravity[2] == -2.5f);
+    assert_int_equal(scene->sheet_count, 2);
+    const SceneSheet *sheet = &scene->sheets[0];
+    assert_string_equal(sheet->picture.name, "pic \"x\".png");
+    assert_true(sheet->scale == 0.001f && sheet->translate[1] == 0.01f && sheet->drop_pieces_below == 4e-6f);
+    assert_true(fabsf(sheet->rotate[0] - 1.5707964f) < 1e-7f);
+    const SingeMaterialDef *material = &sheet->material.def;
+    assert_true(material->grammage == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA && !material->ablate);
+    assert_true(material->thickness.field == SINGE_FIELD_PICTURE && material->thickness.to == 0.002f);
+    assert_string_equal(sheet->material.pictures[0].name, "t.png");
+    assert_string_equal(sheet->material.pictures[14].name, "w.png");
+    assert_true(material->mass_rate.field == SINGE_FIELD_NOISE && material->mass_rate.value == 0.01f &&
+                material->mass_rate.to == 0.02f && material->mass_rate.noise.seed == 7);
+    assert_string_equal(material->mass_loss.attribute, "density");
+    assert_true(material->weight[SINGE_RED].value == 0.5f && material->weight[SINGE_BLUE].field == SINGE_FIELD_PICTURE);
+    assert_true(material->compliance[SINGE_YELLOW] == 1e-4f);
+    assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.cells[1] == 6);
+    assert_string_equal(scene->sheets[1].name, "sheet2");
+}
+
+static void check_objects(const Scene *scene) {
+    assert_int_equal(scene->source_count, 5);
+    assert_true(scene->sources[0].key_count == 2 && scene->sources[0].keys[1].position[0] == 1);
+    assert_true(scene->sources[1].key_count == 1 && scene->sources[1].keys[0].position[2] == 3 &&
+                !scene->sources[1].visible);
+    assert_true(scene->sources[3].def.flux == 20e3f && scene->sources[3].strength[1].value == 0.5f);
+    assert_true(scene->sources[4].def.plume_share == 0.25f && scene->sources[4].def.plume_conductance == 12);
+    assert_true(isinf(scene->sources[0].def.end));
+    assert_int_equal(scene->collider_count, 3);
+    assert_true(scene->colliders[0].key_count == 1 && scene->colliders[0].def.friction == 0.25f);
+    assert_true(scene->colliders[1].keys[0].position[2] == 5 && scene->colliders[1].keys[0].rotation[1] > 1.57f);
+    assert_int_equal(scene->pin_count, 2);
+    assert_true(scene->pins[0].sheet_index == 1 && scene->pins[0].point_count == 2 &&
+                scene->pins[0].points[1].position[0] == 0.01f);
+    assert_true(scene->pins[1].sheet_index == 0 && scene->pins[1].vertices[0] == 3 && scene->pins[1].key_count == 2);
+    assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
+    assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
+    assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
+}
+
+static void test_values(void **state) {
+    (void)state;
+    Scene *scene = good_scene(full, NULL, 0);
+    check_full(scene);
+    check_objects(scene);
+    scene_free(scene);
+}
+
+static void test_defaults(void **state) {
+    (void)state;
+    Scene *scene = good_scene(SHEET, NULL, 0);
+    assert_string_equal(scene->name, "test");
+    SingeMaterialDef material = singe_default_material();
+    assert_memory_equal(&scene->sheets[0].material.def, &material, sizeof material);
+    SingeSolverDef solver = singe_default_solver();
+    assert_memory_equal(&scene->sim.solver, &solver, sizeof solver);
+    assert_int_equal(scene->steps, 20);
+    assert_true(scene->sim.time_step == 1.0f / 480);
+    assert_true(isinf(scene->preview.ground_height) && scene->preview.ground_height < 0);
+    scene_free(scene);
+}
+
+static void round_trip(SceneSyntax syntax) {
+    Scene *scene = good_scene(full, NULL, 0);
+    char *dump = dump_text(scene, syntax);
+    Scene *again = good_scene(dump, NULL, 0);
+    check_full(again);
+    check_objects(again);
+    char *second = dump_text(again, syntax);
+    assert_string_equal(dump, second);
+    assert_memory_equal(&scene->preview, &again->preview, sizeof scene->preview);
+    assert_memory_equal(&scene->sim.solver, &again->sim.solver, sizeof scene->sim.solver);
+    assert_memory_equal(scene->colliders[2].keys, again->colliders[2].keys, 2 * sizeof *scene->colliders[2].keys);
+    free(second);
+    free(dump);
+    scene_free(again);
+    scene_free(scene);
+}
+
+static void test_dump_yaml(void **state) {
+    (void)state;
+    round_trip(SCENE_YAML);
+}
+
+static void test_dump_json(void **state) {
+    (void)state;
+    round_trip(SCENE_JSON);
+}
+
+static void test_json(void **state) {
+    (void)state;
+    Scene *scene =
+        good_scene("{\"sheets\": [{\"grid\": {\"size\": [\"20 cm\", 0.3], \"cells\": [2, 3]},\n"
+                   "\t\"material\": {\"ignition_temperature\": \"240 C\", \"ablate\": false}}], \"frames\": 7}",
+                   NULL, 0);
+    assert_true(scene->sheets[0].material.def.ignition_temperature.value == 513.15f);
+    assert_false(scene->sheets[0].material.def.ablate);
+    assert_int_equal(scene->frames, 7);
+    scene_free(scene);
+}
+
+static void test_set(void **state) {
+    (void)state;
+    static const char *const sets[] = {
+        "sheets.0.material.grammage=60 g/m2",
+        "sheets[0].material.weight.red=0.25",
+        "frames=3",
+        "sources[0].start=2 s",
+        "preview.camera.eye=[0, -1, 0.5]",
+        "frames=4",
+        "sheets.0.grid.cells.1=31",
+        "solver={substeps: 9}",
+        "sources.0.position.2=7 mm",
+        "sheets.0.material.mass_rate={from: 1, to: 2, noise: {seed: 3}}",
+        "name=a=b",
+        "sheets.0.material.mass_rate.to=5",
+    };
+    Scene *scene = good_scene(SHEET "sources: [{kind: spot, position: [1, 2, 3]}]\nframes: 2\n", sets, 12);
+    assert_true(scene->sheets[0].material.def.grammage == 0.06f);
+    assert_true(scene->sheets[0].material.def.weight[SINGE_RED].value == 0.25f);
+    assert_int_equal(scene->frames, 4); // the last one counts
+    assert_true(scene->sources[0].def.start == 2);
+    assert_true(scene->preview.camera.eye[1] == -1);
+    assert_int_equal(scene->sheets[0].grid.cells[1], 31);
+    assert_int_equal(scene->sim.solver.substeps, 9);
+    assert_true(scene->sources[0].keys[0].position[2] == 0.007f);
+    assert_true(scene->sheets[0].material.def.mass_rate.to == 5);
+    assert_string_equal(scene->name, "a=b");
+    scene_free(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
+        cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_set),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
