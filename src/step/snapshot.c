@@ -92,6 +92,7 @@ static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint3
 static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
     uint8_t has_picture = source->picture != NULL;
     STREAM(stream, source->generation);
+    if (source->generation == 0) return !stream->failed; // a free slot holds nothing
     snapshot_source_def(stream, &source->def);
     STREAM(stream, has_picture);
     STREAM(stream, source->strength_count);
@@ -102,12 +103,14 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
 
 static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider) {
     STREAM(stream, collider->generation);
+    if (collider->generation == 0) return !stream->failed;
     snapshot_collider_def(stream, &collider->def);
     return snapshot_path(stream, &sim->memory, &collider->path);
 }
 
 static bool snapshot_pin(Stream *stream, SingeSim *sim, Pin *pin) {
     STREAM(stream, pin->generation);
+    if (pin->generation == 0) return !stream->failed;
     STREAM(stream, pin->count);
     if (!snapshot_array(stream, &sim->memory, &pin->particles, pin->count, sizeof *pin->particles) ||
         !snapshot_array(stream, &sim->memory, &pin->anchors, pin->count, sizeof *pin->anchors) ||

@@ -119,7 +119,7 @@ static SingeResult scene_pins(Scene *scene) {
     def.radius = 0.015f;
     SCENE_TRY(singe_sim_add_pin(scene->sim, &def, &scene->points));
     def = singe_default_pin();
-    const uint32_t vertices[] = {40, 42, 44};
+    const uint32_t vertices[] = {40, 41, 47};
     const SingePoseKey path[] = {test_key(0, 0, 0, 0), {0.3f, {0, 0, 0.02f}, {0, 0, 0.1f, 0.99f}}};
     def.sheet = scene->sheets[1];
     def.vertex_count = 3, def.vertices = vertices;

@@ -1,0 +1,39 @@
+# make         builds Singe into build/
+# make demo    installs what it needs (Debian 12), builds, burns the letter and says where its video is
+# make check   installs, builds and runs every test; the last thing printed is the test runner's summary
+
+FUZZ_SECONDS ?= 30
+DEMO_DIR ?= out/letter
+
+.PHONY: all demo check build build-asan build-fuzz setup clean
+
+all: build
+
+build:
+	cmake --preset release
+	cmake --build --preset release
+
+build-asan:
+	cmake --preset asan
+	cmake --build --preset asan
+
+build-fuzz:
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+
+demo:
+	scripts/setup.sh
+	$(MAKE) build
+	build/cli/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
+	@echo "the video: $(CURDIR)/$(DEMO_DIR)/preview.mp4"
+
+check:
+	scripts/setup.sh --check
+	scripts/check_arrows.sh
+	$(MAKE) build build-asan build-fuzz
+	ctest --preset asan -j2
+	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
+	ctest --preset release -j2
+
+clean:
+	rm -rf build build-asan build-tsan build-fuzz

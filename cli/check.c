@@ -1,0 +1,130 @@
+// singe check: everything that run would trip over, and what the scene amounts to. Writes no files.
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "cli/args.h"
+#include "cli/job.h"
+#include "cli/pictures.h"
+
+enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
+
+static const ArgOption check_options[OPT_COUNT] = {
+    [OPT_FRAMES] = {"frames", 0, "N", "frames to estimate the time for"},
+    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "lays a value over the scene; may be repeated"},
+};
+
+static const ArgCommand check_command = {
+    "check", "SCENE", "Reads a scene with its meshes and pictures, builds it, and says what it consists of and costs.",
+    check_options, OPT_COUNT, "Exit codes: 0 the scene is good, 1 no memory, 2 bad input."};
+
+/// Real steps are timed until there are this many or this much time has gone.
+enum { CHECK_STEPS = 10 };
+static const double check_seconds = 3;
+
+typedef struct CheckTimes {
+    double step, surface, picture; ///< s each
+} CheckTimes;
+
+static SingeResult time_steps(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+    int count = 0;
+    double begun = console_clock();
+    while (count < CHECK_STEPS && (count == 0 || console_clock() - begun < check_seconds)) {
+        if (singe_sim_step(sim)) {
+            *error = *singe_sim_error(sim);
+            return error->code;
+        }
+        count++;
+    }
+    times->step = (console_clock() - begun) / count;
+    SingeSurface surface = {0};
+    begun = console_clock();
+    SingeResult result = singe_sim_surface(sim, &surface);
+    if (result) *error = *singe_sim_error(sim);
+    times->surface = console_clock() - begun;
+    Pictures *pictures = NULL;
+    if (!result && pictures_available()) result = pictures_open(job, &pictures, error);
+    if (!result && pictures) {
+        begun = console_clock();
+        if (!pictures_draw(pictures, &surface, 0, error)) result = error->code;
+        times->picture = console_clock() - begun;
+    }
+    pictures_close(pictures);
+    singe_surface_free(&surface);
+    return result;
+}
+
+static void report_shell(const SingeCensus *c) {
+    static const struct { const char *name; SingeColour colour; } rows[] = {
+        {"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
+    uint64_t springs = 0, strands = 0;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) springs += c->springs[i], strands += c->strands[i];
+    printf("particles     %" PRIu32 "\n", c->particles);
+    printf("cells         %" PRIu32 " of %.3g mm\n", c->cells, 1e3 * (double)c->cell_size);
+    printf("springs       %" PRIu64 " in %" PRIu64 " strands of %.1f on average\n", springs, strands,
+           c->mean_strand_length);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        printf("  %-11s %" PRIu32 " in %" PRIu32 " strands, %" PRIu32 " families\n", rows[i].name,
+               c->springs[rows[i].colour], c->strands[rows[i].colour], c->families[rows[i].colour]);
+    printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
+}
+
+static void report_times(const Job *job, const CheckTimes *times, float thickening) {
+    const Scene *scene = job->scene;
+    char text[32];
+    double frame = scene->steps * times->step + times->surface + times->picture;
+    console_duration(frame * scene->frames, text);
+    printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
+    printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
+           scene->steps, 1e3 * (double)scene->sim.time_step);
+    printf("time          about %s: a step %.2f ms, a picture %.0f ms, with %d threads\n", text, 1e3 * times->step,
+           1e3 * times->picture, job->hooks.thread_count);
+}
+
+static ExitCode check_scene(Console *console, const char *path, const SetList *sets, int threads) {
+    Job job;
+    SingeSim *sim = NULL;
+    ExitCode code = job_open(&job, console, path, sets, threads);
+    if (!code) code = job_build(&job, console, &sim);
+    if (!code) {
+        SingeCensus census = singe_sim_census(sim);
+        float thickening = singe_sim_stats(sim).thickening;
+        CheckTimes times = {0};
+        SingeError error = {0};
+        printf("%s: good\n", path);
+        report_shell(&census);
+        if (time_steps(&job, sim, &times, &error)) {
+            fflush(stdout);
+            console_result(console, &error);
+            code = EXIT_FAILED;
+        } else {
+            report_times(&job, &times, thickening);
+        }
+    }
+    singe_sim_destroy(sim);
+    job_close(&job);
+    return code;
+}
+
+int command_check(int argc, char **argv) {
+    ArgReader reader = args_begin(&check_command, argc, argv);
+    const char *value, *scene = NULL;
+    SetList sets = {0};
+    int threads = job_threads(), frames = 0, option;
+    bool good = true;
+    while (good && (option = args_next(&reader, &value)) != ARG_END) {
+        switch (option) {
+        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 10000000, &frames); break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads); break;
+        case OPT_SET: set_add(&sets, value); break;
+        case ARG_OPERAND: scene = value; break;
+        case ARG_HELP: set_free(&sets); return EXIT_GOOD;
+        default: good = false;
+        }
+    }
+    if (frames) set_frames(&sets, frames);
+    Console console = console_make(false);
+    ExitCode code = good ? check_scene(&console, scene, &sets, threads) : EXIT_INPUT;
+    set_free(&sets);
+    return code;
+}

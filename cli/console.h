@@ -1,0 +1,50 @@
+// What the program says: errors, warnings, notes, and the progress line, all on standard error.
+#ifndef CLI_CONSOLE_H
+#define CLI_CONSOLE_H
+
+#include <stdbool.h>
+
+#include "singe/base.h"
+
+typedef struct Console {
+    bool quiet;     ///< errors only
+    bool terminal;  ///< standard error is one
+    bool colour;
+    bool line_open; ///< a progress line is on the screen
+    double last;    ///< s, when progress was last shown
+} Console;
+
+typedef struct ConsoleProgress {
+    int frame, frames;
+    double burnt_fraction, temperature_max; ///< fraction, K
+    double frame_seconds;                   ///< a frame's, smoothed
+} ConsoleProgress;
+
+Console console_make(bool quiet);
+void console_error(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
+void console_warn(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
+void console_note(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
+
+/// Prints a library's error: its stage and message.
+void console_result(Console *console, const SingeError *error);
+
+/// On a terminal one line, redrawn at most ten times a second; else a line every two seconds. The last
+/// frame is always shown.
+void console_progress(Console *console, const ConsoleProgress *progress);
+
+/// The same while pictures are drawn again.
+void console_picture(Console *console, int frame, int frames, double frame_seconds);
+
+/// Takes the progress line off the screen, so that other text can follow.
+void console_clear(Console *console);
+
+/// A log hook that writes to this console.
+SingeLog console_log(Console *console);
+
+/// "1:02:03", "2:03" or "4 s".
+void console_duration(double seconds, char text[32]);
+
+/// A clock for durations, in seconds.
+double console_clock(void);
+
+#endif

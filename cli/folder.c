@@ -1,0 +1,189 @@
+#include "cli/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+
+Folder folder_name(const char *path, const char *name) {
+    Folder folder = {.name = text_format("%s", name)};
+    folder.path = path ? text_format("%s", *path ? path : ".") : text_format("out/%s", name);
+    for (size_t n = strlen(folder.path); n > 1 && folder.path[n - 1] == '/'; n--) folder.path[n - 1] = 0;
+    folder.stats = text_format("%s/stats.csv", folder.path);
+    folder.record = text_format("%s/run.json", folder.path);
+    folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
+    folder.video = text_format("%s/preview.mp4", folder.path);
+    folder.sheet = text_format("%s/sheet.png", folder.path);
+    return folder;
+}
+
+void folder_free(Folder *folder) {
+    free(folder->path);
+    free(folder->name);
+    free(folder->stats);
+    free(folder->record);
+    free(folder->checkpoint);
+    free(folder->video);
+    free(folder->sheet);
+    *folder = (Folder){0};
+}
+
+SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error) {
+    *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
+    snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, strerror(reason));
+    return SINGE_ERROR_FILE;
+}
+
+static SingeResult make_one(const char *path, SingeError *error) {
+    if (mkdir(path, 0777) == 0) return SINGE_OK;
+    int reason = errno;
+    struct stat info;
+    if (stat(path, &info) == 0) {
+        if (S_ISDIR(info.st_mode)) return SINGE_OK;
+        reason = ENOTDIR;
+    }
+    return folder_fail(path, "make the folder", reason, error);
+}
+
+static SingeResult make_all(const char *path, SingeError *error) {
+    char *copy = text_format("%s", path);
+    SingeResult result = SINGE_OK;
+    for (char *p = copy + 1; *p && !result; p++) {
+        if (*p != '/') continue;
+        *p = 0;
+        result = make_one(copy, error);
+        *p = '/';
+    }
+    if (!result) result = make_one(copy, error);
+    free(copy);
+    return result;
+}
+
+SingeResult folder_create(const Folder *folder, SingeError *error) {
+    static const char *const inner[] = {"ply", "frames"};
+    SingeResult result = make_all(folder->path, error);
+    for (int i = 0; i < 2 && !result; i++) {
+        char *path = text_format("%s/%s", folder->path, inner[i]);
+        result = make_one(path, error);
+        if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
+        free(path);
+    }
+    return result;
+}
+
+char *folder_ply(const Folder *folder, int frame) {
+    return text_format("%s/ply/%s.%04d.ply", folder->path, folder->name, frame);
+}
+
+char *folder_png(const Folder *folder, int frame) {
+    return text_format("%s/frames/%s.%04d.png", folder->path, folder->name, frame);
+}
+
+/// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
+static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
+    size_t length = strlen(folder->name);
+    if (strncmp(file, folder->name, length) != 0 || file[length] != '.') return 0;
+    const char *digits = file + length + 1;
+    size_t count = strspn(digits, "0123456789");
+    if (count < 4 || count > 9 || (count > 4 && digits[0] == '0')) return 0;
+    if (strncmp(digits + count, ending, strlen(ending)) != 0) return 0;
+    *rest = digits + count + strlen(ending);
+    return (int)strtol(digits, NULL, 10);
+}
+
+/// Whether this is what file_write adds to a name until the file is whole: ".PID-N.tmp".
+static bool is_temporary(const char *rest) {
+    if (*rest++ != '.') return false;
+    size_t pid = strspn(rest, "0123456789");
+    if (pid == 0 || rest[pid] != '-') return false;
+    rest += pid + 1;
+    size_t attempt = strspn(rest, "0123456789");
+    return attempt > 0 && strcmp(rest + attempt, ".tmp") == 0;
+}
+
+static SingeResult remove_file(const char *path, int *removed, SingeError *error) {
+    if (unlink(path) == 0) (*removed)++;
+    else if (errno != ENOENT) return folder_fail(path, "remove", errno, error);
+    return SINGE_OK;
+}
+
+/// Removes frames, where `frames` is set, and what a killed run left half written.
+static SingeResult clean_frames(const Folder *folder, const char *inner, const char *ending, bool frames, int *removed,
+                                SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner);
+    DIR *dir = opendir(path);
+    SingeResult result = dir ? SINGE_OK : folder_fail(path, "list", errno, error);
+    for (struct dirent *entry; !result && (entry = readdir(dir));) {
+        const char *rest;
+        if (!frame_of(folder, entry->d_name, ending, &rest)) continue;
+        if (!(*rest == 0 && frames) && !is_temporary(rest)) continue;
+        char *file = text_format("%s/%s", path, entry->d_name);
+        result = remove_file(file, removed, error);
+        free(file);
+    }
+    if (dir) closedir(dir);
+    free(path);
+    return result;
+}
+
+/// The half-written ones of the files that exist once.
+static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
+    static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png"};
+    DIR *dir = opendir(folder->path);
+    SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
+    for (struct dirent *entry; !result && (entry = readdir(dir));) {
+        bool ours = false;
+        for (int i = 0; i < 3; i++) {
+            size_t length = strlen(names[i]);
+            ours = ours || (strncmp(entry->d_name, names[i], length) == 0 && is_temporary(entry->d_name + length));
+        }
+        if (!ours) continue;
+        char *file = text_format("%s/%s", folder->path, entry->d_name);
+        result = remove_file(file, removed, error);
+        free(file);
+    }
+    if (dir) closedir(dir);
+    return result;
+}
+
+SingeResult folder_sweep(const Folder *folder, SingeError *error) {
+    int removed = 0;
+    SingeResult result = clean_top(folder, &removed, error);
+    if (!result) result = clean_frames(folder, "ply", ".ply", false, &removed, error);
+    if (!result) result = clean_frames(folder, "frames", ".png", false, &removed, error);
+    return result;
+}
+
+SingeResult folder_clean(const Folder *folder, int *removed, SingeError *error) {
+    *removed = 0;
+    // the checkpoint goes first: without its frames it must not be resumed from
+    SingeResult result = remove_file(folder->checkpoint, removed, error);
+    if (!result) result = remove_file(folder->video, removed, error);
+    if (!result) result = clean_frames(folder, "ply", ".ply", true, removed, error);
+    if (!result) result = clean_frames(folder, "frames", ".png", true, removed, error);
+    return result;
+}
+
+int folder_frames(const Folder *folder, int *first, int *last) {
+    char *path = text_format("%s/ply", folder->path);
+    DIR *dir = opendir(path);
+    int count = 0;
+    *first = INT_MAX, *last = 0;
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        const char *rest;
+        int frame = frame_of(folder, entry->d_name, ".ply", &rest);
+        if (!frame || *rest) continue;
+        count++;
+        if (frame < *first) *first = frame;
+        if (frame > *last) *last = frame;
+    }
+    if (dir) closedir(dir);
+    free(path);
+    return count;
+}

@@ -1,0 +1,41 @@
+// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/frames/NAME.0001.png and those that exist once.
+#ifndef CLI_FOLDER_H
+#define CLI_FOLDER_H
+
+#include "singe/base.h"
+
+typedef struct Folder {
+    char *path;       ///< DIR, without a slash at its end
+    char *name;       ///< NAME
+    char *stats;      ///< DIR/stats.csv
+    char *record;     ///< DIR/run.json
+    char *checkpoint; ///< DIR/checkpoint.singe
+    char *video;      ///< DIR/preview.mp4
+    char *sheet;      ///< DIR/sheet.png
+} Folder;
+
+/// Names only; nothing is made. `path` NULL is out/NAME.
+Folder folder_name(const char *path, const char *name);
+void folder_free(Folder *folder);
+
+/// Makes the folder, those above it, and the two in it.
+SINGE_NODISCARD SingeResult folder_create(const Folder *folder, SingeError *error);
+
+/// Paths of a frame, from malloc.
+char *folder_ply(const Folder *folder, int frame);
+char *folder_png(const Folder *folder, int frame);
+
+/// Removes what an earlier run of the same name left (its frames, checkpoint, video), and nothing that is
+/// not named as such files are. *removed is the number of files.
+SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, int *removed, SingeError *error);
+
+/// Removes what a killed run left half written under temporary names.
+SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);
+
+/// The smallest and greatest frame with a PLY, and how many there are; 0 when none.
+int folder_frames(const Folder *folder, int *first, int *last);
+
+/// Fills *error with the path and the system's reason. Returns SINGE_ERROR_FILE.
+SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error);
+
+#endif

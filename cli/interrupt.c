@@ -1,0 +1,32 @@
+#include "cli/interrupt.h"
+
+#include <signal.h>
+#include <stddef.h>
+
+// The one static of the program: a signal handler has no other way to pass a word on.
+static volatile sig_atomic_t interrupt_flag;
+
+static void note_signal(int number) {
+    (void)number;
+    interrupt_flag = 1;
+    struct sigaction plain = {.sa_handler = SIG_DFL};
+    sigaction(SIGINT, &plain, NULL);
+    sigaction(SIGTERM, &plain, NULL);
+}
+
+void interrupt_shield(void) {
+    struct sigaction ignore = {.sa_handler = SIG_IGN};
+    sigaction(SIGPIPE, &ignore, NULL);
+    sigaction(SIGXFSZ, &ignore, NULL);
+}
+
+void interrupt_watch(void) {
+    struct sigaction note = {.sa_handler = note_signal, .sa_flags = SA_RESTART};
+    sigemptyset(&note.sa_mask);
+    sigaddset(&note.sa_mask, SIGINT);
+    sigaddset(&note.sa_mask, SIGTERM);
+    sigaction(SIGINT, &note, NULL);
+    sigaction(SIGTERM, &note, NULL);
+}
+
+bool interrupt_asked(void) { return interrupt_flag != 0; }

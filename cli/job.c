@@ -1,0 +1,117 @@
+#include "cli/job.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+
+void set_add(SetList *sets, const char *text) {
+    if (sets->count == sets->capacity) {
+        sets->capacity = sets->capacity ? 2 * sets->capacity : 8;
+        const char **items = realloc(sets->items, (size_t)sets->capacity * sizeof *items);
+        if (!items) {
+            fputs("singe: error: out of memory\n", stderr);
+            exit(EXIT_FAILED);
+        }
+        sets->items = items;
+    }
+    sets->items[sets->count++] = text;
+}
+
+void set_frames(SetList *sets, int count) {
+    free(sets->owned);
+    sets->owned = text_format("frames=%d", count);
+    set_add(sets, sets->owned);
+}
+
+void set_free(SetList *sets) {
+    free(sets->items);
+    free(sets->owned);
+    *sets = (SetList){0};
+}
+
+int job_threads(void) {
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > JOB_THREADS_MAX ? JOB_THREADS_MAX : (int)count;
+}
+
+ExitCode job_exit(SingeResult result) {
+    if (!result) return EXIT_GOOD;
+    return result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
+}
+
+static void *libc_resize(void *context, void *block, size_t old_size, size_t new_size) {
+    (void)context, (void)old_size;
+    if (new_size) return realloc(block, new_size);
+    free(block);
+    return NULL;
+}
+
+/// Names become file names, and the start is a frame of its own.
+static bool scene_good(Console *console, const Scene *scene) {
+    const char *name = scene->name;
+    if (scene->frames < 1) {
+        console_error(console, "frames: expected at least 1, as the start is the first, got %d", scene->frames);
+        return false;
+    }
+    if (*name && *name != '.' && !strchr(name, '/') && strlen(name) <= 200) return true;
+    console_error(console, "the scene's name '%s' cannot name files: expected 1 to 200 characters, no '/', no '.' first",
+                  name);
+    return false;
+}
+
+static ExitCode finish_open(Job *job, Console *console, SingeResult result, SceneMessages *messages, int threads) {
+    if (!result) result = scene_load(job->scene, &job->assets, messages);
+    if (result) {
+        console_clear(console);
+        scene_messages_print(messages, stderr);
+        if (messages->count == 0) console_error(console, "%s", singe_result_name(result));
+        scene_free(job->scene);
+        *job = (Job){0};
+    } else {
+        job->hooks = singe_default_sim();
+        job->hooks.allocator = (SingeAllocator){libc_resize, NULL};
+        job->hooks.log = console_log(console);
+        job->hooks.thread_count = threads;
+    }
+    scene_messages_free(messages);
+    if (!result && !scene_good(console, job->scene)) {
+        job_close(job);
+        return EXIT_INPUT;
+    }
+    return job_exit(result);
+}
+
+ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
+    SceneMessages messages = {0};
+    *job = (Job){0};
+    SingeResult result = scene_read(scene_path, sets->items, sets->count, &job->scene, &messages);
+    return finish_open(job, console, result, &messages, threads);
+}
+
+ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
+                   const SetList *sets, int threads) {
+    SceneMessages messages = {0};
+    *job = (Job){0};
+    SingeResult result = scene_parse(name, text, size, folder, sets->items, sets->count, &job->scene, &messages);
+    return finish_open(job, console, result, &messages, threads);
+}
+
+ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
+    SceneMessages messages = {0};
+    SingeResult result = scene_build(job->scene, &job->assets, &job->hooks, sim, &messages);
+    if (result) {
+        console_clear(console);
+        scene_messages_print(&messages, stderr);
+        if (messages.count == 0) console_error(console, "%s", singe_result_name(result));
+    }
+    scene_messages_free(&messages);
+    return job_exit(result);
+}
+
+void job_close(Job *job) {
+    scene_assets_free(&job->assets);
+    scene_free(job->scene);
+    *job = (Job){0};
+}

@@ -1,0 +1,50 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/cli.h"
+#include "singe/singe.h"
+
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary; ///< NULL: not in the help
+} commands[] = {
+    {"run", command_run, "burns a scene: cache, pictures, video, numbers"},
+    {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
+    {"render", command_render, "draws a cache's pictures and video again"},
+    {"scene-doc", command_scene_doc, NULL},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void help(void) {
+    printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n\ncommands:\n", singe_version());
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (commands[i].summary) printf("  %-10s %s\n", commands[i].name, commands[i].summary);
+    printf("\n  singe COMMAND --help   the command's options\n  singe --version        the version\n\n"
+           "Exit codes: 0 good, 1 the run failed or was interrupted, 2 bad input.\n");
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        fputs("singe: error: needs a command: run, check or render\nsee: singe --help\n", stderr);
+        return EXIT_INPUT;
+    }
+    const char *word = argv[1];
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(word, commands[i].name) == 0) return commands[i].run(argc - 2, argv + 2);
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
+        help();
+        return EXIT_GOOD;
+    }
+    if (strcmp(word, "--version") == 0) {
+        printf("singe %s\n", singe_version());
+        return EXIT_GOOD;
+    }
+    const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
+    fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", word);
+    if (near) fprintf(stderr, "; did you mean '%s'?", near);
+    fputs("\nsee: singe --help\n", stderr);
+    return EXIT_INPUT;
+}

@@ -1,0 +1,21 @@
+// The preview of a scene as the commands use it. Built without the preview (pictures_none.c) nothing is drawn.
+#ifndef CLI_PICTURES_H
+#define CLI_PICTURES_H
+
+#include "cli/job.h"
+
+typedef struct Pictures Pictures;
+
+/// False in a program built without the preview.
+bool pictures_available(void);
+
+/// The job must outlive *pictures.
+SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error);
+
+/// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure.
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error);
+
+void pictures_size(const Pictures *pictures, int *width, int *height);
+void pictures_close(Pictures *pictures);
+
+#endif

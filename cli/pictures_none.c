@@ -1,0 +1,25 @@
+#include "cli/pictures.h"
+
+#include <stdio.h>
+
+bool pictures_available(void) { return false; }
+
+SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
+    (void)job;
+    *pictures = NULL;
+    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
+    snprintf(error->message, sizeof error->message, "this singe was built without the preview");
+    return SINGE_ERROR_STATE;
+}
+
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error) {
+    (void)pictures, (void)surface, (void)time, (void)error;
+    return NULL;
+}
+
+void pictures_size(const Pictures *pictures, int *width, int *height) {
+    (void)pictures;
+    *width = *height = 0;
+}
+
+void pictures_close(Pictures *pictures) { (void)pictures; }

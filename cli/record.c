@@ -1,0 +1,115 @@
+#include "cli/record.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+
+Record record_make(const char *scene_path) {
+    Record record = {.scene_path = scene_path, .result = "running"};
+    time_t now = time(NULL);
+    struct tm utc;
+    if (gmtime_r(&now, &utc)) strftime(record.started, sizeof record.started, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return record;
+}
+
+static void member(FILE *file, const char *name, const char *text) {
+    fprintf(file, "  \"%s\": ", name);
+    text_json_string(file, text);
+    fputs(",\n", file);
+}
+
+/// The scene's folder as an absolute path, so that `singe render` finds its files from anywhere.
+static void write_scene_folder(FILE *file, const char *scene_path) {
+    const char *slash = strrchr(scene_path, '/');
+    char *folder = slash ? text_format("%.*s", (int)(slash - scene_path) + (slash == scene_path), scene_path) : text_format(".");
+    char *whole = realpath(folder, NULL);
+    member(file, "scene_file", scene_path);
+    member(file, "scene_folder", whole ? whole : folder);
+    free(whole);
+    free(folder);
+}
+
+static void write_seconds(FILE *file, const Totals *totals) {
+    static const char *const names[] = {"heat", "burn", "ablate", "dynamics", "surface", "ply", "preview", "checkpoint"};
+    fputs("  \"seconds\": {\"wall\": ", file);
+    text_json_number(file, totals->wall_seconds);
+    for (int i = 0; i < SINGE_STAGE_COUNT + TOTAL_OUTPUT_COUNT; i++) {
+        fprintf(file, ", \"%s\": ", names[i]);
+        text_json_number(file, i < SINGE_STAGE_COUNT ? totals->stage_seconds[i]
+                                                     : totals->output_seconds[i - SINGE_STAGE_COUNT]);
+    }
+    fputs("},\n", file);
+}
+
+static void write_totals(FILE *file, const Totals *t) {
+    const struct { const char *name; uint64_t value; } rows[] = {
+        {"steps", t->steps}, {"heat_iterations", t->heat_iterations}, {"strands_projected", t->strands_projected},
+        {"contacts", t->contacts}, {"ignited", t->ignited}, {"holes_opened", t->holes_opened},
+        {"pieces_freed", t->pieces_freed}};
+    fputs("  \"totals\": {", file);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        fprintf(file, "%s\"%s\": %" PRIu64, i ? ", " : "", rows[i].name, rows[i].value);
+    fputs("},\n", file);
+}
+
+static void write_census(FILE *file, const Record *record) {
+    static const char *const colours[] = {"red", "green", "blue", "yellow"};
+    const SingeCensus *c = &record->census;
+    fprintf(file, "  \"census\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles, c->cells);
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
+        fprintf(file, "%s\"%s\": %" PRIu32, i ? ", " : "", colours[i], c->springs[i]);
+    fputs("}, \"thickening\": ", file);
+    text_json_number(file, (double)record->thickening);
+    fprintf(file, ", \"memory\": %zu},\n", c->memory);
+}
+
+static void write_all(FILE *file, const Record *record, const Job *job) {
+    const Scene *scene = job->scene;
+    fputs("{\n  \"program\": \"singe\",\n", file);
+    member(file, "version", singe_version());
+    member(file, "result", record->result);
+    if (record->error.code) {
+        fputs("  \"error\": {\"code\": ", file);
+        text_json_string(file, singe_result_name(record->error.code));
+        fputs(", \"stage\": ", file);
+        text_json_string(file, record->error.stage);
+        fprintf(file, ", \"element\": %" PRId64 ", \"message\": ", record->error.element);
+        text_json_string(file, record->error.message);
+        fputs("},\n", file);
+    } else {
+        fputs("  \"error\": null,\n", file);
+    }
+    member(file, "started", record->started);
+    write_scene_folder(file, record->scene_path);
+    member(file, "name", scene->name);
+    fprintf(file, "  \"frames\": %d,\n  \"frames_done\": %d,\n  \"resumed_from\": %d,\n  \"fps\": ", scene->frames,
+            record->frames_done, record->resumed_from);
+    text_json_number(file, (double)scene->fps);
+    fprintf(file, ",\n  \"steps_per_frame\": %d,\n  \"seed\": %" PRIu64 ",\n  \"threads\": %d,\n  \"preview\": %s,\n  \"video\": %s,\n",
+            scene->steps, scene->sim.seed, job->hooks.thread_count, record->preview ? "true" : "false",
+            record->video ? "true" : "false");
+    write_seconds(file, &record->totals);
+    write_totals(file, &record->totals);
+    write_census(file, record);
+    fputs("  \"scene\": ", file);
+    scene_dump(scene, SCENE_JSON, 2, file);
+    fputs("\n}\n", file);
+}
+
+SingeResult record_write(const Record *record, const Folder *folder, const Job *job, SingeError *error) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file) write_all(file, record, job);
+    bool bad = !file || ferror(file);
+    if (file && fclose(file) != 0) bad = true;
+    SingeResult result = SINGE_ERROR_MEMORY;
+    if (bad) *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "run.json", .element = -1};
+    else result = file_write(folder->record, text, size, error);
+    free(text);
+    return result;
+}

@@ -1,0 +1,252 @@
+// singe render: the pictures, video and contact sheet of a cache, drawn again from its PLYs and the scene that its
+// run.json holds.
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/contact_sheet.h"
+#include "cli/folder.h"
+#include "cli/interrupt.h"
+#include "cli/job.h"
+#include "cli/pictures.h"
+#include "cli/text.h"
+#include "cli/video.h"
+
+enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_THREADS, OPT_QUIET, OPT_COUNT };
+
+static const ArgOption render_options[OPT_COUNT] = {
+    [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "lays a value over the scene; may be repeated"},
+    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone); the video is made of all only"},
+    [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
+    [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
+    [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
+};
+
+static const ArgCommand render_command = {
+    "render", "DIR", "Draws the pictures and the video of a cache again.", render_options, OPT_COUNT,
+    "Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
+
+typedef struct RenderOptions {
+    const char *folder;
+    SetList sets;
+    int first, last;      ///< 0: all
+    int columns, rows;    ///< 0: no sheet
+    int threads;
+    bool only_sheet, quiet;
+} RenderOptions;
+
+typedef struct Render {
+    Console *console;
+    const RenderOptions *options;
+    Job job;
+    Folder folder;
+    Pictures *pictures;
+    ContactSheet sheet;
+    int first, last; ///< frames to draw
+} Render;
+
+/// Two whole numbers with `between` between them. Where `single` is allowed one number stands for both.
+static bool pair(const char *text, char between, bool single, int *a, int *b) {
+    char *end;
+    long first = strtol(text, &end, 10), second = first;
+    if (end == text || first < 1 || first > INT_MAX) return false;
+    if (*end == between) {
+        const char *from = end + 1;
+        second = strtol(from, &end, 10);
+        if (end == from || second < 1 || second > INT_MAX) return false;
+    } else if (!single) {
+        return false;
+    }
+    *a = (int)first, *b = (int)second;
+    return *end == 0;
+}
+
+static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *done) {
+    ArgReader reader = args_begin(&render_command, argc, argv);
+    const char *value;
+    *o = (RenderOptions){.threads = job_threads()};
+    *done = false;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        switch (option) {
+        case OPT_SET:
+            good = strncmp(value, "preview.", 8) == 0;
+            if (good) set_add(&o->sets, value);
+            else args_complain(&reader, "--set: only preview.* can be set here, got '%s'", value);
+            break;
+        case OPT_FRAMES:
+            good = pair(value, '-', true, &o->first, &o->last) && o->first <= o->last;
+            if (!good) args_complain(&reader, "--frames: expected A-B with 1 <= A <= B, got '%s'", value);
+            break;
+        case OPT_SHEET:
+            good = pair(value, 'x', false, &o->columns, &o->rows) && o->columns <= 64 && o->rows <= 64;
+            if (!good) args_complain(&reader, "--sheet: expected columns and rows such as 4x2, at most 64, got '%s'", value);
+            break;
+        case OPT_ONLY_SHEET: o->only_sheet = true; break;
+        case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
+        case OPT_QUIET: o->quiet = true; break;
+        case ARG_OPERAND: o->folder = value; break;
+        case ARG_HELP: *done = true; return EXIT_GOOD;
+        default: good = false;
+        }
+        if (!good) return EXIT_INPUT;
+    }
+    if (o->only_sheet && !o->columns) o->columns = 4, o->rows = 2;
+    return EXIT_GOOD;
+}
+
+// ---- the cache
+
+/// The scene of run.json, with the --set of now laid over it.
+static ExitCode open_scene(Render *render) {
+    SingeError error = {0};
+    Bytes bytes = {0};
+    char *record = text_format("%s/run.json", render->options->folder);
+    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
+        console_result(render->console, &error);
+        free(record);
+        return EXIT_INPUT;
+    }
+    const char *scene, *folder, *json = (const char *)bytes.data;
+    size_t scene_size, folder_size;
+    ExitCode code = EXIT_INPUT;
+    if (text_json_member(json, bytes.size, "scene", &scene, &scene_size) &&
+        text_json_member(json, bytes.size, "scene_folder", &folder, &folder_size)) {
+        char *base = text_json_unquote(folder, folder_size);
+        if (base) code = job_parse(&render->job, render->console, record, scene, scene_size, base, &render->options->sets,
+                                   render->options->threads);
+        else console_error(render->console, "%s: bad \"scene_folder\"", record);
+        free(base);
+    } else {
+        console_error(render->console, "%s is not a record of a run: no \"scene\" and \"scene_folder\"", record);
+    }
+    bytes_free(&bytes);
+    free(record);
+    return code;
+}
+
+static ExitCode find_frames(Render *render) {
+    const RenderOptions *o = render->options;
+    int first, last, count = folder_frames(&render->folder, &first, &last);
+    render->first = o->first ? o->first : first;
+    render->last = o->first ? o->last : last;
+    if (count == 0) {
+        console_error(render->console, "no frames %s/ply/%s.*.ply", render->folder.path, render->folder.name);
+        return EXIT_INPUT;
+    }
+    if (render->first >= first && render->last <= last) return EXIT_GOOD;
+    console_error(render->console, "frames %d-%d are asked for, but %s has %d-%d", render->first, render->last,
+                  render->folder.path, first, last);
+    return EXIT_INPUT;
+}
+
+// ---- drawing
+
+static SingeResult draw_frame(Render *render, int frame, const uint8_t **rgb, SingeError *error) {
+    Bytes bytes = {0};
+    SingeSurface surface = {0};
+    double time;
+    char *path = folder_ply(&render->folder, frame);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result) {
+        result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &surface, &time, error);
+        bytes_free(&bytes);
+    }
+    if (!result && !(*rgb = pictures_draw(render->pictures, &surface, time, error)))
+        result = error->code ? error->code : SINGE_ERROR_STATE;
+    singe_surface_free(&surface);
+    free(path);
+    return result;
+}
+
+static SingeResult write_frame(Render *render, int frame, const uint8_t *rgb, SingeError *error) {
+    int width, height;
+    pictures_size(render->pictures, &width, &height);
+    char *path = folder_png(&render->folder, frame);
+    SingeResult result = png_write(path, width, height, rgb, error);
+    free(path);
+    return result;
+}
+
+/// Puts the frame on every tile of the sheet that shows it. Returns whether any does.
+static bool put_tiles(Render *render, int frame, const uint8_t *rgb) {
+    int tiles = render->sheet.columns * render->sheet.rows;
+    bool any = false;
+    for (int tile = 0; tile < tiles; tile++) {
+        if (contact_sheet_frame(tile, tiles, render->first, render->last) != frame) continue;
+        any = true;
+        if (rgb) contact_sheet_put(&render->sheet, tile, rgb);
+    }
+    return any;
+}
+
+static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error) {
+    int last = render->last;
+    double begun = console_clock();
+    for (int frame = render->first, drawn = 0; frame <= last && !*interrupted; frame++) {
+        const uint8_t *rgb = NULL;
+        if (render->options->only_sheet && !put_tiles(render, frame, NULL)) continue;
+        SingeResult result = draw_frame(render, frame, &rgb, error);
+        if (!result && !render->options->only_sheet) result = write_frame(render, frame, rgb, error);
+        if (result) return result;
+        put_tiles(render, frame, rgb);
+        drawn++;
+        console_picture(render->console, frame, last, (console_clock() - begun) / drawn);
+        *interrupted = interrupt_asked() && frame < last;
+    }
+    if (!render->sheet.rgb) return SINGE_OK;
+    return png_write(render->folder.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
+}
+
+static ExitCode render_frames(Render *render) {
+    const RenderOptions *o = render->options;
+    SingeError error = {0};
+    int width, height;
+    bool interrupted = false;
+    SingeResult result = pictures_open(&render->job, &render->pictures, &error);
+    if (!result) result = folder_create(&render->folder, &error);
+    if (!result && o->columns) {
+        pictures_size(render->pictures, &width, &height);
+        result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);
+    }
+    interrupt_watch();
+    if (!result) result = draw_all(render, &interrupted, &error);
+    console_clear(render->console);
+    if (result) {
+        console_result(render->console, &error);
+        return result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED;
+    }
+    if (interrupted) return EXIT_FAILED;
+    if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
+    if (o->first || o->only_sheet) return EXIT_GOOD;
+    if (video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first, render->last) &&
+        !o->quiet)
+        printf("%s\n", render->folder.video);
+    return EXIT_GOOD;
+}
+
+int command_render(int argc, char **argv) {
+    RenderOptions options;
+    bool done;
+    ExitCode code = parse_options(argc, argv, &options, &done);
+    if (!code && !done) {
+        interrupt_shield();
+        Console console = console_make(options.quiet);
+        Render render = {.console = &console, .options = &options};
+        code = open_scene(&render);
+        if (!code) {
+            render.folder = folder_name(options.folder, render.job.scene->name);
+            code = find_frames(&render);
+        }
+        if (!code) code = render_frames(&render);
+        contact_sheet_free(&render.sheet);
+        pictures_close(render.pictures);
+        folder_free(&render.folder);
+        job_close(&render.job);
+    }
+    set_free(&options.sets);
+    return code;
+}

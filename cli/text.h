@@ -1,0 +1,26 @@
+// Small pieces of text: formatted strings, JSON out and in.
+#ifndef CLI_TEXT_H
+#define CLI_TEXT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "singe/base.h"
+
+/// A formatted string from malloc. Without memory for it the program ends with EXIT_FAILED.
+char *text_format(const char *format, ...) SINGE_PRINTF(1, 2);
+
+/// Writes a JSON string with its quotes.
+void text_json_string(FILE *file, const char *text);
+
+/// Writes a number that reads back exactly, or null where it is not finite.
+void text_json_number(FILE *file, double number);
+
+/// Finds the value of a member of the object that `json` holds. False where there is no such member or the
+/// text is not JSON up to it.
+bool text_json_member(const char *json, size_t size, const char *name, const char **value, size_t *value_size);
+
+/// The characters of a JSON string value, from malloc; NULL when it is not one.
+char *text_json_unquote(const char *value, size_t size);
+
+#endif

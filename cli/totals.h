@@ -1,0 +1,18 @@
+// What a run has spent and met since its first frame, over every resumption.
+#ifndef CLI_TOTALS_H
+#define CLI_TOTALS_H
+
+#include "singe/sim.h"
+
+enum { TOTAL_SURFACE, TOTAL_PLY, TOTAL_PREVIEW, TOTAL_CHECKPOINT, TOTAL_OUTPUT_COUNT };
+
+/// Fixed layout without padding: it is part of the checkpoint.
+typedef struct Totals {
+    double stage_seconds[SINGE_STAGE_COUNT];
+    double output_seconds[TOTAL_OUTPUT_COUNT];
+    double wall_seconds;
+    uint64_t steps, heat_iterations, strands_projected, contacts;
+    uint64_t ignited, holes_opened, pieces_freed;
+} Totals;
+
+#endif

@@ -1,0 +1,108 @@
+#include "cli/video.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+
+extern char **environ;
+
+/// The text with every % doubled, as ffmpeg's frame patterns want it.
+static char *pattern_escape(const char *text) {
+    char *copy = text_format("%s%s", text, text), *out = copy; // never longer than twice
+    for (const char *c = text; *c; c++) {
+        *out++ = *c;
+        if (*c == '%') *out++ = '%';
+    }
+    *out = 0;
+    return copy;
+}
+
+/// Quotes an argument for a shell.
+static char *shell_quote(const char *text) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,";
+    if (*text && text[strspn(text, plain)] == 0) return text_format("%s", text);
+    char *quoted = text_format("''");
+    for (const char *c = text; *c; c++) {
+        size_t length = strlen(quoted) - 1;
+        char *longer = text_format(*c == '\'' ? "%.*s'\\%c''" : "%.*s%c'", (int)length, quoted, *c);
+        free(quoted);
+        quoted = longer;
+    }
+    return quoted;
+}
+
+static void tell_command(Console *console, const char *why, char *const *arguments) {
+    char *line = text_format("ffmpeg");
+    for (char *const *a = arguments + 1; *a; a++) {
+        char *quoted = shell_quote(*a), *longer = text_format("%s %s", line, quoted);
+        free(quoted);
+        free(line);
+        line = longer;
+    }
+    console_warn(console, "%s; to make the video later:\n  %s", why, line);
+    free(line);
+}
+
+/// Runs the program and waits. 0: it ended well; else why not.
+static const char *spawn(char *const *arguments, char why[160]) {
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t shielded; // what the program ignores the child must not
+    pid_t child;
+    sigemptyset(&shielded);
+    sigaddset(&shielded, SIGPIPE);
+    sigaddset(&shielded, SIGXFSZ);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &shielded);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    int reason = posix_spawnp(&child, arguments[0], &actions, &attributes, arguments, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    if (reason) {
+        snprintf(why, 160, "cannot run ffmpeg (%s)", strerror(reason));
+        return why;
+    }
+    int status;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return NULL;
+    if (WIFEXITED(status)) snprintf(why, 160, "ffmpeg failed (exit %d)", WEXITSTATUS(status));
+    else snprintf(why, 160, "ffmpeg was stopped");
+    return why;
+}
+
+bool video_make(Console *console, const Folder *folder, double fps, int first, int last) {
+    char *path = pattern_escape(folder->path), *name = pattern_escape(folder->name), why[160];
+    // "file:" keeps a colon in a path from being read as a protocol, and a dash as an option
+    char *input = text_format("file:%s/frames/%s.%%04d.png", path, name);
+    char *part = text_format("file:%s.part", folder->video), *final = text_format("file:%s", folder->video);
+    char *rate = text_format("%.9g", fps), *start = text_format("%d", first), *count = text_format("%d", last - first + 1);
+    // H.264 in 4:2:0 wants even sides
+    char *arguments[] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate", rate,
+                         "-start_number", start, "-i", input, "-frames:v", count, "-vf",
+                         "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
+                         "-movflags", "+faststart", "-f", "mp4", part, NULL};
+    int last_argument = (int)(sizeof arguments / sizeof *arguments) - 2;
+    const char *failure = spawn(arguments, why);
+    const char *written = part + 5;
+    if (!failure && rename(written, folder->video) != 0) {
+        snprintf(why, sizeof why, "cannot write preview.mp4 (%s)", strerror(errno));
+        failure = why;
+    }
+    if (failure) {
+        unlink(written);
+        arguments[last_argument] = final;
+        tell_command(console, failure, arguments);
+    }
+    free(path), free(name), free(input), free(part), free(final), free(rate), free(start), free(count);
+    return !failure;
+}

@@ -1,0 +1,33 @@
+# Installs the library with its headers, find_package and pkg-config files, and the program.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS singe EXPORT singeTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set_target_properties(singe PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+
+set(singe_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/singe)
+install(EXPORT singeTargets NAMESPACE singe:: DESTINATION ${singe_package_dir})
+configure_package_config_file(cmake/singeConfig.cmake.in ${PROJECT_BINARY_DIR}/singeConfig.cmake
+                              INSTALL_DESTINATION ${singe_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/singeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/singeConfig.cmake ${PROJECT_BINARY_DIR}/singeConfigVersion.cmake
+        DESTINATION ${singe_package_dir})
+
+# a static library needs its own libraries named at every link
+set(singe_pc_private "-lm -pthread")
+set(singe_pc_public "")
+if(NOT BUILD_SHARED_LIBS)
+  set(singe_pc_public " ${singe_pc_private}")
+  set(singe_pc_private "")
+endif()
+file(RELATIVE_PATH singe_pc_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" singe_pc_prefix ${singe_pc_prefix})
+configure_file(cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/singe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+if(SINGE_PROGRAM)
+  install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()

@@ -1,0 +1,59 @@
+#!/bin/bash
+# Data flows one way (docs/architecture.md): checks every #include against the arrows.
+#
+#   src/base      base
+#   src/shell     base, shell
+#   src/world     base, shell, world
+#   src/<stage>   base, shell, world and its own folder: heat, burn, ablate and dynamics never meet
+#   src/step      everything in src
+#   formats       formats
+#   preview       preview, formats
+#   scene         scene, formats, preview/preview.h
+#   cli           cli, scene, formats, preview/preview.h
+#
+# and the public headers for all. Only src and tests see src. include/singe sees itself alone.
+set -euo pipefail
+root=${1:-$(cd "$(dirname "$0")/.." && pwd)}
+cd "$root"
+bad=0
+
+# check FOLDER ALLOWED: every quoted include of its files begins with one of the allowed words, or names a file
+# beside the one that includes it.
+check() {
+    local folder=$1 allowed=$2 file line name
+    [ -d "$folder" ] || return 0
+    while IFS=: read -r file line name; do
+        name=${name#*\"} name=${name%%\"*}
+        if [[ ! $name =~ ^($allowed)$ ]] && { [[ $name == */* ]] || [ ! -f "$(dirname "$file")/$name" ]; }; then
+            echo "$file:$line: must not include \"$name\""
+            bad=1
+        fi
+    done < <(grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$folder" --include='*.[ch]' || true)
+    # the library's own parts are never reached by angle brackets either
+    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|heat|burn|ablate|dynamics|step)/' \
+        "$folder" --include='*.[ch]'; then bad=1; fi
+}
+
+check include 'singe/.*'
+check src/base 'singe/.*|base/.*'
+check src/shell 'singe/.*|base/.*|shell/.*'
+check src/world 'singe/.*|base/.*|shell/.*|world/.*'
+for stage in heat burn ablate dynamics; do
+    check src/$stage "singe/.*|base/.*|shell/.*|world/.*|$stage/.*"
+done
+check src/step 'singe/.*|(base|shell|world|heat|burn|ablate|dynamics|step)/.*'
+check formats 'singe/.*|formats/.*'
+check preview 'singe/.*|formats/.*|preview/.*'
+check scene 'singe/.*|formats/.*|preview/preview\.h|scene/.*'
+check cli 'singe/.*|formats/.*|preview/preview\.h|scene/.*|cli/.*'
+check bench 'singe/.*|formats/.*|preview/preview\.h|scene/.*|bench/.*'
+check examples 'singe/.*'
+check web 'singe/.*|web/.*'
+
+# libsinge needs libc, libm and threads only
+if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|xxhash)' src include; then
+    echo "libsinge must not need other libraries"
+    bad=1
+fi
+[ $bad -eq 0 ] && echo "includes follow the arrows"
+exit $bad

@@ -1,0 +1,31 @@
+#!/bin/bash
+# Installs a build into an empty folder and links a small program against it, by find_package and by pkg-config:
+# test_install.sh BUILD CONSUMER CC [FLAGS...]
+set -euo pipefail
+build=$1 consumer=$2 cc=$3
+shift 3
+flags=$*
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+cmake --install "$build" --prefix "$work/prefix" >"$work/log"
+[ -f "$work/prefix/include/singe/singe.h" ]
+
+cmake -S "$consumer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_C_COMPILER="$cc" \
+    -DCMAKE_C_FLAGS="$flags" >>"$work/log"
+cmake --build "$work/build" >>"$work/log"
+library=$(dirname "$(find "$work/prefix" -name 'libsinge.*' | head -n 1)")
+export LD_LIBRARY_PATH=$library
+[ "$("$work/build/consumer")" = "0.1.0 5" ]
+
+# moved elsewhere, it must still be found: the files hold no path of this machine
+mv "$work/prefix" "$work/moved"
+pc=$(dirname "$(find "$work/moved" -name singe.pc)")
+export PKG_CONFIG_PATH=$pc LD_LIBRARY_PATH=${library/prefix/moved}
+# shellcheck disable=SC2046,SC2086
+"$cc" $flags "$consumer/consumer.c" $(pkg-config --cflags --libs singe) -o "$work/by_pkg_config"
+[ "$("$work/by_pkg_config")" = "0.1.0 5" ]
+[ "$(pkg-config --modversion singe)" = 0.1.0 ]
+
+if [ -x "$work/moved/bin/singe" ]; then "$work/moved/bin/singe" --version; fi
+echo "installed, found and linked by find_package and pkg-config"

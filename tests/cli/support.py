@@ -1,0 +1,93 @@
+"""A small scene in a folder of its own, and the program run on it."""
+
+import csv
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SINGE = os.environ["SINGE"]
+HAS_PREVIEW = os.environ.get("SINGE_PREVIEW", "1") == "1"
+HAS_FFMPEG = shutil.which("ffmpeg") is not None
+
+# a corner of a sheet 6 cm wide, lit at an edge; burns through within its frames
+SCENE = """\
+frames: {frames}
+fps: 24
+steps: {steps}
+pace: 4
+sheets:
+  - grid: {{size: [6 cm, 6 cm], cells: [{cells}, {cells}]}}
+    translate: [0, 0, 5 cm]
+sources:
+  - kind: spot
+    position: [-3 cm, 0, 5 cm]
+    temperature: 1200 K
+    conductance: 300
+    radius: 1 cm
+    falloff: 1 cm
+preview: {{size: [64, 48], samples: 1}}
+"""
+
+COLUMNS = (
+    "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
+    "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
+    "ms_ablate,ms_dynamics,ms_output"
+).split(",")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.dir = tempfile.mkdtemp(prefix="singe-test-")
+        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
+        self.scene = self.write_scene()
+
+    def path(self, *parts):
+        return os.path.join(self.dir, *parts)
+
+    def write_scene(self, name="tiny.yaml", frames=6, steps=2, cells=12, extra=""):
+        path = self.path(name)
+        with open(path, "w") as file:
+            file.write(SCENE.format(frames=frames, steps=steps, cells=cells) + extra)
+        return path
+
+    def singe(self, *args, expect=0, **options):
+        """Runs the program and checks its exit code. Returns what it printed: (stdout, stderr)."""
+        done = subprocess.run([SINGE, *args], capture_output=True, text=True, timeout=120, **options)
+        self.assertEqual(done.returncode, expect, f"singe {args}\n{done.stdout}\n{done.stderr}")
+        return done.stdout, done.stderr
+
+    def start(self, *args, **options):
+        return subprocess.Popen([SINGE, *args], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **options)
+
+    def run_scene(self, out, *args, expect=0, preview=False, **options):
+        args = list(args) if preview else [*args, "--no-preview"]
+        return self.singe("run", self.scene, "-o", self.path(out), *args, expect=expect, **options)
+
+    def plys(self, out):
+        """Digest of every file of the cache's ply folder, by name."""
+        folder = self.path(out, "ply")
+        digests = {}
+        for name in sorted(os.listdir(folder)):
+            with open(os.path.join(folder, name), "rb") as file:
+                digests[name] = hashlib.sha256(file.read()).hexdigest()
+        return digests
+
+    def stats(self, out):
+        with open(self.path(out, "stats.csv"), newline="") as file:
+            return list(csv.DictReader(file))
+
+    def numbers(self, out):
+        """The stats without what a clock measured."""
+        return [{k: v for k, v in row.items() if not k.startswith("ms_")} for row in self.stats(out)]
+
+    def record(self, out):
+        with open(self.path(out, "run.json")) as file:
+            return json.load(file)
+
+    def no_temporaries(self, out):
+        left = [n for _, _, names in os.walk(self.path(out)) for n in names if n.endswith((".tmp", ".part"))]
+        self.assertEqual(left, [])

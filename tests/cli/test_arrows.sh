@@ -1,0 +1,31 @@
+#!/bin/bash
+# check_arrows.sh must notice every kind of wrong include: test_arrows.sh SCRIPT
+set -euo pipefail
+script=$1
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+mkdir -p "$tree"/{src/heat,src/burn,formats,cli,scene,include/singe}
+
+# expect RESULT FILE INCLUDE: a tree whose FILE holds that one include
+expect() {
+    echo "#include $3" >"$tree/$2"
+    local result=good
+    "$script" "$tree" >/dev/null 2>&1 || result=bad
+    rm "$tree/$2"
+    [ $result = "$1" ] || { echo "$2 with $3: expected $1, was $result"; exit 1; }
+}
+
+expect good src/heat/a.c '"base/error.h"'
+expect good src/heat/a.c '"heat/heat.h"'
+expect bad src/heat/a.c '"burn/burn.h"'
+expect bad src/heat/a.c '"step/sim.h"'
+expect bad src/heat/a.c '"../burn/burn.h"'
+expect bad src/heat/a.c '<png.h>'
+expect good formats/a.c '"singe/sim.h"'
+expect bad formats/a.c '"base/error.h"'
+expect bad formats/a.c '"scene/scene.h"'
+expect good scene/a.c '"preview/preview.h"'
+expect bad scene/a.c '"preview/internal.h"'
+expect bad cli/a.c '"shell/shell.h"'
+expect bad cli/a.c '<shell/shell.h>'
+expect bad include/singe/a.h '"base/error.h"'

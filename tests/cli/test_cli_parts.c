@@ -1,0 +1,142 @@
+// The pieces of the command that a run alone would not corner.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/console.h"
+#include "cli/contact_sheet.h"
+#include "cli/text.h"
+
+static void expect_member(const char *json, const char *name, const char *expected) {
+    const char *value;
+    size_t size;
+    bool found = text_json_member(json, strlen(json), name, &value, &size);
+    assert_int_equal(found, expected != NULL);
+    if (!expected) return;
+    assert_int_equal(size, strlen(expected));
+    assert_memory_equal(value, expected, size);
+}
+
+static void finds_json_members(void **state) {
+    (void)state;
+    const char *json = " {\"a\": 1, \"b\": {\"scene\": [1, \"}\\\"\"]} , \"scene\": {\"x\": [1,2]}, \"s\":\"q\\\"},\", \"z\":null}";
+    expect_member(json, "a", "1");
+    expect_member(json, "b", "{\"scene\": [1, \"}\\\"\"]}");
+    expect_member(json, "scene", "{\"x\": [1,2]}");
+    expect_member(json, "s", "\"q\\\"},\"");
+    expect_member(json, "z", "null");
+    expect_member(json, "x", NULL);
+    expect_member("[1]", "a", NULL);
+    expect_member("", "a", NULL);
+}
+
+static void refuses_cut_json(void **state) {
+    (void)state;
+    const char *json = "{\"a\": [1, {\"b\": \"c\"}], \"scene\": {\"x\": 1}";
+    const char *value;
+    size_t size;
+    assert_true(text_json_member(json, strlen(json), "scene", &value, &size));
+    for (size_t cut = 0; cut < strlen(json); cut++) assert_false(text_json_member(json, cut, "scene", &value, &size));
+}
+
+static void unquotes_what_it_quotes(void **state) {
+    (void)state;
+    const char *texts[] = {"", "plain", "a \"b\" \\ c", "tab\tnewline\n\x01", "\xc3\xa4/\xe2\x82\xac"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        char *json = NULL;
+        size_t size = 0;
+        FILE *file = open_memstream(&json, &size);
+        text_json_string(file, texts[i]);
+        fclose(file);
+        char *back = text_json_unquote(json, size);
+        assert_non_null(back);
+        assert_string_equal(back, texts[i]);
+        free(back);
+        free(json);
+    }
+    assert_null(text_json_unquote("12", 2));
+    assert_null(text_json_unquote("\"", 1));
+}
+
+static void finds_the_nearest_word(void **state) {
+    (void)state;
+    const char *words[] = {"frames", "threads", "resume", "set"};
+    assert_string_equal(args_nearest("frame", words, 4, sizeof *words), "frames");
+    assert_string_equal(args_nearest("thraeds", words, 4, sizeof *words), "threads");
+    assert_string_equal(args_nearest("res", words, 4, sizeof *words), "resume");
+    assert_null(args_nearest("something-else", words, 4, sizeof *words));
+}
+
+static void reads_arguments(void **state) {
+    (void)state;
+    static const ArgOption options[] = {{"out", 'o', "DIR", ""}, {"quiet", 'q', NULL, ""}, {"all", 'a', NULL, ""}};
+    const ArgCommand command = {"test", "SCENE", "", options, 3, NULL};
+    char *argv[] = {"-qa", "-oX", "--out=Y", "--out", "Z", "-qo", "W", "--", "--quiet"};
+    ArgReader reader = args_begin(&command, 9, argv);
+    const int expected[] = {1, 2, 0, 0, 0, 1, 0, ARG_OPERAND, ARG_END};
+    const char *values[] = {NULL, NULL, "X", "Y", "Z", NULL, "W", "--quiet", NULL};
+    for (int i = 0; i < 9; i++) {
+        const char *value = NULL;
+        assert_int_equal(args_next(&reader, &value), expected[i]);
+        if (values[i]) assert_string_equal(value, values[i]);
+    }
+}
+
+static void averages_tiles(void **state) {
+    (void)state;
+    enum { W = 1000, H = 4 };
+    uint8_t *rgb = malloc(W * H * 3);
+    for (int i = 0; i < W * H; i++) {
+        int x = i % W, y = i / W;
+        rgb[3 * i] = (uint8_t)(x % 2 ? 200 : 100);  // mean over 2 columns: 150
+        rgb[3 * i + 1] = (uint8_t)(y < 2 ? 10 : 30); // rows of the tile keep theirs
+        rgb[3 * i + 2] = 7;
+    }
+    ContactSheet sheet;
+    SingeError error;
+    assert_int_equal(contact_sheet_make(&sheet, 3, 2, W, H, &error), SINGE_OK); // 3000 wide: halved
+    assert_int_equal(sheet.width, 1500);
+    assert_int_equal(sheet.height, 4);
+    contact_sheet_put(&sheet, 4, rgb);
+    const uint8_t *pixel = sheet.rgb + 3 * (2 * 1500 + 500);
+    assert_int_equal(pixel[0], 150), assert_int_equal(pixel[1], 10), assert_int_equal(pixel[2], 7);
+    assert_int_equal(pixel[3 * 1500 + 1], 30);
+    assert_int_equal(pixel[-3], 0); // the tile beside it is untouched
+    contact_sheet_free(&sheet);
+    free(rgb);
+}
+
+static void spreads_frames(void **state) {
+    (void)state;
+    const int expected[] = {1, 29, 58, 86, 115, 143, 172, 200};
+    for (int tile = 0; tile < 8; tile++) assert_int_equal(contact_sheet_frame(tile, 8, 1, 200), expected[tile]);
+    assert_int_equal(contact_sheet_frame(0, 1, 5, 9), 5);
+    assert_int_equal(contact_sheet_frame(3, 4, 2, 2), 2);
+}
+
+static void writes_durations(void **state) {
+    (void)state;
+    char text[32];
+    console_duration(3.6, text);
+    assert_string_equal(text, "4 s");
+    console_duration(125, text);
+    assert_string_equal(text, "2:05");
+    console_duration(3723, text);
+    assert_string_equal(text, "1:02:03");
+    console_duration(-1, text);
+    assert_string_equal(text, "0 s");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json), cmocka_unit_test(unquotes_what_it_quotes),
+        cmocka_unit_test(finds_the_nearest_word), cmocka_unit_test(reads_arguments), cmocka_unit_test(averages_tiles),
+        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

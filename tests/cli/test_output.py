@@ -1,0 +1,125 @@
+"""What a run leaves, and that it does not depend on threads."""
+
+import os
+import unittest
+
+from support import COLUMNS, HAS_FFMPEG, HAS_PREVIEW, Case
+
+
+class Output(Case):
+    def test_all_files(self):
+        out, err = self.run_scene("o", preview=True)
+        names = ["tiny.%04d" % i for i in range(1, 7)]
+        self.assertEqual(list(self.plys("o")), [n + ".ply" for n in names])
+        self.assertIn("frame 6/6", err)
+        top = {"checkpoint.singe", "frames", "ply", "run.json", "stats.csv"}
+        if HAS_PREVIEW:
+            self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), [n + ".png" for n in names])
+            if HAS_FFMPEG:
+                top.add("preview.mp4")
+                with open(self.path("o", "preview.mp4"), "rb") as file:
+                    self.assertEqual(file.read(8)[4:], b"ftyp")
+                self.assertIn("preview.mp4", out)
+        self.assertEqual(set(os.listdir(self.path("o"))), top)
+        self.no_temporaries("o")
+
+    def test_stats(self):
+        self.run_scene("o")
+        rows = self.stats("o")
+        self.assertEqual(list(rows[0])[: len(COLUMNS)], COLUMNS)
+        self.assertEqual([int(r["frame"]) for r in rows], [1, 2, 3, 4, 5, 6])
+        for i, row in enumerate(rows):
+            self.assertAlmostEqual(float(row["time"]), i / 24, places=6)
+            for value in row.values():
+                float(value)
+        self.assertEqual(int(rows[0]["particles"]), 13 * 13 + 12 * 12)
+        self.assertEqual(int(rows[0]["springs"]), 1440)
+        self.assertEqual(float(rows[0]["burnt_fraction"]), 0)
+        self.assertGreater(float(rows[-1]["temperature_max"]), 500)
+        self.assertGreater(float(rows[-1]["heat_in"]), 0)
+        self.assertLess(float(rows[-1]["ledger_error"]), 1e-5)
+        self.assertLess(float(rows[-1]["mass_ledger_error"]), 1e-6)
+
+    def test_record(self):
+        self.run_scene("o", "--set", "seed=7", "--threads", "2")
+        record = self.record("o")
+        self.assertEqual(record["program"], "singe")
+        self.assertEqual(record["version"], "0.1.0")
+        self.assertEqual(record["result"], "complete")
+        self.assertIsNone(record["error"])
+        self.assertEqual(record["seed"], 7)
+        self.assertEqual(record["threads"], 2)
+        self.assertEqual((record["frames"], record["frames_done"]), (6, 6))
+        self.assertEqual(record["totals"]["steps"], 10)
+        self.assertEqual(record["scene"]["seed"], 7)
+        self.assertEqual(record["scene"]["sheets"][0]["grid"]["cells"], [12, 12])
+        seconds = record["seconds"]
+        self.assertGreater(seconds["dynamics"], 0)
+        self.assertLess(seconds["heat"] + seconds["burn"] + seconds["ablate"] + seconds["dynamics"], seconds["wall"])
+
+    def test_default_folder_and_quiet(self):
+        out, err = self.singe("run", "tiny.yaml", "--quiet", "--no-preview", "--frames", "2", cwd=self.dir)
+        self.assertEqual((out, err), ("", ""))
+        self.assertEqual(list(self.plys("out/tiny")), ["tiny.0001.ply", "tiny.0002.ply"])
+
+    def test_same_bytes_for_any_threads(self):
+        for threads in "1", "2", "4":
+            self.run_scene("t" + threads, "--threads", threads, "--set", "sheets.0.grid.cells=[40, 40]", "--quiet")
+        self.assertEqual(len(self.plys("t1")), 6)
+        self.assertEqual(self.plys("t1"), self.plys("t2"))
+        self.assertEqual(self.plys("t1"), self.plys("t4"))
+        self.assertEqual(self.numbers("t1"), self.numbers("t2"))
+        self.assertEqual(self.numbers("t1"), self.numbers("t4"))
+
+    def test_locale(self):
+        self.run_scene("a", "--quiet")
+        self.run_scene("b", "--quiet", env={**os.environ, "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
+        self.assertEqual(self.numbers("a"), self.numbers("b"))
+
+    def test_second_run_replaces_the_first(self):
+        self.run_scene("o", preview=True)
+        for name in "keep.txt", "ply/other.0001.ply", "ply/tiny.1.ply", "frames/tiny.0001.png.bak":
+            with open(self.path("o", name), "w") as file:
+                file.write("mine")
+        with open(self.path("o", "ply", "tiny.0003.ply.123-0.tmp"), "w") as file:
+            file.write("half written by a run that was killed")
+        _, err = self.run_scene("o", "--frames", "2")
+        self.assertIn("of an earlier run", err)
+        self.assertEqual(list(self.plys("o")), ["other.0001.ply", "tiny.0001.ply", "tiny.0002.ply", "tiny.1.ply"])
+        self.assertEqual(os.listdir(self.path("o", "frames")), ["tiny.0001.png.bak"])
+        self.assertTrue(os.path.exists(self.path("o", "keep.txt")))
+        self.assertFalse(os.path.exists(self.path("o", "preview.mp4")))
+        self.assertEqual(len(self.stats("o")), 2)
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_no_ffmpeg(self):
+        _, err = self.run_scene("o", "--frames", "2", preview=True, env={**os.environ, "PATH": self.dir})
+        self.assertIn("cannot run ffmpeg", err)
+        command = next(line.strip() for line in err.splitlines() if line.startswith("  ffmpeg"))
+        self.assertFalse(os.path.exists(self.path("o", "preview.mp4")))
+        self.assertFalse(self.record("o")["video"])
+        if HAS_FFMPEG:
+            self.assertEqual(os.system(command), 0)
+            self.assertTrue(os.path.exists(self.path("o", "preview.mp4")))
+
+    @unittest.skipUnless(HAS_PREVIEW and HAS_FFMPEG, "needs the preview and ffmpeg")
+    def test_odd_folder_and_size(self):
+        self.run_scene("it's 100% %04d: a b", "--frames", "2", "--set", "preview.size=[65, 49]", preview=True)
+        self.assertTrue(os.path.exists(self.path("it's 100% %04d: a b", "preview.mp4")))
+
+    def test_files_read_back(self):
+        """Header of a PLY, and as many bytes as it announces."""
+        self.run_scene("o", "--frames", "2")
+        with open(self.path("o", "ply", "tiny.0002.ply"), "rb") as file:
+            data = file.read()
+        header = data[: data.index(b"end_header")].decode().split("\n")
+        self.assertEqual(header[0], "ply")
+        self.assertIn("binary_little_endian", header[1])
+        vertices = next(int(line.split()[2]) for line in header if line.startswith("element vertex"))
+        self.assertGreaterEqual(vertices, 169)
+        for field in ("temperature", "mass", "time_ignited", "piece"):
+            self.assertTrue(any(line.startswith("property") and field in line for line in header), field)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,100 @@
+"""Usage, check, and what is refused before anything is written."""
+
+import os
+import unittest
+
+from support import SINGE, Case
+
+
+class Usage(Case):
+    def test_help_and_version(self):
+        self.assertIn("usage: singe COMMAND", self.singe("--help")[0])
+        self.assertEqual(self.singe("--version")[0], "singe 0.1.0\n")
+        for command, word in ("run", "--resume"), ("check", "--threads"), ("render", "--sheet"):
+            out, _ = self.singe(command, "--help")
+            self.assertIn(f"usage: singe {command}", out)
+            self.assertIn(word, out)
+
+    def test_bad_usage(self):
+        for args, hint in (
+            ([], "needs a command"),
+            (["rum"], "did you mean 'run'?"),
+            (["--verison"], "unknown option"),
+            (["run"], "needs SCENE"),
+            (["run", "--frame", "3", self.scene], "did you mean '--frames'?"),
+            (["run", "--bogus", self.scene], "unknown option '--bogus'"),
+            (["run", "-x", self.scene], "unknown option '-x'"),
+            (["run", self.scene, "--threads"], "--threads needs N"),
+            (["run", self.scene, "--threads", "0"], "from 1 to 64"),
+            (["run", self.scene, "--threads", "2x"], "got '2x'"),
+            (["run", self.scene, "--resume=yes"], "takes no value"),
+            (["run", self.scene, "other.yaml"], "one argument too many"),
+            (["check"], "needs SCENE"),
+            (["render"], "needs DIR"),
+            (["render", "x", "--frames", "5-2"], "expected A-B"),
+            (["render", "x", "--sheet", "4"], "such as 4x2"),
+            (["render", "x", "--set", "pace=2"], "only preview."),
+            (["scene-doc", "x"], "one argument too many"),
+        ):
+            with self.subTest(args=args):
+                self.assertIn(hint, self.singe(*args, expect=2)[1])
+
+    def test_bad_scenes(self):
+        unknown = self.write_scene("unknown.yaml", extra="colour: red\n")
+        mesh = self.path("mesh.yaml")
+        with open(mesh, "w") as file:
+            file.write("sheets:\n  - mesh: nowhere.obj\n")
+        empty = self.path("empty.yaml")
+        open(empty, "w").close()
+        for path, hint in (
+            (self.path("nothing.yaml"), "nothing.yaml"),
+            (self.dir, "directory"),
+            (unknown, "colour"),
+            (mesh, "nowhere.obj"),
+            (empty, "empty.yaml"),
+        ):
+            for command in "run", "check":
+                with self.subTest(command=command, path=path):
+                    self.assertIn(hint, self.singe(command, path, expect=2, cwd=self.dir)[1])
+        self.assertFalse(os.path.exists(self.path("out")), "a refused scene must leave no folder")
+
+    def test_bad_set(self):
+        for text, hint in (
+            ("frames=many", "frames"),
+            ("frames", "="),
+            ("sheets.0.material.grammage=-1", "grammage"),
+            ("nosuch=1", "nosuch"),
+            ("frames=0", "frames"),
+        ):
+            with self.subTest(set=text):
+                _, err = self.singe("run", self.scene, "--set", text, expect=2, cwd=self.dir)
+                self.assertIn(hint, err)
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_name_names_files(self):
+        bad = self.write_scene("bad.yaml", extra='name: "../up"\n')
+        self.singe("run", bad, expect=2, cwd=self.dir)
+        self.singe("check", bad, expect=2, cwd=self.dir)
+
+    def test_check(self):
+        out, _ = self.singe("check", self.scene)
+        for word in ("particles     313", "springs       1440", "red         576", "green       264", "blue        312",
+                     "yellow      288", "families", "memory", "thickening", "time"):
+            self.assertIn(word, out)
+        self.assertEqual(sorted(os.listdir(self.dir)), ["tiny.yaml"], "check writes no files")
+
+    def test_check_set(self):
+        out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[4, 4]", "--frames=3")
+        self.assertIn("particles     41", out)
+        self.assertIn("frames        3 ", out)
+
+    def test_scene_doc(self):
+        out, _ = self.singe("scene-doc")
+        self.assertIn("grammage", out)
+
+    def test_program_is_there(self):
+        self.assertTrue(os.access(SINGE, os.X_OK))
+
+
+if __name__ == "__main__":
+    unittest.main()
