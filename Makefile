@@ -25,7 +25,7 @@ demo:
 	scripts/setup.sh
 	$(MAKE) build
 	build/cli/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
-	@echo "the video: $(CURDIR)/$(DEMO_DIR)/preview.mp4"
+	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
 
 check:
 	scripts/setup.sh --check

@@ -121,15 +121,17 @@ static double report(const SingeSim *sim, const Options *options, const double *
     SingeTimers timers = singe_sim_timers(sim);
     double springs = 0, median = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) springs += census.springs[colour];
-    printf("%.0f springs, %u particles, %ld threads, %ld steps\n", springs, census.particles, options->threads, options->steps);
+    printf("%.0f springs, %u particles, %ld threads, %ld steps\n", springs, census.particles, options->threads,
+           options->steps);
     printf("%-10s %10s %10s %12s\n", "stage", "median ms", "least ms", "ns a spring");
     for (int column = 0; column < COLUMNS; column++) {
         median = ms[column * options->steps + options->steps / 2];
-        printf("%-10s %10.3f %10.3f %12.2f\n", names[column], median, ms[column * options->steps], 1e6 * median / springs);
+        printf("%-10s %10.3f %10.3f %12.2f\n", names[column], median, ms[column * options->steps],
+               1e6 * median / springs);
     }
-    printf("memory %.1f MB; %.1f heat iterations and %.0f contacts a step; %.2f %% burnt, up to %.0f K\n", (double)census.memory / 1e6,
-           (double)timers.heat_iterations / (double)timers.steps, (double)timers.contacts / (double)timers.steps,
-           100 * stats.burnt_fraction, (double)stats.temperature_max);
+    printf("memory %.1f MB; %.1f heat iterations and %.0f contacts a step; %.2f %% burnt, up to %.0f K\n",
+           (double)census.memory / 1e6, (double)timers.heat_iterations / (double)timers.steps,
+           (double)timers.contacts / (double)timers.steps, 100 * stats.burnt_fraction, (double)stats.temperature_max);
     return median;
 }
 
@@ -152,7 +154,8 @@ int main(int argc, char **argv) {
     if (singe_sim_create(&def, &sim, &error)) return fail("create", &error);
     double *ms = calloc((size_t)(COLUMNS * options.steps), sizeof *ms), median = 0;
     int status = !ms ? fail("out of memory", NULL) : 0;
-    if (!status && (build(sim, options.springs) || measure(sim, options.steps, ms))) status = fail("run", singe_sim_error(sim));
+    if (!status && (build(sim, options.springs) || measure(sim, options.steps, ms)))
+        status = fail("run", singe_sim_error(sim));
     if (!status) median = report(sim, &options, ms);
     if (!status && options.limit_ms && median > (double)options.limit_ms) {
         fprintf(stderr, "the median is above the limit of %ld ms\n", options.limit_ms);

@@ -162,7 +162,7 @@ bool args_int(const ArgReader *reader, int option, const char *text, int low, in
         *number = (int)value;
         return true;
     }
-    args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'", reader->command->options[option].name,
-                  low, high, text);
+    args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'",
+                  reader->command->options[option].name, low, high, text);
     return false;
 }

@@ -119,7 +119,8 @@ static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, uint64
         return refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
     if (trailer->scene_hash != scene_hash)
         return refuse(folder, SINGE_ERROR_STATE,
-                      "the checkpoint is of another scene (the scene, its --set or a file it names has changed)", error);
+                      "the checkpoint is of another scene (the scene, its --set or a file it names has changed)",
+                      error);
     return SINGE_OK;
 }
 

@@ -91,7 +91,8 @@ static void show(Console *console, int frame, int frames, const char *line) {
     int full = frames > 0 ? (int)((long)frame * BAR / frames) : BAR;
     for (int i = 0; i < BAR; i++) bar[i] = i < full ? '#' : '.';
     bar[BAR] = 0;
-    fprintf(stderr, "\r\033[K%s[%s]%s %s", console->colour ? "\033[33m" : "", bar, console->colour ? "\033[0m" : "", line);
+    const char *colour = console->colour ? "\033[33m" : "", *plain = console->colour ? "\033[0m" : "";
+    fprintf(stderr, "\r\033[K%s[%s]%s %s", colour, bar, plain, line);
     console->line_open = frame != frames;
     if (!console->line_open) fputc('\n', stderr);
     fflush(stderr);

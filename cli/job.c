@@ -56,8 +56,8 @@ static bool scene_good(Console *console, const Scene *scene) {
         return false;
     }
     if (*name && *name != '.' && !strchr(name, '/') && strlen(name) <= 200) return true;
-    console_error(console, "the scene's name '%s' cannot name files: expected 1 to 200 characters, no '/', no '.' first",
-                  name);
+    console_error(console,
+                  "the scene's name '%s' cannot name files: expected 1 to 200 characters, no '/', no '.' first", name);
     return false;
 }
 

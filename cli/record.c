@@ -25,7 +25,8 @@ static void member(FILE *file, const char *name, const char *text) {
 /// The scene's folder as an absolute path, so that `singe render` finds its files from anywhere.
 static void write_scene_folder(FILE *file, const char *scene_path) {
     const char *slash = strrchr(scene_path, '/');
-    char *folder = slash ? text_format("%.*s", (int)(slash - scene_path) + (slash == scene_path), scene_path) : text_format(".");
+    int length = slash ? (int)(slash - scene_path) + (slash == scene_path) : 0;
+    char *folder = slash ? text_format("%.*s", length, scene_path) : text_format(".");
     char *whole = realpath(folder, NULL);
     member(file, "scene_file", scene_path);
     member(file, "scene_folder", whole ? whole : folder);
@@ -34,7 +35,8 @@ static void write_scene_folder(FILE *file, const char *scene_path) {
 }
 
 static void write_seconds(FILE *file, const Totals *totals) {
-    static const char *const names[] = {"heat", "burn", "ablate", "dynamics", "surface", "ply", "preview", "checkpoint"};
+    static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics",
+                                        "surface", "ply",  "preview", "checkpoint"};
     fputs("  \"seconds\": {\"wall\": ", file);
     text_json_number(file, totals->wall_seconds);
     for (int i = 0; i < SINGE_STAGE_COUNT + TOTAL_OUTPUT_COUNT; i++) {
@@ -59,7 +61,8 @@ static void write_totals(FILE *file, const Totals *t) {
 static void write_census(FILE *file, const Record *record) {
     static const char *const colours[] = {"red", "green", "blue", "yellow"};
     const SingeCensus *c = &record->census;
-    fprintf(file, "  \"census\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles, c->cells);
+    fprintf(file, "  \"census\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles,
+            c->cells);
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
         fprintf(file, "%s\"%s\": %" PRIu32, i ? ", " : "", colours[i], c->springs[i]);
     fputs("}, \"thickening\": ", file);
@@ -89,8 +92,9 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     fprintf(file, "  \"frames\": %d,\n  \"frames_done\": %d,\n  \"resumed_from\": %d,\n  \"fps\": ", scene->frames,
             record->frames_done, record->resumed_from);
     text_json_number(file, (double)scene->fps);
-    fprintf(file, ",\n  \"steps_per_frame\": %d,\n  \"seed\": %" PRIu64 ",\n  \"threads\": %d,\n  \"preview\": %s,\n  \"video\": %s,\n",
-            scene->steps, scene->sim.seed, job->hooks.thread_count, record->preview ? "true" : "false",
+    fprintf(file, ",\n  \"steps_per_frame\": %d,\n  \"seed\": %" PRIu64 ",\n  \"threads\": %d,\n", scene->steps,
+            scene->sim.seed, job->hooks.thread_count);
+    fprintf(file, "  \"preview\": %s,\n  \"video\": %s,\n", record->preview ? "true" : "false",
             record->video ? "true" : "false");
     write_seconds(file, &record->totals);
     write_totals(file, &record->totals);

@@ -265,7 +265,9 @@ static ExitCode prepare(Run *run, const RunOptions *options) {
     if (options->resume && (code = resume(run))) return code;
     // built before anything of an earlier run is touched
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
-    if (folder_create(&run->folder, &error) || folder_sweep(&run->folder, &error)) return fail(run, &error, EXIT_FAILED);
+    result = folder_create(&run->folder, &error);
+    if (!result) result = folder_sweep(&run->folder, &error);
+    if (result) return fail(run, &error, EXIT_FAILED);
     return run->first ? EXIT_GOOD : start(run);
 }
 

@@ -56,8 +56,8 @@ static SingeResult cut(StatsFile *file, int frames_kept, SingeError *error) {
     if (file->size < 0) {
         *error = (SingeError){.code = SINGE_ERROR_FORMAT, .stage = "resume", .element = -1};
         snprintf(error->message, sizeof error->message,
-                 "%.200s does not hold frames 1 to %d of the checkpoint; run without --resume to start over", file->path,
-                 frames_kept);
+                 "%.200s does not hold frames 1 to %d of the checkpoint; run without --resume to start over",
+                 file->path, frames_kept);
         return SINGE_ERROR_FORMAT;
     }
     if (ftruncate(file->fd, (off_t)file->size) != 0) return folder_fail(file->path, "cut", errno, error);
@@ -92,8 +92,8 @@ SingeResult stats_write(StatsFile *file, int frame, const SingeStats *s, const T
 
 SingeResult stats_sync(StatsFile *file, SingeError *error) {
     // a pipe or a special file has nothing to sync
-    if (fsync(file->fd) != 0 && errno != EINVAL && errno != EROFS) return folder_fail(file->path, "write", errno, error);
-    return SINGE_OK;
+    if (fsync(file->fd) == 0 || errno == EINVAL || errno == EROFS) return SINGE_OK;
+    return folder_fail(file->path, "write", errno, error);
 }
 
 void stats_close(StatsFile *file) {

@@ -85,7 +85,8 @@ bool video_make(Console *console, const Folder *folder, double fps, int first, i
     // "file:" keeps a colon in a path from being read as a protocol, and a dash as an option
     char *input = text_format("file:%s/frames/%s.%%04d.png", path, name);
     char *part = text_format("file:%s.part", folder->video), *final = text_format("file:%s", folder->video);
-    char *rate = text_format("%.9g", fps), *start = text_format("%d", first), *count = text_format("%d", last - first + 1);
+    char *rate = text_format("%.9g", fps), *start = text_format("%d", first);
+    char *count = text_format("%d", last - first + 1);
     // H.264 in 4:2:0 wants even sides
     char *arguments[] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate", rate,
                          "-start_number", start, "-i", input, "-frames:v", count, "-vf",

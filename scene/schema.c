@@ -131,6 +131,8 @@ static const SchemaRow material_rows[] = {
           "eta of eq 1: warming when all of the mass burns with no losses"),
     PARAM("mass_rate", mass_rate, 5, DIM_RATE_PER_KELVIN, FROM(0),
           "mu of eq 4: mass lost per second and kelvin above ignition"),
+    {"rate_ceiling", ROW_FLOAT, DIM_TEMPERATURE_DIFFERENCE, AT(SceneMaterial, def.rate_ceiling), .flags = ROW_INF | ROW_OPEN_MIN, FROM(0),
+     .doc = "kelvins above ignition where the rate of burning stops growing, for want of air; inf is the paper"},
     PARAM("ash_exponent", ash_exponent, 6, DIM_NONE, FROM(0),
           "p: slows eq 4 near the end by ((m - m_min)/(1 - m_min))^p, so that flakes of ash stay; 0 is the paper"),
     PARAM("mass_min", mass_min, 7, DIM_FRACTION, BELOW(0, 1), "m_min: share that never burns"),

@@ -104,6 +104,7 @@ typedef struct SingeMaterialDef {
     SingeParam ignition_temperature; ///< K, > 0
     SingeParam heating;              ///< K per unit of mass fraction burnt, eta of eq 1, >= 0
     SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
+    float rate_ceiling;              ///< K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
     SingeParam ash_exponent;         ///< p >= 0; eq 4 times ((m - m_min)/(1 - m_min))^p; 0 is the paper
     SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
     SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole

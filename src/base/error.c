@@ -3,7 +3,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-SingeResult error_set(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...) {
+SingeResult error_set(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format,
+                      ...) {
     if (!error) return code;
     error->code = code;
     error->element = element;

@@ -34,7 +34,8 @@ void *memory_new(Memory *memory, size_t count, size_t element_size) {
 bool memory_grow(Memory *memory, void *array_pointer, size_t old_count, size_t new_count, size_t element_size) {
     void *block;
     memcpy(&block, array_pointer, sizeof block);
-    size_t old_size = block ? memory_bytes(old_count, element_size) : 0, new_size = memory_bytes(new_count, element_size);
+    size_t old_size = block ? memory_bytes(old_count, element_size) : 0,
+           new_size = memory_bytes(new_count, element_size);
     void *grown = new_size ? memory->hook.resize(memory->hook.context, block, old_size, new_size) : NULL;
     if (!grown) return false;
     memory->held += new_size - old_size;

@@ -42,7 +42,8 @@ float random_fractal(const SingeNoise *noise, float x, float y, float z) {
     for (int octave = 0; octave < noise->octaves; octave++) {
         // shifted lattices, so that octaves do not share their planes of symmetry
         float shift = 17.31f * (float)octave;
-        sum += strength * random_noise(x * frequency + shift, y * frequency + shift, z * frequency + shift, noise->seed + (uint32_t)octave);
+        sum += strength * random_noise(x * frequency + shift, y * frequency + shift, z * frequency + shift,
+                                       noise->seed + (uint32_t)octave);
         total += strength;
         strength *= 0.5f;
         frequency *= 2;

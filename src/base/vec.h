@@ -14,7 +14,9 @@ static inline Vec vec_sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y, a.z
 static inline Vec vec_scale(Vec a, float s) { return (Vec){a.x * s, a.y * s, a.z * s}; }
 static inline Vec vec_mad(Vec a, Vec b, float s) { return (Vec){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
 static inline float vec_dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline Vec vec_cross(Vec a, Vec b) { return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+static inline Vec vec_cross(Vec a, Vec b) {
+    return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 static inline float vec_length(Vec a) { return sqrtf(vec_dot(a, a)); }
 /// The unit vector along a, or zero for zero.
 static inline Vec vec_unit(Vec a) { float l = vec_length(a); return l > 0 ? vec_scale(a, 1 / l) : a; }

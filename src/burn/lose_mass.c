@@ -1,15 +1,16 @@
 // Mass loss, eq 4 with an ash exponent:
 //
-//   dm/dt = -(mu/F) x^p (T - T_ign)+,   x = (m - m_min)/(1 - m_min)
+//   dm/dt = -(mu/F) x^p min((T - T_ign)+, theta),   x = (m - m_min)/(1 - m_min)
 //
 //   m      mass as a fraction of the initial mass, 1 unburnt; x what of it can still burn, 1 to 0
 //   m_min  fraction that never burns
 //   mu     mass rate, 1/(K s)
 //   F      front thickening, by which every rate is divided
 //   T, T_ign  temperature and ignition temperature, K;  (.)+ is zero below zero
+//   theta  ceiling, K: hotter fuel burns no faster, for the air brings no more oxygen; infinite in the paper
 //   p      ash exponent; 0 is the paper's straight line, larger p leaves flakes of ash
 //
-// Over one step T is held, and k = mu dt (T - T_ign)/(F (1 - m_min)) is a number. dx/dt = -(k/dt) x^p is
+// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)) is a number. dx/dt = -(k/dt) x^p is
 // then solved exactly, so that no step however long passes m_min, and x falls by
 //
 //   p = 0     k, at most x
@@ -53,6 +54,8 @@ static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
         burn->burn_rate[i] = 0;
         float excess = temperature[i] - matter->ignition_temperature[i];
         if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
+        float ceiling = job->shell->sheets[matter->sheet[i]].material.rate_ceiling;
+        if (excess > ceiling) excess = ceiling; // NaN stays NaN
         float before = burn->mass[i];
         float after = lower_mass(matter, i, before, excess, job->dt / job->thickening[matter->sheet[i]]);
         burn->mass[i] = after;

@@ -106,7 +106,7 @@ static void dynamics_velocities(void *task, int begin, int end) {
     }
 }
 
-/// Counts particles that are not finite or have left a kilometre's surroundings.
+/// Counts particles that are not finite or farther than 10 km from the origin.
 static double dynamics_count_lost(void *task, int begin, int end) {
     const DynamicsState *dynamics = task;
     double lost = 0;

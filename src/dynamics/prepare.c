@@ -7,6 +7,9 @@
 // takes half of it.
 #include "dynamics/plan.h"
 
+/// What is left weighs at least this share of the unburnt particle: a mass of 0 would not move at all.
+static const float PREPARE_MASS_MIN = 0.01f;
+
 typedef struct Prepare {
     DynamicsPlan *plan;
     const Shell *shell;
@@ -48,7 +51,7 @@ static void prepare_particles(void *task, int begin, int end) {
     const Matter *matter = &job->shell->matter;
     for (int i = begin; i < end; i++) {
         bool alive = state->ablate.particle_flags[i] & SINGE_ALIVE;
-        float mass = matter->mass[i] * state->burn.mass[i];
+        float mass = matter->mass[i] * fmaxf(state->burn.mass[i], PREPARE_MASS_MIN);
         plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
         if (!alive) continue;
         const SingeMaterialDef *material = &job->shell->sheets[matter->sheet[i]].material;

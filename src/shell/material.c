@@ -91,6 +91,8 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
             return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s must be %s", sheet,
                              rule->name, rule->range);
     }
+    if (!(material->rate_ceiling > 0)) // infinity is allowed
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': rate_ceiling must be above 0", sheet);
     if (material->thickening != 0 && !(isfinite(material->thickening) && material->thickening >= 1))
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
                          sheet);

@@ -3,7 +3,9 @@
 
 #include <math.h>
 
-SingeParam singe_param(float value) { return (SingeParam){.value = value, .to = value, .noise = {.scale = 0.01f, .octaves = 4}}; }
+SingeParam singe_param(float value) {
+    return (SingeParam){.value = value, .to = value, .noise = {.scale = 0.01f, .octaves = 4}};
+}
 
 SingeMaterialDef singe_default_material(void) {
     SingeMaterialDef def = {
@@ -12,7 +14,7 @@ SingeMaterialDef singe_default_material(void) {
         .specific_heat = 1400,
         .thickness = singe_param(1e-3f),
         .heat_operator = SINGE_HEAT_SURFACE,
-        .diffusivity = singe_param(3.6e-6f),
+        .diffusivity = singe_param(3.4e-6f),
         .layer_exchange = 36,
         .convection = 14,
         .emissivity = 0.9f,
@@ -20,8 +22,9 @@ SingeMaterialDef singe_default_material(void) {
         .thickening = 0,
         .temperature = singe_param(293.15f),
         .ignition_temperature = singe_param(513.15f),
-        .heating = singe_param(2400),
-        .mass_rate = singe_param(6e-3f),
+        .heating = singe_param(2250),
+        .mass_rate = singe_param(9e-3f),
+        .rate_ceiling = 260,
         .ash_exponent = singe_param(0.5f),
         .mass_min = singe_param(0.15f),
         .mass_loss = singe_param(0.25f),

@@ -23,7 +23,9 @@ static SingeResult object_stale(SingeSim *sim, const char *stage, uint32_t index
 
 /// Finds an object by its handle; NULL when stale.
 #define OBJECT_FIND(list, id) \
-    ((id).generation != 0 && (id).index < (list).count && (list).items[(id).index].generation == (id).generation ? &(list).items[(id).index] : NULL)
+    ((id).generation != 0 && (id).index < (list).count && (list).items[(id).index].generation == (id).generation \
+         ? &(list).items[(id).index] \
+         : NULL)
 
 // ---- sources
 
@@ -38,7 +40,8 @@ SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, Sin
     SingeSourceDef def;
     OBJECT_DEF(sim, "source", def, given, singe_default_source);
     uint32_t index;
-    Source *source = sim_slot(sim, &sim->sources.items, &sim->sources.count, &sim->sources.capacity, sizeof *source, &index);
+    Source *source =
+        sim_slot(sim, &sim->sources.items, &sim->sources.count, &sim->sources.capacity, sizeof *source, &index);
     if (!source) return sim_fail(sim, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
     TRY(source_create(&sim->memory, &sim->shell, &def, source, &sim->error));
     source->generation = sim->next_generation++;
@@ -56,7 +59,8 @@ SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id) {
 SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxFn *callback, void *context) {
     Source *source = OBJECT_FIND(sim->sources, id);
     if (!source) return object_stale(sim, "source", id.index);
-    if (source->def.kind != SINGE_SOURCE_CALLBACK) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "not a callback source");
+    if (source->def.kind != SINGE_SOURCE_CALLBACK)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "source", id.index, "not a callback source");
     source->def.callback = callback;
     source->def.callback_context = context;
     return SINGE_OK;
@@ -82,7 +86,8 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     OBJECT_DEF(sim, "collider", def, given, singe_default_collider);
     TRY(collider_check(&def, &sim->error));
     uint32_t index;
-    Collider *collider = sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
+    Collider *collider =
+        sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
     if (!collider || !dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "collider", -1, "out of memory");
     TRY(path_set(&collider->path, &sim->memory, def.path_count, def.path, "collider", &sim->error));
@@ -144,12 +149,15 @@ static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float 
 }
 
 /// Whether a pin takes a particle; `nearest` are the points' nearest vertices.
-static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed, uint32_t particle) {
+static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
+                      uint32_t particle) {
     if (listed[particle]) return true;
     // centres lie a thickness off the mesh, where points are given
     float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : shell->matter.thickness[particle]);
     for (uint32_t k = 0; k < def->point_count; k++)
-        if (nearest[k] == particle || (def->radius > 0 && pin_distance2(shell, particle, def->points + 3 * (size_t)k) <= reach * reach)) return true;
+        if (nearest[k] == particle ||
+            (def->radius > 0 && pin_distance2(shell, particle, def->points + 3 * (size_t)k) <= reach * reach))
+            return true;
     return false;
 }
 
@@ -157,19 +165,24 @@ static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t
 static const float pin_place_max = 1e9f;
 
 static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
-    if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count) return object_stale(sim, "pin", def->sheet.index);
+    if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count)
+        return object_stale(sim, "pin", def->sheet.index);
     const Sheet *sheet = &sim->shell.sheets[def->sheet.index];
-    if (!(def->radius >= 0 && def->radius <= 1e6f)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "radius must be 0 or more");
-    if (def->point_count == 0 && def->vertex_count == 0) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "neither points nor vertices are given");
+    if (!(def->radius >= 0 && def->radius <= 1e6f))
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "radius must be 0 or more");
+    if (def->point_count == 0 && def->vertex_count == 0)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "neither points nor vertices are given");
     if (def->point_count && !def->points) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "points is NULL");
     if (def->vertex_count && !def->vertices) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "vertices is NULL");
     for (size_t k = 0; k < 3 * (size_t)def->point_count; k++)
         if (!(fabsf(def->points[k]) <= pin_place_max))
-            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3), "point %u is not finite or beyond 1e9 m", (uint32_t)(k / 3));
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3),
+                             "point %u is not finite or beyond 1e9 m", (uint32_t)(k / 3));
     for (uint32_t k = 0; k < def->vertex_count; k++)
         if (def->vertices[k] >= sheet->vertex_count)
-            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", k, "vertex %u is out of range: sheet \"%s\" has %u", def->vertices[k],
-                             sheet->name, sheet->vertex_count);
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", k,
+                             "vertex %u is out of range: sheet \"%s\" has %u", def->vertices[k], sheet->name,
+                             sheet->vertex_count);
     return SINGE_OK;
 }
 
@@ -182,7 +195,8 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     uint8_t *listed = NULL;
     bool ok = NEW(memory, nearest, def->point_count) && NEW(memory, listed, shell->particle_count);
     if (ok) {
-        for (uint32_t k = 0; k < def->point_count; k++) nearest[k] = pin_nearest(shell, sheet, def->points + 3 * (size_t)k);
+        for (uint32_t k = 0; k < def->point_count; k++)
+            nearest[k] = pin_nearest(shell, sheet, def->points + 3 * (size_t)k);
         for (uint32_t k = 0; k < def->vertex_count; k++) listed[sheet->vertex_first + def->vertices[k]] = 1;
         uint32_t count = 0;
         for (uint32_t i = 0; i < shell->particle_count; i++) {
@@ -224,7 +238,8 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
         uint32_t particle = pin->particles[k];
         if (sim->state.dynamics.pinned[particle] < UINT8_MAX) continue;
         sim_free_pin(sim, pin);
-        return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle, "particle %u is held by 255 pins already", particle);
+        return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle, "particle %u is held by 255 pins already",
+                         particle);
     }
     pin_count(sim, pin, 1);
     pin->generation = sim->next_generation++;

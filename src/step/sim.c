@@ -17,9 +17,11 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
     if (solver->substeps < 1 || solver->substeps > 10000) return "solver.substeps must be between 1 and 10000";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
-        if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour]) return "solver.order must name each colour once";
+        if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
+            return "solver.order must name each colour once";
         seen[colour] = true;
-        if (!in_range(solver->regularisation[i], 1e-6f, 1e6f)) return "solver.regularisation must be between 1e-6 and 1e6";
+        if (!in_range(solver->regularisation[i], 1e-6f, 1e6f))
+            return "solver.regularisation must be between 1e-6 and 1e6";
     }
     if (!in_range(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
     if (!in_range(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
@@ -73,7 +75,8 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
     *out = NULL;
     SingeSimDef def;
     if (!sim_read_sim_def(given, &def))
-        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "struct_size is not set; start from singe_default_sim()");
+        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1,
+                         "struct_size is not set; start from singe_default_sim()");
     TRY(sim_check_def(&def, error));
     Memory memory = memory_make(def.allocator);
     SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
@@ -137,7 +140,8 @@ void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *ca
 
 SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
     *id = (SingeSheetId){0, 0};
-    if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
+    if (sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
     if (sim->sheet_count == sim->sheet_capacity) {
         uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 4;
@@ -163,7 +167,8 @@ SingeResult sim_build(SingeSim *sim) {
     Shell *shell = &sim->shell;
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
 
-    HeatSettings heat = {.ambient_temperature = def->ambient_temperature, .tolerance = def->heat_tolerance, .pace = def->pace};
+    HeatSettings heat = {
+        .ambient_temperature = def->ambient_temperature, .tolerance = def->heat_tolerance, .pace = def->pace};
     sim_up(def->gravity, heat.up);
     DynamicsSettings dynamics = {{def->gravity[0], def->gravity[1], def->gravity[2]}, def->air_density, def->solver};
     sim->events.capacity = 0;
@@ -207,8 +212,8 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     SingeResult result = sim_build(sim);
     // the first look: pieces are labelled before anything burns
     if (!result)
-        result = ablate_step(sim->ablate, &sim->shell, &sim->state, sim->pool, sim->def.ambient_temperature, &sim->state.ablate,
-                             &sim->events, &sim->error);
+        result = ablate_step(sim->ablate, &sim->shell, &sim->state, sim->pool, sim->def.ambient_temperature,
+                             &sim->state.ablate, &sim->events, &sim->error);
     if (result) {
         sim_unbuild(sim);
         return result;

@@ -53,7 +53,8 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
     if (!snapshot_array(stream, memory, &source->position, vertices, sizeof *source->position) ||
         !snapshot_array(stream, memory, &source->cells, cells, sizeof *source->cells) ||
         !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv) ||
-        !snapshot_array(stream, memory, &source->params, PARAM_COUNT * ((size_t)vertices + cells), sizeof *source->params))
+        !snapshot_array(stream, memory, &source->params, PARAM_COUNT * ((size_t)vertices + cells),
+                        sizeof *source->params))
         return false;
     for (uint32_t c = 0; stream->mode == STREAM_READ && c < cells; c++)
         for (int i = 0; i < 4; i++) stream->failed |= source->cells[c][i] >= vertices;
@@ -74,7 +75,8 @@ static bool snapshot_sheets(Stream *stream, SingeSim *sim) {
 }
 
 /// Reads a list's length and makes room for it.
-static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint32_t *capacity, void *items_pointer, size_t size) {
+static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint32_t *capacity, void *items_pointer,
+                          size_t size) {
     STREAM(stream, *count);
     if (stream->mode != STREAM_READ) return true;
     if (stream->failed || *count > stream->size) {
@@ -98,7 +100,8 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
     STREAM(stream, source->strength_count);
     return snapshot_path(stream, &sim->memory, &source->path) &&
            snapshot_array(stream, &sim->memory, &source->strength, source->strength_count, sizeof *source->strength) &&
-           (!has_picture || snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count, sizeof *source->picture));
+           (!has_picture ||
+            snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count, sizeof *source->picture));
 }
 
 static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider) {
@@ -124,13 +127,19 @@ static bool snapshot_pin(Stream *stream, SingeSim *sim, Pin *pin) {
 static bool snapshot_objects(Stream *stream, SingeSim *sim) {
     STREAM(stream, sim->next_generation);
     Memory *memory = &sim->memory;
-    if (!snapshot_list(stream, memory, &sim->sources.count, &sim->sources.capacity, &sim->sources.items, sizeof *sim->sources.items)) return false;
+    if (!snapshot_list(stream, memory, &sim->sources.count, &sim->sources.capacity, &sim->sources.items,
+                       sizeof *sim->sources.items))
+        return false;
     for (uint32_t i = 0; i < sim->sources.count; i++)
         if (!snapshot_source(stream, sim, &sim->sources.items[i])) return false;
-    if (!snapshot_list(stream, memory, &sim->colliders.count, &sim->colliders.capacity, &sim->colliders.items, sizeof *sim->colliders.items)) return false;
+    if (!snapshot_list(stream, memory, &sim->colliders.count, &sim->colliders.capacity, &sim->colliders.items,
+                       sizeof *sim->colliders.items))
+        return false;
     for (uint32_t i = 0; i < sim->colliders.count; i++)
         if (!snapshot_collider(stream, sim, &sim->colliders.items[i])) return false;
-    if (!snapshot_list(stream, memory, &sim->pins.count, &sim->pins.capacity, &sim->pins.items, sizeof *sim->pins.items)) return false;
+    if (!snapshot_list(stream, memory, &sim->pins.count, &sim->pins.capacity, &sim->pins.items,
+                       sizeof *sim->pins.items))
+        return false;
     for (uint32_t i = 0; i < sim->pins.count; i++)
         if (!snapshot_pin(stream, sim, &sim->pins.items[i])) return false;
     return true;
@@ -166,9 +175,12 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     bool ok = !stream->failed && snapshot_sheets(stream, sim);
     if (ok && stream->mode == STREAM_READ) TRY(sim_build(sim));
     ok = ok && snapshot_objects(stream, sim);
-    if (ok && stream->mode == STREAM_READ) ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);
+    if (ok && stream->mode == STREAM_READ)
+        ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);
     if (ok) snapshot_state(stream, sim);
-    if (stream->failed) return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset, "the snapshot ends too soon or does not fit together");
+    if (stream->failed)
+        return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
+                        "the snapshot ends too soon or does not fit together");
     return ok ? SINGE_OK : sim_fail(sim, SINGE_ERROR_MEMORY, "load", -1, "out of memory");
 }
 
@@ -201,21 +213,29 @@ static SingeResult snapshot_check(const uint8_t *bytes, size_t size, SingeError 
     if (size < sizeof header) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "too short for a snapshot");
     memcpy(&header, bytes, sizeof header);
     SnapshotHeader expected = snapshot_header(bytes + sizeof header, size - sizeof header);
-    if (memcmp(header.magic, expected.magic, sizeof header.magic)) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "not a snapshot");
-    if (header.version != expected.version || header.order != expected.order || memcmp(header.sizes, expected.sizes, sizeof header.sizes + sizeof header.reserved))
-        return error_set(error, SINGE_ERROR_VERSION, "load", 0, "the snapshot is of another version or another kind of machine");
-    if (header.size != expected.size) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is cut short");
-    if (header.checksum != expected.checksum) return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is damaged: wrong checksum");
+    if (memcmp(header.magic, expected.magic, sizeof header.magic))
+        return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "not a snapshot");
+    if (header.version != expected.version || header.order != expected.order ||
+        memcmp(header.sizes, expected.sizes, sizeof header.sizes + sizeof header.reserved))
+        return error_set(error, SINGE_ERROR_VERSION, "load", 0,
+                         "the snapshot is of another version or another kind of machine");
+    if (header.size != expected.size)
+        return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is cut short");
+    if (header.checksum != expected.checksum)
+        return error_set(error, SINGE_ERROR_FORMAT, "load", 0, "the snapshot is damaged: wrong checksum");
     return SINGE_OK;
 }
 
-SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **out, SingeError *error) {
+SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **out,
+                           SingeError *error) {
     *out = NULL;
     TRY(snapshot_check(bytes, size, error));
     SingeSim *sim;
     TRY(singe_sim_create(hooks, &sim, error));
     // the stream only reads: the cast takes nothing's constness away in fact
-    Stream read = {.mode = STREAM_READ, .bytes = (uint8_t *)(uintptr_t)(bytes + sizeof(SnapshotHeader)), .size = size - sizeof(SnapshotHeader)};
+    Stream read = {.mode = STREAM_READ,
+                   .bytes = (uint8_t *)(uintptr_t)(bytes + sizeof(SnapshotHeader)),
+                   .size = size - sizeof(SnapshotHeader)};
     SingeResult result = snapshot_body(&read, sim);
     if (result) {
         if (error) *error = sim->error;

@@ -1,3 +1,4 @@
+// A field that is added to a Def is added here; a test counts the bytes that are not.
 #include "step/snapshot_def.h"
 
 static void def_bool(Stream *stream, bool *value) {
@@ -68,6 +69,7 @@ static void def_material(Stream *stream, SingeMaterialDef *material) {
     STREAM(stream, material->char_weight);
     STREAM(stream, material->drag);
     STREAM(stream, material->damping);
+    STREAM(stream, material->rate_ceiling);
 }
 
 void snapshot_sheet_def(Stream *stream, Sheet *sheet) {

@@ -13,7 +13,8 @@ double sim_enthalpy(const SingeSim *sim) {
     double sum = 0;
     for (uint32_t i = 0; i < sim->shell.particle_count; i++)
         if (sim->state.ablate.particle_flags[i] & SINGE_ALIVE)
-            sum += (double)matter->capacity[i] * ((double)sim->state.heat.temperature[i] - (double)sim->def.ambient_temperature);
+            sum += (double)matter->capacity[i] *
+                   ((double)sim->state.heat.temperature[i] - (double)sim->def.ambient_temperature);
     return sum;
 }
 
@@ -45,8 +46,11 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     double sum = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
         if (!(sim->state.ablate.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
-        if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 && ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0) continue;
-        Vec d = vec_sub(vec_load(sim->state.dynamics.position[blue->ends[k][1]]), vec_load(sim->state.dynamics.position[blue->ends[k][0]]));
+        if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 &&
+            ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
+            continue;
+        Vec d = vec_sub(vec_load(sim->state.dynamics.position[blue->ends[k][1]]),
+                        vec_load(sim->state.dynamics.position[blue->ends[k][0]]));
         float strain = fabsf(vec_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
         sum += (double)strain;
         if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
@@ -93,7 +97,8 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     const State *state = &sim->state;
     stats->mass_burnt = state->burn.mass_burnt;
     stats->mass_removed = state->ablate.mass_removed;
-    stats->burnt_fraction = stats->mass_initial > 0 ? (stats->mass_burnt + stats->mass_removed) / stats->mass_initial : 0;
+    stats->burnt_fraction =
+        stats->mass_initial > 0 ? (stats->mass_burnt + stats->mass_removed) / stats->mass_initial : 0;
     double missing = stats->mass_initial - stats->mass - stats->mass_burnt - stats->mass_removed;
     stats->mass_ledger_error = stats->mass_initial > 0 ? fabs(missing) / stats->mass_initial : 0;
 
@@ -101,7 +106,8 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->heat_of_combustion = state->heat.heat_of_combustion;
     stats->heat_lost = state->heat.heat_lost + state->ablate.heat_removed;
     stats->heat_stored = sim_enthalpy(sim) - sim->heat_start;
-    double most = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)), fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
+    double most = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
+                       fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
     double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
     stats->ledger_error = most > 0 ? fabs(error) / most : 0;
 }

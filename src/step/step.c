@@ -33,17 +33,19 @@ static SingeResult step_stages(SingeSim *sim) {
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
-    TRY(burn_step(shell, state, sim->pool, h, def->pace, sim->thickening, sim->partial, &state->burn, &sim->events, error));
+    TRY(burn_step(shell, state, sim->pool, h, def->pace, sim->thickening, sim->partial, &state->burn, &sim->events,
+                  error));
     step_lap(sim, SINGE_STAGE_BURN, &start);
 
     // 3. burnt springs and particles go (eq 7)
-    TRY(ablate_step(sim->ablate, shell, state, sim->pool, def->ambient_temperature, &state->ablate, &sim->events, error));
+    TRY(ablate_step(sim->ablate, shell, state, sim->pool, def->ambient_temperature, &state->ablate, &sim->events,
+                    error));
     step_lap(sim, SINGE_STAGE_ABLATE, &start);
 
     // 4. positions and velocities (eq 8 to 19)
     DynamicsCounters counters = {0, 0};
-    TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h, &state->dynamics,
-                      &counters, error));
+    TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h,
+                      &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
     sim->timers.strands_projected += counters.strands;
@@ -52,7 +54,8 @@ static SingeResult step_stages(SingeSim *sim) {
 }
 
 SingeResult singe_sim_step(SingeSim *sim) {
-    if (!sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
     State before = sim->state;
     SingeTimers timers = sim->timers;
     memcpy(sim->backup, sim->state.arena, sim->state.arena_size);

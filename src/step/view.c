@@ -62,6 +62,7 @@ SingeCensus singe_sim_census(const SingeSim *sim) {
 }
 
 SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
-    if (!sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
     return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
 }

@@ -9,7 +9,8 @@ SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     bool round = def->kind == SINGE_COLLIDER_SPHERE || def->kind == SINGE_COLLIDER_CAPSULE;
     if (round && !in_range(def->radius, 1e-6f, 1e6f)) what = "radius must be above 0";
     for (int i = 0; i < 3; i++)
-        if (def->kind == SINGE_COLLIDER_BOX && !in_range(def->half_size[i], 1e-6f, 1e6f)) what = "half_size must be above 0";
+        if (def->kind == SINGE_COLLIDER_BOX && !in_range(def->half_size[i], 1e-6f, 1e6f))
+            what = "half_size must be above 0";
     if (def->kind == SINGE_COLLIDER_CAPSULE && !in_range(def->height, 0, 1e6f)) what = "height must be 0 or more";
     if (!in_range(def->friction, 0, 1e3f)) what = "friction must be between 0 and 1000";
     if (!in_range(def->offset, 0, 1e3f)) what = "offset must be 0 or more";

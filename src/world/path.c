@@ -20,14 +20,18 @@ static double path_rotation_length(const float q[4]) {
     return sqrt(square);
 }
 
-SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error) {
-    if (count > 0 && !keys) return error_set(error, SINGE_ERROR_ARGUMENT, owner, -1, "the path has %u keys but no array", count);
+SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner,
+                     SingeError *error) {
+    if (count > 0 && !keys)
+        return error_set(error, SINGE_ERROR_ARGUMENT, owner, -1, "the path has %u keys but no array", count);
     for (uint32_t i = 0; i < count; i++) {
-        if (!path_key_finite(&keys[i])) return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not finite or beyond 1e9 m", i);
+        if (!path_key_finite(&keys[i]))
+            return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not finite or beyond 1e9 m", i);
         if (i > 0 && !(keys[i].time > keys[i - 1].time))
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u is not later than the one before", i);
         if (!(path_rotation_length(keys[i].rotation) > 1e-6))
-            return error_set(error, SINGE_ERROR_ARGUMENT, owner, i, "path key %u has a rotation of length zero; {0,0,0,1} is none", i);
+            return error_set(error, SINGE_ERROR_ARGUMENT, owner, i,
+                             "path key %u has a rotation of length zero; {0,0,0,1} is none", i);
     }
     SingePoseKey *copy;
     if (!NEW(memory, copy, count)) return error_set(error, SINGE_ERROR_MEMORY, owner, -1, "out of memory for a path");
@@ -53,7 +57,8 @@ Pose path_pose(const Path *path, double time) {
     const SingePoseKey *b = &path->keys[next < path->count ? next : path->count - 1];
     const SingePoseKey *a = next > 0 ? &path->keys[next - 1] : b;
     float t = a == b ? 0 : (float)((time - a->time) / ((double)b->time - a->time));
-    Pose pose = {vec_mad(vec_load(a->position), vec_sub(vec_load(b->position), vec_load(a->position)), t), {0, 0, 0, 1}};
+    Pose pose = {vec_mad(vec_load(a->position), vec_sub(vec_load(b->position), vec_load(a->position)), t),
+                 {0, 0, 0, 1}};
     // the shorter way round, then normalised
     float dot = 0, length = 0;
     for (int k = 0; k < 4; k++) dot += a->rotation[k] * b->rotation[k];

@@ -18,7 +18,8 @@ typedef struct Pose {
 } Pose;
 
 /// Copies keys after checking them: finite, times increasing, rotations not zero (normalised here).
-SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error);
+SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner,
+                     SingeError *error);
 void path_free(Path *path, Memory *memory);
 
 /// The pose at a time; linear position, normalised linear rotation, held beyond the ends. An empty
@@ -26,7 +27,11 @@ void path_free(Path *path, Memory *memory);
 Pose path_pose(const Path *path, double time);
 
 /// local → world and back.
-static inline Vec pose_apply(const Pose *pose, Vec local) { return vec_add(pose->position, quat_rotate(pose->rotation, local)); }
-static inline Vec pose_unapply(const Pose *pose, Vec world) { return quat_unrotate(pose->rotation, vec_sub(world, pose->position)); }
+static inline Vec pose_apply(const Pose *pose, Vec local) {
+    return vec_add(pose->position, quat_rotate(pose->rotation, local));
+}
+static inline Vec pose_unapply(const Pose *pose, Vec world) {
+    return quat_unrotate(pose->rotation, vec_sub(world, pose->position));
+}
 
 #endif

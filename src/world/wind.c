@@ -6,7 +6,8 @@
 SingeResult wind_check(const SingeWindDef *def, SingeError *error) {
     const char *what = NULL;
     for (int i = 0; i < 3; i++)
-        if (!isfinite(def->velocity[i]) || fabsf(def->velocity[i]) > 1000) what = "velocity must be finite and below 1000 m/s";
+        if (!isfinite(def->velocity[i]) || fabsf(def->velocity[i]) > 1000)
+            what = "velocity must be finite and below 1000 m/s";
     if (!(def->gust >= 0 && def->gust <= 1000)) what = "gust must be between 0 and 1000 m/s";
     if (!(def->gust_time > 0 && isfinite(def->gust_time))) what = "gust_time must be above 0";
     if (!(def->gust_size > 0 && isfinite(def->gust_size))) what = "gust_size must be above 0";
@@ -19,6 +20,8 @@ Vec wind_velocity(const SingeWindDef *def, Vec position, double time) {
     // time runs along its own diagonal of the lattice, so that no place repeats another
     float t = (float)(time / def->gust_time), s = 1 / def->gust_size, gust[3];
     for (uint32_t i = 0; i < 3; i++)
-        gust[i] = 2 * random_noise(position.x * s + t, position.y * s + 0.7f * t, position.z * s + 0.4f * t, def->seed * 3 + i) - 1;
+        gust[i] = 2 * random_noise(position.x * s + t, position.y * s + 0.7f * t, position.z * s + 0.4f * t,
+                                   def->seed * 3 + i) -
+                  1;
     return vec_mad(mean, vec_load(gust), def->gust);
 }

@@ -87,7 +87,8 @@ static void errors_are_cut_and_ended(void **state) {
     word[sizeof word - 1] = 0;
     SingeError error;
     memset(&error, 0xFF, sizeof error);
-    assert_int_equal(error_set(&error, SINGE_ERROR_MESH, "a stage with a name far too long", 42, "%s", word), SINGE_ERROR_MESH);
+    assert_int_equal(error_set(&error, SINGE_ERROR_MESH, "a stage with a name far too long", 42, "%s", word),
+                     SINGE_ERROR_MESH);
     assert_int_equal(error.code, SINGE_ERROR_MESH);
     assert_int_equal(error.element, 42);
     assert_int_equal(strlen(error.stage), sizeof error.stage - 1);
@@ -113,7 +114,8 @@ static void results_have_names(void **state) {
     (void)state;
     for (int i = 0; i <= SINGE_ERROR_LIMIT; i++) {
         assert_string_not_equal(singe_result_name((SingeResult)i), "unknown result");
-        for (int j = 0; j < i; j++) assert_string_not_equal(singe_result_name((SingeResult)i), singe_result_name((SingeResult)j));
+        for (int j = 0; j < i; j++)
+            assert_string_not_equal(singe_result_name((SingeResult)i), singe_result_name((SingeResult)j));
     }
     assert_string_equal(singe_result_name((SingeResult)99), "unknown result");
     assert_string_equal(singe_version(), SINGE_VERSION);
@@ -121,8 +123,12 @@ static void results_have_names(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip), cmocka_unit_test(truncated), cmocka_unit_test(checksum_sees_every_bit),
-        cmocka_unit_test(errors_are_cut_and_ended), cmocka_unit_test(failures_are_passed_up), cmocka_unit_test(results_have_names),
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(truncated),
+        cmocka_unit_test(checksum_sees_every_bit),
+        cmocka_unit_test(errors_are_cut_and_ended),
+        cmocka_unit_test(failures_are_passed_up),
+        cmocka_unit_test(results_have_names),
     };
     return cmocka_run_group_tests_name("base_bytes", tests, NULL, NULL);
 }

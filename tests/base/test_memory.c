@@ -93,8 +93,9 @@ static void libc_serves_without_a_hook(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_what_is_held), cmocka_unit_test(nothing_can_be_freed), cmocka_unit_test(overflow_is_refused),
-        cmocka_unit_test(failure_changes_nothing), cmocka_unit_test(libc_serves_without_a_hook),
+        cmocka_unit_test(counts_what_is_held),        cmocka_unit_test(nothing_can_be_freed),
+        cmocka_unit_test(overflow_is_refused),        cmocka_unit_test(failure_changes_nothing),
+        cmocka_unit_test(libc_serves_without_a_hook),
     };
     return cmocka_run_group_tests_name("base_memory", tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { ITEMS_MAX = 10007 };
 
@@ -72,6 +73,29 @@ static void jobs_follow_each_other(void **state) {
             memset(values, 0, sizeof values);
             for (int job = 0; job < 15; job++) pool_for(pool, 97, 1 + job % 5, bump, values);
             for (int i = 0; i < 97; i++) assert_int_equal(values[i], (int)expected);
+        }
+        pool_destroy(&memory, pool);
+    }
+}
+
+static void slow_item(void *task, int begin, int end) {
+    atomic_int *done = task;
+    for (int i = begin; i < end; i++) {
+        nanosleep(&(struct timespec){0, 300000}, NULL);
+        atomic_fetch_add(done, 1);
+    }
+}
+
+/// Threads that are still at work when the others have nothing left to do.
+static void slow_ranges_are_waited_for(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    for (int threads = 2; threads <= 5; threads++) {
+        Pool *pool = make_pool(&memory, threads);
+        for (int round = 0; round < 20; round++) {
+            atomic_int done = 0;
+            pool_for(pool, 5 + round % 4, 1, slow_item, &done);
+            assert_int_equal(atomic_load(&done), 5 + round % 4);
         }
         pool_destroy(&memory, pool);
     }
@@ -200,9 +224,15 @@ static void pools_need_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_item_once), cmocka_unit_test(jobs_follow_each_other), cmocka_unit_test(idle_pools_end),
-        cmocka_unit_test(sums_are_bitwise_equal), cmocka_unit_test(block_counts), cmocka_unit_test(the_largest_count),
-        cmocka_unit_test(the_hosts_tasks), cmocka_unit_test(pools_need_memory),
+        cmocka_unit_test(every_item_once),
+        cmocka_unit_test(jobs_follow_each_other),
+        cmocka_unit_test(slow_ranges_are_waited_for),
+        cmocka_unit_test(idle_pools_end),
+        cmocka_unit_test(sums_are_bitwise_equal),
+        cmocka_unit_test(block_counts),
+        cmocka_unit_test(the_largest_count),
+        cmocka_unit_test(the_hosts_tasks),
+        cmocka_unit_test(pools_need_memory),
     };
     return cmocka_run_group_tests_name("base_pool", tests, NULL, NULL);
 }

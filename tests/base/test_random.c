@@ -60,7 +60,8 @@ static void lattice_values(void **state) {
     (void)state;
     for (int x = -3; x < 3; x++)
         for (int y = -3; y < 3; y++)
-            assert_true(random_noise((float)x, (float)y, -2, 5) == random_unit(random_hash((uint32_t)x, (uint32_t)y, (uint32_t)-2, 5)));
+            assert_true(random_noise((float)x, (float)y, -2, 5) ==
+                        random_unit(random_hash((uint32_t)x, (uint32_t)y, (uint32_t)-2, 5)));
 }
 
 /// Numbers noted once: they may not change, or saved scenes would.
@@ -75,7 +76,8 @@ static void noted_values(void **state) {
 static void seeds_differ(void **state) {
     (void)state;
     int equal = 0;
-    for (uint32_t seed = 0; seed < 1000; seed++) equal += random_noise(0.3f, 0.4f, 0.5f, seed) == random_noise(0.3f, 0.4f, 0.5f, seed + 1);
+    for (uint32_t seed = 0; seed < 1000; seed++)
+        equal += random_noise(0.3f, 0.4f, 0.5f, seed) == random_noise(0.3f, 0.4f, 0.5f, seed + 1);
     assert_true(equal < 3);
 }
 

@@ -46,6 +46,19 @@ static void no_exponent_is_a_straight_line(void **unused) {
     burning_sheet_free(b);
 }
 
+static void rate_stops_growing_at_its_ceiling(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    material.rate_ceiling = 50;
+    BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
+    const float temperatures[] = {540, 550, 560, 5000};
+    for (int i = 0; i < 4; i++) b->state.heat.temperature[i] = temperatures[i];
+    assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+    assert_float_equal(b->state.burn.mass[0], 1 - 1e-3 * 40, 1e-6);
+    for (int i = 1; i < 4; i++) assert_float_equal(b->state.burn.mass[i], 1 - 1e-3 * 50, 1e-6);
+    burning_sheet_free(b);
+}
+
 /// The solution of dx/dt = -k x^p from x = 1.
 static double exact(double k, double t, double p) {
     if (p == 1) return exp(-k * t);
@@ -282,6 +295,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volume_ratio_follows_eq_5),
         cmocka_unit_test(no_exponent_is_a_straight_line),
+        cmocka_unit_test(rate_stops_growing_at_its_ceiling),
         cmocka_unit_test(exponents_follow_their_solutions),
         cmocka_unit_test(no_step_passes_the_least_mass),
         cmocka_unit_test(ignites_once_and_in_order),

@@ -25,7 +25,8 @@ static void expect_member(const char *json, const char *name, const char *expect
 
 static void finds_json_members(void **state) {
     (void)state;
-    const char *json = " {\"a\": 1, \"b\": {\"scene\": [1, \"}\\\"\"]} , \"scene\": {\"x\": [1,2]}, \"s\":\"q\\\"},\", \"z\":null}";
+    const char *json = " {\"a\": 1, \"b\": {\"scene\": [1, \"}\\\"\"]} ,"
+                       " \"scene\": {\"x\": [1,2]}, \"s\":\"q\\\"},\", \"z\":null}";
     expect_member(json, "a", "1");
     expect_member(json, "b", "{\"scene\": [1, \"}\\\"\"]}");
     expect_member(json, "scene", "{\"x\": [1,2]}");
@@ -135,7 +136,8 @@ static void writes_durations(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json), cmocka_unit_test(unquotes_what_it_quotes),
+        cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json),
+        cmocka_unit_test(unquotes_what_it_quotes),
         cmocka_unit_test(finds_the_nearest_word), cmocka_unit_test(reads_arguments), cmocka_unit_test(averages_tiles),
         cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -90,7 +90,8 @@ class Failure(Case):
         folder = self.path("small")
         os.mkdir(folder)
         script = (f'mount -t tmpfs -o size=256k none "{folder}" || exit 77; '
-                  f'"{SINGE}" run "{self.scene}" -o "{folder}/o" --no-preview --quiet --set "sheets.0.grid.cells=[20, 20]"; '
+                  f'"{SINGE}" run "{self.scene}" -o "{folder}/o" --no-preview --quiet '
+                  f'--set "sheets.0.grid.cells=[20, 20]"; '
                   f'code=$?; cat "{folder}/o/run.json"; ls "{folder}/o/ply" >&2; exit $code')
         done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=120)
         if done.returncode in (77, 126, 127) or "unshare" in done.stderr:

@@ -81,6 +81,7 @@ static void one_step_of_losses_is_the_formula(void **unused) {
 static void combustion_is_eta_times_burnt_mass(void **unused) {
     (void)unused;
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+    def.material.heating = singe_param(2400);
     def.settings.pace = 4; // burn_rate is per second of scene time already
     Rig rig;
     rig_open(&rig, &def);

@@ -57,18 +57,6 @@ static Front burn_strip(float size, const SingeMaterialDef *material) {
     return front;
 }
 
-/// Office paper, all that matters here in numbers of its own.
-static SingeMaterialDef paper(float diffusivity, float mass_rate, float ash_exponent, float mass_loss) {
-    SingeMaterialDef def = singe_default_material();
-    def.grammage = 0.08f, def.specific_heat = 1400, def.layer_exchange = 36;
-    def.convection = 14, def.emissivity = 0.9f, def.loss_mass_floor = 0.15f, def.thickening = 0;
-    def.diffusivity = singe_param(diffusivity), def.mass_rate = singe_param(mass_rate);
-    def.heating = singe_param(2400), def.ignition_temperature = singe_param(513.15f);
-    def.ash_exponent = singe_param(ash_exponent), def.mass_min = singe_param(0.15f),
-        def.mass_loss = singe_param(mass_loss);
-    return def;
-}
-
 static void compare(const SingeMaterialDef *material, double slowest, double fastest) {
     const float sizes[] = {0.0005f, 0.001f, 0.002f, 0.004f};
     double reference = 0;
@@ -84,17 +72,21 @@ static void compare(const SingeMaterialDef *material, double slowest, double fas
     }
 }
 
+/// Eq 4 as the paper has it, without a ceiling, and a straight ash exponent.
 static void front_speed_does_not_depend_on_cells(void **unused) {
     (void)unused;
-    SingeMaterialDef material = paper(1.2e-5f, 9e-3f, 1, 0.22f);
-    compare(&material, 11e-3, 14e-3);
+    SingeMaterialDef material = singe_default_material();
+    material.diffusivity = singe_param(2.7e-6f), material.mass_rate = singe_param(8e-3f);
+    material.heating = singe_param(2400), material.rate_ceiling = INFINITY;
+    material.ash_exponent = singe_param(1), material.mass_loss = singe_param(0.22f);
+    compare(&material, 4e-3, 7e-3);
 }
 
+/// The default material: 80 g/m2 office paper, 4.4 to 7.0 mm/s (Thomas & Law, FRN 584), 750 to 950 C.
 static void calibrated_paper_burns_at_its_real_pace(void **unused) {
     (void)unused;
-    SingeMaterialDef flaky = paper(2.7e-6f, 8e-3f, 1, 0.22f), clean = paper(3.6e-6f, 6e-3f, 0.5f, 0.3f);
-    compare(&flaky, 4.4e-3, 7.0e-3);
-    compare(&clean, 4.4e-3, 7.0e-3);
+    SingeMaterialDef material = singe_default_material();
+    compare(&material, 4.4e-3, 7.0e-3);
 }
 
 static void thickening_by_hand_and_its_limits(void **unused) {

@@ -23,7 +23,8 @@ SingeSimDef scene_def(void) {
 
 static float scene_callback_flux = 2000;
 
-void scene_flux(void *context, const struct SingeView *view, float *flux, float *conductance, float *conductance_temperature) {
+void scene_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
+                float *conductance_temperature) {
     const float *strength = context;
     for (uint32_t i = 0; i < view->particle_count; i++) {
         flux[i] += *strength * (float)view->time * view->rest_position[i][0];
@@ -34,7 +35,8 @@ void scene_flux(void *context, const struct SingeView *view, float *flux, float 
 
 static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
     const float side = 0.2f;
-    TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells), tube = test_cylinder(8, 5, 0.03f, 0.1f);
+    TestMesh grid = test_grid(cells, cells, side / (float)cells, side / (float)cells),
+             tube = test_cylinder(8, 5, 0.03f, 0.1f);
     test_mesh_add_vertex(&grid, 1, 1, 1); // belongs to no cell
     test_mesh_move(&tube, 0.1f, 0.1f, 0.06f);
     SingeSheetDef sheet = test_sheet(&grid);

@@ -5,15 +5,16 @@
 #include <string.h>
 
 /// The simulation's Def with one field changed is refused and the message names the field.
-#define SIM_BAD(field, value, word)                                                   \
-    do {                                                                              \
-        SingeSimDef def_ = singe_default_sim();                                       \
-        def_.field = (value);                                                         \
-        SingeSim *sim_ = (SingeSim *)1;                                               \
-        SingeError error_ = {0};                                                      \
-        if (singe_sim_create(&def_, &sim_, &error_) != SINGE_ERROR_ARGUMENT) fail_msg(#field " = " #value " was taken"); \
-        assert_null(sim_);                                                            \
-        assert_int_equal(error_.code, SINGE_ERROR_ARGUMENT);                          \
+#define SIM_BAD(field, value, word) \
+    do { \
+        SingeSimDef def_ = singe_default_sim(); \
+        def_.field = (value); \
+        SingeSim *sim_ = (SingeSim *)1; \
+        SingeError error_ = {0}; \
+        if (singe_sim_create(&def_, &sim_, &error_) != SINGE_ERROR_ARGUMENT) \
+            fail_msg(#field " = " #value " was taken"); \
+        assert_null(sim_); \
+        assert_int_equal(error_.code, SINGE_ERROR_ARGUMENT); \
         if (!strstr(error_.message, (word))) fail_msg(#field ": %s", error_.message); \
         assert_int_equal(singe_sim_create(&def_, &sim_, NULL), SINGE_ERROR_ARGUMENT); \
     } while (0)

@@ -83,11 +83,13 @@ static void one_hole_for_a_disc(void **state) {
 }
 
 /// Heats a line across the strip at rest position x.
-static void hot_line(void *context, const struct SingeView *view, float *flux, float *conductance, float *conductance_temperature) {
+static void hot_line(void *context, const struct SingeView *view, float *flux, float *conductance,
+                     float *conductance_temperature) {
     (void)flux;
     float x = *(float *)context;
     for (uint32_t i = 0; i < view->particle_count; i++)
-        if (fabsf(view->rest_position[i][0] - x) < 0.006f) conductance[i] += 1000, conductance_temperature[i] += 1000 * 1300;
+        if (fabsf(view->rest_position[i][0] - x) < 0.006f)
+            conductance[i] += 1000, conductance_temperature[i] += 1000 * 1300;
 }
 
 static void one_piece_for_a_cut(void **state) {
@@ -148,7 +150,9 @@ static void switched_off(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_ignition_a_particle), cmocka_unit_test(one_hole_for_a_disc), cmocka_unit_test(one_piece_for_a_cut),
+        cmocka_unit_test(one_ignition_a_particle),
+        cmocka_unit_test(one_hole_for_a_disc),
+        cmocka_unit_test(one_piece_for_a_cut),
         cmocka_unit_test(switched_off),
     };
     return cmocka_run_group_tests_name("step_events", tests, NULL, NULL);

@@ -132,7 +132,8 @@ static void particles_are_numbered_as_documented(void **state) {
     for (int k = 0; k < 4; k++) assert_int_equal(view.cells[6][k], 13 + second.cells[k]);
     // the centre of the last cell: above its middle by the thickness, in front
     const float *centre = view.position[23];
-    assert_true(fabsf(centre[0] - 1.015f) < 1e-6f && fabsf(centre[1] - 0.015f) < 1e-6f && fabsf(centre[2] - 1e-3f) < 1e-6f);
+    assert_true(fabsf(centre[0] - 1.015f) < 1e-6f && fabsf(centre[1] - 0.015f) < 1e-6f &&
+                fabsf(centre[2] - 1e-3f) < 1e-6f);
     assert_true(fabsf(view.uv[23][0] - 0.5f) < 1e-6f);
     // the unused vertex is there, but never lives
     assert_int_equal(view.particle_flags[12] & SINGE_ALIVE, 0);
@@ -176,7 +177,8 @@ static void timers_and_time_grow(void **state) {
         last = now;
     }
     assert_true(last.heat_iterations > 40 && last.contacts > 0);
-    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) assert_true(last.seconds[stage] > 0 && last.seconds[stage] < 60);
+    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++)
+        assert_true(last.seconds[stage] > 0 && last.seconds[stage] < 60);
     singe_sim_destroy(scene.sim);
 }
 

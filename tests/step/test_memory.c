@@ -10,7 +10,8 @@ static void a_million_springs(void **state) {
     SingeCensus census = singe_sim_census(sim);
     uint64_t springs = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) springs += census.springs[colour];
-    print_message("%llu springs: %.0f MB held, %.0f MB at the most\n", (unsigned long long)springs, (double)census.memory / 1e6, (double)hook.peak / 1e6);
+    print_message("%llu springs: %.0f MB held, %.0f MB at the most\n", (unsigned long long)springs,
+                  (double)census.memory / 1e6, (double)hook.peak / 1e6);
     assert_true(springs >= 1000000);
     assert_int_equal(census.memory, hook.bytes);
     assert_true(census.memory < 1000000000u);

@@ -182,7 +182,8 @@ static void a_turning_pin_turns(void **state) {
     const float s = sqrtf(0.5f);
     SingePoseKey path[2] = {test_key(0, 0, 0, 0), {0.2f, {0, 0, 0}, {0, 0, s, s}}};
     SingePinId id;
-    pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 2, pin.vertices = vertices, pin.path_count = 2, pin.path = path;
+    pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 2, pin.vertices = vertices, pin.path_count = 2,
+    pin.path = path;
     test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
     test_steps(sim, 120);
     SingeView view = singe_sim_view(sim);
@@ -301,7 +302,8 @@ static void wind_blows(void **state) {
 }
 
 static float callback_seen_time;
-static void flux_into_first(void *context, const struct SingeView *view, float *flux, float *conductance, float *conductance_temperature) {
+static void flux_into_first(void *context, const struct SingeView *view, float *flux, float *conductance,
+                            float *conductance_temperature) {
     (void)conductance, (void)conductance_temperature;
     flux[0] += *(float *)context;
     callback_seen_time = (float)view->time;
@@ -333,10 +335,17 @@ static void callbacks_can_be_exchanged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(handles_go_stale), cmocka_unit_test(refused_moves_change_nothing), cmocka_unit_test(sources_come_and_go),
-        cmocka_unit_test(pins_hold_move_and_let_go), cmocka_unit_test(a_turning_pin_turns), cmocka_unit_test(unused_vertices_are_not_pinned),
-        cmocka_unit_test(pins_on_one_particle_are_limited), cmocka_unit_test(rings_can_be_pinned),
-        cmocka_unit_test(colliders_catch_move_and_go), cmocka_unit_test(hot_colliders_heat), cmocka_unit_test(wind_blows),
+        cmocka_unit_test(handles_go_stale),
+        cmocka_unit_test(refused_moves_change_nothing),
+        cmocka_unit_test(sources_come_and_go),
+        cmocka_unit_test(pins_hold_move_and_let_go),
+        cmocka_unit_test(a_turning_pin_turns),
+        cmocka_unit_test(unused_vertices_are_not_pinned),
+        cmocka_unit_test(pins_on_one_particle_are_limited),
+        cmocka_unit_test(rings_can_be_pinned),
+        cmocka_unit_test(colliders_catch_move_and_go),
+        cmocka_unit_test(hot_colliders_heat),
+        cmocka_unit_test(wind_blows),
         cmocka_unit_test(callbacks_can_be_exchanged),
     };
     return cmocka_run_group_tests_name("step_objects", tests, NULL, NULL);

@@ -20,7 +20,8 @@ static void ledgers_close(void **state) {
     assert_true(worst_heat < 1e-5);
     assert_true(worst_mass < 1e-6);
     SingeStats stats = singe_sim_stats(scene.sim);
-    assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 && stats.burnt_fraction > 0.3);
+    assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
+                stats.burnt_fraction > 0.3);
     singe_sim_destroy(scene.sim);
 }
 
@@ -90,8 +91,10 @@ static void a_sheet_at_rest(void **state) {
     SingeStats stats = singe_sim_stats(sim);
     double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
     assert_true(fabs(stats.mass_initial / kilograms - 1) < 1e-5);
-    assert_true(stats.mass == stats.mass_initial && stats.mass_burnt == 0 && stats.mass_removed == 0 && stats.burnt_fraction == 0);
-    assert_true(stats.strain_max < 1e-6 && stats.heat_stored == 0 && stats.ledger_error == 0 && stats.mass_ledger_error < 1e-12);
+    assert_true(stats.mass == stats.mass_initial && stats.mass_burnt == 0 && stats.mass_removed == 0 &&
+                stats.burnt_fraction == 0);
+    assert_true(stats.strain_max < 1e-6 && stats.heat_stored == 0 && stats.ledger_error == 0 &&
+                stats.mass_ledger_error < 1e-12);
     assert_int_equal(stats.inverted_cells, 0);
     assert_int_equal(stats.pieces, 1);
     assert_true(fabsf(stats.temperature_max - 293.15f) < 1e-3f);
@@ -124,8 +127,11 @@ static void heat_without_fire(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ledgers_close), cmocka_unit_test(combustion_is_eta_times_mass), cmocka_unit_test(statistics_match_the_view),
-        cmocka_unit_test(a_sheet_at_rest), cmocka_unit_test(heat_without_fire),
+        cmocka_unit_test(ledgers_close),
+        cmocka_unit_test(combustion_is_eta_times_mass),
+        cmocka_unit_test(statistics_match_the_view),
+        cmocka_unit_test(a_sheet_at_rest),
+        cmocka_unit_test(heat_without_fire),
     };
     return cmocka_run_group_tests_name("step_stats", tests, NULL, NULL);
 }

@@ -17,7 +17,8 @@ static TestBytes run(SingeSimDef def) {
 }
 
 static void equal(const TestBytes *expected, TestBytes bytes, const char *what) {
-    if (bytes.size != expected->size || memcmp(bytes.data, expected->data, bytes.size)) fail_msg("%s: other bytes", what);
+    if (bytes.size != expected->size || memcmp(bytes.data, expected->data, bytes.size))
+        fail_msg("%s: other bytes", what);
     free(bytes.data);
 }
 

@@ -24,7 +24,9 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
         return NULL;
     }
     allocator->calls++;
-    if (allocator->fail_at && (allocator->once ? allocator->calls == allocator->fail_at : allocator->calls >= allocator->fail_at)) return NULL;
+    if (allocator->fail_at &&
+        (allocator->once ? allocator->calls == allocator->fail_at : allocator->calls >= allocator->fail_at))
+        return NULL;
     BlockHead *head = malloc(sizeof *head + new_size);
     if (!head) return NULL;
     // fresh bytes are rubbish, and a resized block always moves

@@ -7,8 +7,8 @@
 static const double pi = 3.14159265358979323846;
 
 static TestMesh mesh_make(uint32_t vertices, uint32_t cells) {
-    TestMesh mesh = {vertices, cells, calloc(3 * (size_t)vertices, sizeof(float)), calloc(2 * (size_t)vertices, sizeof(float)),
-                     calloc(4 * (size_t)cells, sizeof(uint32_t))};
+    TestMesh mesh = {vertices, cells, calloc(3 * (size_t)vertices, sizeof(float)),
+                     calloc(2 * (size_t)vertices, sizeof(float)), calloc(4 * (size_t)cells, sizeof(uint32_t))};
     assert_true(mesh.positions && mesh.uv && mesh.cells);
     return mesh;
 }
@@ -28,7 +28,8 @@ TestMesh test_grid(uint32_t nx, uint32_t ny, float dx, float dy) {
     TestMesh mesh = mesh_make((nx + 1) * (ny + 1), nx * ny);
     for (uint32_t j = 0; j <= ny; j++)
         for (uint32_t i = 0; i <= nx; i++)
-            mesh_vertex(&mesh, j * (nx + 1) + i, (double)i * (double)dx, (double)j * (double)dy, 0, (double)i / nx, (double)j / ny);
+            mesh_vertex(&mesh, j * (nx + 1) + i, (double)i * (double)dx, (double)j * (double)dy, 0, (double)i / nx,
+                        (double)j / ny);
     for (uint32_t j = 0; j < ny; j++)
         for (uint32_t i = 0; i < nx; i++) {
             uint32_t v = j * (nx + 1) + i;
@@ -42,13 +43,14 @@ TestMesh test_cylinder(uint32_t around, uint32_t along, float radius, float leng
     for (uint32_t j = 0; j <= along; j++)
         for (uint32_t i = 0; i < around; i++) {
             double a = 2 * pi * i / around;
-            mesh_vertex(&mesh, j * around + i, (double)radius * cos(a), (double)radius * sin(a), (double)length * j / along,
-                        (double)i / around, (double)j / along);
+            mesh_vertex(&mesh, j * around + i, (double)radius * cos(a), (double)radius * sin(a),
+                        (double)length * j / along, (double)i / around, (double)j / along);
         }
     for (uint32_t j = 0; j < along; j++)
         for (uint32_t i = 0; i < around; i++) {
             uint32_t next = (i + 1) % around;
-            mesh_cell(&mesh, j * around + i, j * around + i, j * around + next, (j + 1) * around + next, (j + 1) * around + i);
+            mesh_cell(&mesh, j * around + i, j * around + i, j * around + next, (j + 1) * around + next,
+                      (j + 1) * around + i);
         }
     return mesh;
 }
@@ -58,7 +60,8 @@ TestMesh test_torus(uint32_t around, uint32_t tube, float radius, float tube_rad
     for (uint32_t j = 0; j < tube; j++)
         for (uint32_t i = 0; i < around; i++) {
             double a = 2 * pi * i / around, b = 2 * pi * j / tube, r = (double)radius + (double)tube_radius * cos(b);
-            mesh_vertex(&mesh, j * around + i, r * cos(a), r * sin(a), (double)tube_radius * sin(b), (double)i / around, (double)j / tube);
+            mesh_vertex(&mesh, j * around + i, r * cos(a), r * sin(a), (double)tube_radius * sin(b), (double)i / around,
+                        (double)j / tube);
         }
     for (uint32_t j = 0; j < tube; j++)
         for (uint32_t i = 0; i < around; i++) {

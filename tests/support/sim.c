@@ -6,17 +6,18 @@
 void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const char *file, int line) {
     if (result == SINGE_OK) return;
     const SingeError *error = sim ? singe_sim_error(sim) : NULL;
-    print_error("%s: %s [%s %lld: %s]\n", call, singe_result_name(result), error ? error->stage : "", error ? (long long)error->element : 0,
-                error ? error->message : "");
+    print_error("%s: %s [%s %lld: %s]\n", call, singe_result_name(result), error ? error->stage : "",
+                error ? (long long)error->element : 0, error ? error->message : "");
     _fail(file, line);
 }
 
-void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult result, const char *call, const char *file, int line) {
+void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult result, const char *call, const char *file,
+                     int line) {
     const SingeError *error = singe_sim_error(sim);
     bool noted = error->code == result && error->stage[0] && error->message[0];
     if (result == expected && noted) return;
-    print_error("%s: %s where %s was expected; noted: %s [%s: %s]\n", call, singe_result_name(result), singe_result_name(expected),
-                singe_result_name(error->code), error->stage, error->message);
+    print_error("%s: %s where %s was expected; noted: %s [%s: %s]\n", call, singe_result_name(result),
+                singe_result_name(expected), singe_result_name(error->code), error->stage, error->message);
     _fail(file, line);
 }
 

@@ -46,7 +46,8 @@ void test_ok_at(const SingeSim *sim, SingeResult result, const char *call, const
 
 /// Fails the test unless the call gave `expected`, noted it in the simulation's error, and that says something.
 #define test_refused(sim, expected, call) test_refused_at((sim), (expected), (call), #call, __FILE__, __LINE__)
-void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult result, const char *call, const char *file, int line);
+void test_refused_at(const SingeSim *sim, SingeResult expected, SingeResult result, const char *call, const char *file,
+                     int line);
 
 /// The default sheet on a mesh.
 SingeSheetDef test_sheet(const TestMesh *mesh);

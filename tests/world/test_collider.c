@@ -43,8 +43,11 @@ static void normals_are_gradients(void **state) {
             double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
             if (length < 0.99) continue; // on the medial axis
             checked++;
-            double off = fabs(gradient[0] - (double)normal.x) + fabs(gradient[1] - (double)normal.y) + fabs(gradient[2] - (double)normal.z);
-            if (off > 0.02) fail_msg("kind %d at (%g, %g, %g): the normal is off by %g", kind, (double)p.x, (double)p.y, (double)p.z, off);
+            double off = fabs(gradient[0] - (double)normal.x) + fabs(gradient[1] - (double)normal.y) +
+                         fabs(gradient[2] - (double)normal.z);
+            if (off > 0.02)
+                fail_msg("kind %d at (%g, %g, %g): the normal is off by %g", kind, (double)p.x, (double)p.y,
+                         (double)p.z, off);
             // one step of the distance along the normal ends on the surface
             Vec surface = vec_mad(p, normal, -(float)d);
             assert_true(fabs(distance(&def, surface)) < 1e-5);
@@ -58,7 +61,8 @@ static void expect(SingeColliderKind kind, Vec p, float d, Vec n) {
     Vec normal;
     float found = collider_distance(&def, p, &normal);
     if (fabsf(found - d) > 1e-6f || vec_length(vec_sub(normal, n)) > 1e-6f)
-        fail_msg("kind %d: %g (%g, %g, %g)", (int)kind, (double)found, (double)normal.x, (double)normal.y, (double)normal.z);
+        fail_msg("kind %d: %g (%g, %g, %g)", (int)kind, (double)found, (double)normal.x, (double)normal.y,
+                 (double)normal.z);
 }
 
 static void hand_values(void **state) {
@@ -109,9 +113,18 @@ static void bad_fields_are_named(void **state) {
     static const struct {
         Spoil *spoil;
         const char *word;
-    } cases[] = {{spoil_kind, "kind"},         {spoil_kind_negative, "kind"}, {spoil_radius, "radius"},          {spoil_radius_nan, "radius"},
-                 {spoil_half, "half_size"},    {spoil_height, "height"},      {spoil_friction, "friction"},      {spoil_offset, "offset"},
-                 {spoil_conductance, "conductance"}, {spoil_distance, "contact_distance"}, {spoil_temperature, "temperature"}, {spoil_path, "path"}};
+    } cases[] = {{spoil_kind, "kind"},
+                 {spoil_kind_negative, "kind"},
+                 {spoil_radius, "radius"},
+                 {spoil_radius_nan, "radius"},
+                 {spoil_half, "half_size"},
+                 {spoil_height, "height"},
+                 {spoil_friction, "friction"},
+                 {spoil_offset, "offset"},
+                 {spoil_conductance, "conductance"},
+                 {spoil_distance, "contact_distance"},
+                 {spoil_temperature, "temperature"},
+                 {spoil_path, "path"}};
     SingeError error;
     SingeColliderDef good = make(SINGE_COLLIDER_SPHERE);
     good.path_count = 1;
@@ -127,7 +140,9 @@ static void bad_fields_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(normals_are_gradients), cmocka_unit_test(hand_values), cmocka_unit_test(surfaces_are_round_inside),
+        cmocka_unit_test(normals_are_gradients),
+        cmocka_unit_test(hand_values),
+        cmocka_unit_test(surfaces_are_round_inside),
         cmocka_unit_test(bad_fields_are_named),
     };
     return cmocka_run_group_tests_name("world_collider", tests, NULL, NULL);

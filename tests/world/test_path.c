@@ -141,8 +141,13 @@ static void out_of_memory(void **state) {
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = {
-        TEST(positions_are_linear_and_held), TEST(one_key_and_none), TEST(rotations_stay_unit_and_go_the_short_way),
-        TEST(huge_and_tiny_rotations_are_normalised), TEST(poses_invert), TEST(bad_keys_are_refused), TEST(out_of_memory),
+        TEST(positions_are_linear_and_held),
+        TEST(one_key_and_none),
+        TEST(rotations_stay_unit_and_go_the_short_way),
+        TEST(huge_and_tiny_rotations_are_normalised),
+        TEST(poses_invert),
+        TEST(bad_keys_are_refused),
+        TEST(out_of_memory),
     };
     return cmocka_run_group_tests_name("world_path", tests, NULL, NULL);
 }

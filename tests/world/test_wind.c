@@ -5,7 +5,9 @@
 
 #include <string.h>
 
-static Vec at(const SingeWindDef *def, int i) { return wind_velocity(def, vec((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037); }
+static Vec at(const SingeWindDef *def, int i) {
+    return wind_velocity(def, vec((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037);
+}
 
 static void no_gust_is_uniform(void **state) {
     (void)state;
