@@ -300,6 +300,8 @@ static const SchemaRow solver_rows[] = {
      .doc = "of the springs' colours, each once; the last is held best"},
     {"regularisation", ROW_MAP, DIM_NONE, AT(SingeSolverDef, regularisation), .sub = &schema_regularisation,
      .doc = "by colour of spring"},
+    {"smoothing", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, smoothing), WITHIN(0, 1),
+     .doc = "internal friction: share of the velocities' second differences along strands that a step takes away"},
     {"height_min", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, height_min), WITHIN(0, 1),
      .doc = "smallest height of a cell's centre over its corners, in thicknesses; 0 is off"},
     {"height_gain", ROW_FLOAT, DIM_FRACTION, AT(SingeSolverDef, height_gain), WITHIN(0, 1),

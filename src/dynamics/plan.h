@@ -50,6 +50,16 @@ uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState 
 /// Keeps every centre over its cell's corners (height.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, DynamicsState *dynamics);
 
+/// Internal friction of both layers (smooth.c).
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, DynamicsState *dynamics);
+
+/// Strands of a family that make about 2,048 springs: the least a thread is given.
+static inline int dynamics_strand_grain(const SpringSet *set, uint32_t family) {
+    uint32_t first = set->family_first[family], last = set->family_first[family + 1];
+    uint32_t springs = set->strand_first[last] - set->strand_first[first];
+    return (int)(2048 * (last - first) / (springs + 1)) + 1;
+}
+
 /// Contact and friction with the colliders in plan->colliders (contact.c). Returns the number of contacts.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
 

@@ -163,9 +163,7 @@ uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState 
     for (uint32_t f = 0; f < set->family_count; f++) {
         job.first_strand = set->family_first[f];
         uint32_t strands = set->family_first[f + 1] - job.first_strand;
-        uint32_t springs = set->strand_first[set->family_first[f + 1]] - set->strand_first[job.first_strand];
-        uint32_t per_range = strands ? 2048 * strands / (springs + 1) + 1 : 1; // about 2,048 springs
-        pool_for(pool, (int)strands, (int)per_range, strand_range, &job);
+        pool_for(pool, (int)strands, dynamics_strand_grain(set, f), strand_range, &job);
     }
     return set->strand_count;
 }

@@ -87,7 +87,8 @@ SingeSolverDef singe_default_solver(void) {
         .struct_size = sizeof(SingeSolverDef),
         .substeps = 3,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
-        .regularisation = {[SINGE_RED] = 4, [SINGE_GREEN] = 4, [SINGE_BLUE] = 0.01f, [SINGE_YELLOW] = 0.01f},
+        .regularisation = {[SINGE_RED] = 4, [SINGE_GREEN] = 4, [SINGE_BLUE] = 0.01f, [SINGE_YELLOW] = 4},
+        .smoothing = 0.3f,
         .height_min = 0.3f,
         .height_gain = 0.5f,
     };
