@@ -36,6 +36,7 @@ static const Column columns[] = {
     COLUMN("rest_y", rest_position, 3, 1),
     COLUMN("rest_z", rest_position, 3, 2),
     COLUMN("temperature", temperature, 1, 0),
+    COLUMN("temperature_peak", temperature_peak, 1, 0),
     COLUMN("mass", mass, 1, 0),
     COLUMN("burn_rate", burn_rate, 1, 0),
     COLUMN("char", burn, 1, 0),

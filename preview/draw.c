@@ -83,6 +83,7 @@ static bool hit_paper(const Preview *preview, const struct RTCHit16 *hit, int la
         .rest = blend(a->rest, b->rest, c->rest, u, v),
         .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
         .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
+        .peak = w * a->peak + u * b->peak + v * c->peak,
         .burn = w * a->burn + u * b->burn + v * c->burn,
         .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
         .gradient = w * a->gradient + u * b->gradient + v * c->gradient,

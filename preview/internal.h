@@ -27,6 +27,7 @@ typedef struct PaperVertex {
     float rest[3];       ///< m
     float uv[2];
     float temperature;   ///< K
+    float peak;          ///< K, highest so far
     float burn;          ///< 0 to 1
     float burn_rate;     ///< 1/s
     float gradient;      ///< 1/m, of burn in rest space
@@ -141,7 +142,7 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
     V3 rest;
-    float uv[2], temperature, burn, burn_rate, gradient;
+    float uv[2], temperature, peak, burn, burn_rate, gradient;
     int32_t sheet;
 } PaperState;
 /// False where the burnt edge has a hole at the picture's scale.

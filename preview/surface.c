@@ -47,6 +47,7 @@ static void pack_vertex(const SingeSurface *surface, uint32_t i, PaperVertex *ou
         .rest = {rest[0], rest[1], rest[2]},
         .uv = {finite_or(surface->uv[i][0], 0), finite_or(surface->uv[i][1], 0)},
         .temperature = clampf(finite_or(surface->temperature[i], 293), 0, 5000),
+        .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, 5000),
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
         .burn_rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f),
         .sheet = surface->sheet[i],
@@ -116,7 +117,8 @@ static void measure_textures(Preview *preview) {
 
 static SingeResult check(const SingeSurface *surface, SingeError *error) {
     if (surface->vertex_count && !(surface->position && surface->normal && surface->uv && surface->rest_position &&
-                                   surface->temperature && surface->burn && surface->burn_rate && surface->sheet))
+                                   surface->temperature && surface->temperature_peak && surface->burn &&
+                                   surface->burn_rate && surface->sheet))
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks one of the arrays that are drawn");
     if (surface->triangle_count && !surface->triangles)
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count and no triangles");

@@ -69,6 +69,7 @@ typedef struct SingeView {
     const float *area;                  ///< [particle_count] m2 at rest, of the particle's own layer
     const float *mass;                  ///< [particle_count] fraction of the initial mass
     const float *temperature;           ///< [particle_count] K
+    const float *temperature_peak;      ///< [particle_count] K, highest so far
     const float *burn_rate;             ///< [particle_count] 1/s, mass fraction lost per second
     const float *time_ignited;          ///< [particle_count] s, -1 before
     const float *time_burnt;            ///< [particle_count] s, -1 before
@@ -162,6 +163,7 @@ typedef struct SingeSurface {
     float (*velocity)[3];      ///< m/s
     float (*rest_position)[3]; ///< m
     float *temperature;        ///< K
+    float *temperature_peak;   ///< K, highest so far: what browns paper for good
     float *mass;               ///< fraction
     float *burn_rate;          ///< 1/s
     float *burn;               ///< char: burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash

@@ -10,8 +10,9 @@ typedef struct SurfaceArray {
 #define ARRAY(field) {offsetof(SingeSurface, field), sizeof *((SingeSurface *)0)->field}
 
 static const SurfaceArray vertex_arrays[] = {
-    ARRAY(position), ARRAY(normal), ARRAY(uv), ARRAY(velocity), ARRAY(rest_position), ARRAY(temperature), ARRAY(mass),
-    ARRAY(burn_rate), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece), ARRAY(source_vertex), ARRAY(sheet),
+    ARRAY(position), ARRAY(normal), ARRAY(uv), ARRAY(velocity), ARRAY(rest_position), ARRAY(temperature),
+    ARRAY(temperature_peak), ARRAY(mass), ARRAY(burn_rate), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece),
+    ARRAY(source_vertex), ARRAY(sheet),
 };
 static const SurfaceArray triangle_array = ARRAY(triangles);
 

@@ -19,7 +19,7 @@ float surface_cut(float inside, float outside) {
 
 typedef struct Sample {
     Vec position, velocity, rest;
-    float u, v, temperature, mass, burn_rate, burn, time_ignited;
+    float u, v, temperature, temperature_peak, mass, burn_rate, burn, time_ignited;
     int32_t piece, sheet;
 } Sample;
 
@@ -38,6 +38,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
     Sample sample = {
         .u = shell->uv[particle][0], .v = shell->uv[particle][1],
         .temperature = state->heat.temperature[particle],
+        .temperature_peak = state->heat.temperature_peak[particle],
         .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
         .burn = progress < 0 ? 0 : progress > 1 ? 1 : progress,
         .time_ignited = burn->time_ignited[particle],
@@ -70,6 +71,7 @@ static Sample mix_samples(const Sample *a, const Sample *b, float t) {
         .rest = mix_vec(a->rest, b->rest, t),
         .u = mix(a->u, b->u, t), .v = mix(a->v, b->v, t),
         .temperature = mix(a->temperature, b->temperature, t),
+        .temperature_peak = mix(a->temperature_peak, b->temperature_peak, t),
         .mass = mix(a->mass, b->mass, t),
         .burn_rate = mix(a->burn_rate, b->burn_rate, t),
         .burn = mix(a->burn, b->burn, t),
@@ -101,6 +103,7 @@ void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *sta
     surface->uv[index][0] = sample.u;
     surface->uv[index][1] = sample.v;
     surface->temperature[index] = sample.temperature;
+    surface->temperature_peak[index] = sample.temperature_peak;
     surface->mass[index] = sample.mass;
     surface->burn_rate[index] = sample.burn_rate;
     surface->burn[index] = sample.burn;

@@ -95,7 +95,11 @@ SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, co
     // eq 2 and 3: diffusion
     TRY(heat_conduct(&pass, iterations, &made, error));
 
-    for (uint32_t i = 0; i < plan->particles; i++) heat->temperature[i] = plan->next[i];
+    for (uint32_t i = 0; i < plan->particles; i++) {
+        float T = plan->next[i];
+        heat->temperature[i] = T;
+        heat->temperature_peak[i] = T > heat->temperature_peak[i] ? T : heat->temperature_peak[i];
+    }
     heat->heat_in += in + made;
     heat->heat_lost += lost;
     heat->heat_of_combustion += combustion;

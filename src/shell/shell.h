@@ -120,7 +120,8 @@ void shell_free(Memory *memory, Shell *shell);
 // State: what changes from step to step. Each stage writes its own part only.
 
 typedef struct HeatState {
-    float *temperature; ///< [particles] K
+    float *temperature;      ///< [particles] K
+    float *temperature_peak; ///< [particles] K, highest so far
     double heat_in, heat_lost, heat_of_combustion; ///< J, cumulative
 } HeatState;
 

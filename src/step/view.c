@@ -18,6 +18,7 @@ SingeView singe_sim_view(const SingeSim *sim) {
         .area = shell->matter.area,
         .mass = state->burn.mass,
         .temperature = state->heat.temperature,
+        .temperature_peak = state->heat.temperature_peak,
         .burn_rate = state->burn.burn_rate,
         .time_ignited = state->burn.time_ignited,
         .time_burnt = state->burn.time_burnt,

@@ -110,6 +110,36 @@ static void pace_is_fire_time(void **unused) {
     CHECK_NEAR(T[0], T[1], 1e-4);
 }
 
+/// Heated by combustion, then cooling: the peak is the hottest state, and stays.
+static void the_peak_is_the_hottest_so_far(void **unused) {
+    (void)unused;
+    RigDef def = lossy();
+    def.material.heating = singe_param(2400);
+    Rig rig;
+    rig_open(&rig, &def);
+    fill(&rig, 600);
+    uint32_t n = rig.shell.particle_count;
+    float *hottest = calloc(n, sizeof *hottest);
+    assert_non_null(hottest);
+    for (uint32_t i = 0; i < n; i++) {
+        rig.state.heat.temperature_peak[i] = hottest[i] = i % 2 ? 1500 : 600;
+        rig.state.burn.burn_rate[i] = 8;
+    }
+    for (int step = 0; step < 30; step++) {
+        for (uint32_t i = 0; step == 10 && i < n; i++) rig.state.burn.burn_rate[i] = 0;
+        rig_step(&rig);
+        for (uint32_t i = 0; i < n; i++) {
+            float T = rig.state.heat.temperature[i];
+            hottest[i] = T > hottest[i] ? T : hottest[i];
+            assert_true(rig.state.heat.temperature_peak[i] == hottest[i]);
+        }
+    }
+    assert_true(hottest[0] > 900 && rig.state.heat.temperature[0] < hottest[0] - 20);
+    assert_true(hottest[1] == 1500);
+    free(hottest);
+    rig_close(&rig);
+}
+
 // --- failures -------------------------------------------------------------------------------------------
 
 static void poison(void *context, const struct SingeView *view, float *flux, float *conductance, float *temperature) {
@@ -194,6 +224,7 @@ int main(void) {
         cmocka_unit_test(cooling_follows_radiation_and_convection),
         cmocka_unit_test(one_step_of_losses_is_the_formula),
         cmocka_unit_test(combustion_is_eta_times_burnt_mass),
+        cmocka_unit_test(the_peak_is_the_hottest_so_far),
         cmocka_unit_test(pace_is_fire_time),
         cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
         cmocka_unit_test(running_out_of_memory_is_clean),

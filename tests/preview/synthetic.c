@@ -5,7 +5,7 @@
 #include <string.h>
 
 typedef struct Corner {
-    float rest[3], temperature, mass, rate, ignited;
+    float rest[3], temperature, peak, mass, rate, ignited;
 } Corner;
 
 static const float width = 0.210f, length = 0.297f, mass_min = 0.15f, mass_loss = 0.22f;
@@ -25,7 +25,7 @@ static float from_edge(SyntheticKind kind, float radius, float x, float y) {
 }
 
 static Corner corner_at(SyntheticKind kind, float radius, float x, float y) {
-    Corner c = {.rest = {x, y, 0}, .temperature = 293, .mass = 1, .ignited = -1};
+    Corner c = {.rest = {x, y, 0}, .temperature = 293, .peak = 293, .mass = 1, .ignited = -1};
     if (kind == SYNTHETIC_FRESH) return c;
     float s = from_edge(kind, radius, x, y), front = 0.0085f;
     float burn = 0.918f * (1 - smooth(-0.25f * front, front, s)) + (s < 0 ? -s * 6 : 0);
@@ -37,7 +37,7 @@ static Corner corner_at(SyntheticKind kind, float radius, float x, float y) {
     c.mass = 1 - burn * (1 - mass_min);
     if (c.mass < mass_min) c.mass = mass_min;
     float ahead = s > 0.0035f ? expf(-(s - 0.0035f) / 0.0042f) : 1 - 0.25f * smooth(0, 0.02f, 0.0035f - s);
-    c.temperature = 293 + 830 * ahead;
+    c.temperature = c.peak = 293 + 830 * ahead;
     c.rate = 0.9f * expf(-(s - 0.001f) * (s - 0.001f) / (0.005f * 0.005f));
     if (ash || kind == SYNTHETIC_COLD) c.temperature = 293 + 90 * ahead, c.rate = 0;
     if (burn > 0) c.ignited = 1 - 40 * s;
@@ -77,7 +77,8 @@ static void add_vertex(SyntheticKind kind, float radius, SingeSurface *s, const 
     float l = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int k = 0; k < 3; k++) s->normal[i][k] = n[k] / l;
     s->uv[i][0] = c->rest[0] / width + 0.5f, s->uv[i][1] = c->rest[1] / length + 0.5f;
-    s->temperature[i] = c->temperature, s->mass[i] = c->mass, s->burn_rate[i] = c->rate;
+    s->temperature[i] = c->temperature, s->temperature_peak[i] = c->peak;
+    s->mass[i] = c->mass, s->burn_rate[i] = c->rate;
     s->burn[i] = (1 - c->mass) / (1 - mass_min), s->time_ignited[i] = c->ignited;
     s->piece[i] = 0, s->source_vertex[i] = -1, s->sheet[i] = 0;
 }
@@ -85,7 +86,7 @@ static void add_vertex(SyntheticKind kind, float radius, SingeSurface *s, const 
 static Corner between(const Corner *a, const Corner *b, float t) {
     Corner c = *a;
     for (int k = 0; k < 3; k++) c.rest[k] += t * (b->rest[k] - a->rest[k]);
-    c.temperature += t * (b->temperature - a->temperature), c.mass += t * (b->mass - a->mass);
+    c.temperature += t * (b->temperature - a->temperature), c.peak += t * (b->peak - a->peak), c.mass += t * (b->mass - a->mass);
     c.rate += t * (b->rate - a->rate);
     return c;
 }
@@ -113,12 +114,13 @@ static bool reserve(SingeSurface *s, size_t vertices, size_t triangles) {
     s->position = malloc(vertices * sizeof *s->position), s->normal = malloc(vertices * sizeof *s->normal);
     s->uv = malloc(vertices * sizeof *s->uv), s->velocity = malloc(vertices * sizeof *s->velocity);
     s->rest_position = malloc(vertices * sizeof *s->rest_position);
-    s->temperature = malloc(vertices * sizeof(float)), s->mass = malloc(vertices * sizeof(float));
+    s->temperature = malloc(vertices * sizeof(float)), s->temperature_peak = malloc(vertices * sizeof(float));
+    s->mass = malloc(vertices * sizeof(float));
     s->burn_rate = malloc(vertices * sizeof(float)), s->burn = malloc(vertices * sizeof(float));
     s->time_ignited = malloc(vertices * sizeof(float)), s->piece = malloc(vertices * sizeof(int32_t));
     s->source_vertex = malloc(vertices * sizeof(int32_t)), s->sheet = malloc(vertices * sizeof(int32_t));
     s->triangles = malloc(triangles * sizeof *s->triangles);
-    return s->position && s->normal && s->uv && s->velocity && s->rest_position && s->temperature && s->mass &&
+    return s->position && s->normal && s->uv && s->velocity && s->rest_position && s->temperature && s->temperature_peak && s->mass &&
            s->burn_rate && s->burn && s->time_ignited && s->piece && s->source_vertex && s->sheet && s->triangles;
 }
 
@@ -147,7 +149,7 @@ bool synthetic_make(SyntheticKind kind, int cells_x, float radius, SingeSurface 
 
 void synthetic_free(SingeSurface *s) {
     free(s->position), free(s->normal), free(s->uv), free(s->velocity), free(s->rest_position), free(s->temperature);
-    free(s->mass), free(s->burn_rate), free(s->burn), free(s->time_ignited), free(s->piece), free(s->source_vertex);
+    free(s->temperature_peak), free(s->mass), free(s->burn_rate), free(s->burn), free(s->time_ignited), free(s->piece), free(s->source_vertex);
     free(s->sheet), free(s->triangles);
     memset(s, 0, sizeof *s);
 }

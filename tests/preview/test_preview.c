@@ -45,7 +45,7 @@ static float mean(const uint8_t *rgb, int channel) {
 
 /// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
 typedef struct Quad {
-    float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], burn[4], rate[4];
+    float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], peak[4], burn[4], rate[4];
     int32_t sheet[4];
     uint32_t triangles[2][3];
     SingeSurface surface;
@@ -56,13 +56,14 @@ static void quad_make(Quad *q, float half, float z) {
     for (int i = 0; i < 4; i++) {
         float x = i == 1 || i == 2 ? half : -half, y = i >= 2 ? half : -half;
         q->position[i][0] = q->rest[i][0] = x, q->position[i][1] = q->rest[i][1] = y, q->position[i][2] = z;
-        q->normal[i][2] = 1, q->uv[i][0] = x > 0, q->uv[i][1] = y > 0, q->temperature[i] = 293;
+        q->normal[i][2] = 1, q->uv[i][0] = x > 0, q->uv[i][1] = y > 0, q->temperature[i] = q->peak[i] = 293;
     }
     const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
     memcpy(q->triangles, triangles, sizeof triangles);
     q->surface = (SingeSurface){
         .vertex_count = 4, .triangle_count = 2, .position = q->position, .normal = q->normal, .uv = q->uv,
-        .rest_position = q->rest, .temperature = q->temperature, .burn = q->burn, .burn_rate = q->rate,
+        .rest_position = q->rest, .temperature = q->temperature, .temperature_peak = q->peak,
+        .burn = q->burn, .burn_rate = q->rate,
         .sheet = q->sheet, .triangles = q->triangles};
 }
 

@@ -52,7 +52,7 @@ static void test_start(void **context) {
         // the four cells around vertex 5 are 1, 2, 4, 5; vertex 4 touches cells 0 and 3
         bool touches = p == 13 || p == 16;
         float expected = p == 4 ? 340 : touches ? 310 : 300;
-        assert_true(state.heat.temperature[p] == expected);
+        assert_true(state.heat.temperature[p] == expected && state.heat.temperature_peak[p] == expected);
     }
     assert_true(shell.matter.area[12] == 0 && shell.matter.mass[12] == 0);
     assert_int_equal(state.ablate.degree[0], 2 + 1 + 1);
@@ -125,16 +125,16 @@ static void test_apart(void **context) {
     State s;
     assert_int_equal(state_create(&memory, &shell, &s), SINGE_OK);
     size_t n = shell.particle_count;
-    struct { void *at; size_t size; } slices[12 + 2 * SINGE_COLOUR_COUNT] = {
+    struct { void *at; size_t size; } slices[13 + 2 * SINGE_COLOUR_COUNT] = {
         {s.dynamics.position, 16 * n}, {s.dynamics.velocity, 16 * n},
-        {s.dynamics.pinned, n}, {s.heat.temperature, 4 * n},
+        {s.dynamics.pinned, n}, {s.heat.temperature, 4 * n}, {s.heat.temperature_peak, 4 * n},
         {s.burn.mass, 4 * n}, {s.burn.burn_rate, 4 * n}, {s.burn.time_ignited, 4 * n}, {s.burn.time_burnt, 4 * n},
         {s.ablate.particle_flags, n}, {s.ablate.cell_flags, shell.cell_count},
         {s.ablate.degree, 2 * n}, {s.ablate.piece, 4 * n},
     };
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
-        slices[12 + c].at = s.burn.spring_length[c], slices[12 + c].size = 4 * (size_t)shell.springs[c].count;
-        slices[16 + c].at = s.ablate.spring_flags[c], slices[16 + c].size = shell.springs[c].count;
+        slices[13 + c].at = s.burn.spring_length[c], slices[13 + c].size = 4 * (size_t)shell.springs[c].count;
+        slices[17 + c].at = s.ablate.spring_flags[c], slices[17 + c].size = shell.springs[c].count;
     }
     for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) memset(slices[i].at, (int)i + 1, slices[i].size);
     for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
