@@ -114,7 +114,7 @@ int command_check(int argc, char **argv) {
     bool good = true;
     while (good && (option = args_next(&reader, &value)) != ARG_END) {
         switch (option) {
-        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 10000000, &frames); break;
+        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &frames); break;
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads); break;
         case OPT_SET: set_add(&sets, value); break;
         case ARG_OPERAND: scene = value; break;

@@ -48,13 +48,9 @@ static void *libc_resize(void *context, void *block, size_t old_size, size_t new
     return NULL;
 }
 
-/// Names become file names, and the start is a frame of its own.
+/// Names become file names.
 static bool scene_good(Console *console, const Scene *scene) {
     const char *name = scene->name;
-    if (scene->frames < 1) {
-        console_error(console, "frames: expected at least 1, as the start is the first, got %d", scene->frames);
-        return false;
-    }
     if (*name && *name != '.' && !strchr(name, '/') && strlen(name) <= 200) return true;
     console_error(console,
                   "the scene's name '%s' cannot name files: expected 1 to 200 characters, no '/', no '.' first", name);

@@ -72,7 +72,7 @@ static ExitCode parse_options(int argc, char **argv, RunOptions *options, bool *
         bool good = true;
         switch (option) {
         case OPT_OUTPUT: options->output = value; break;
-        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 10000000, &frames); break;
+        case OPT_FRAMES: good = args_int(&reader, option, value, 1, 1000000, &frames); break;
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &options->threads); break;
         case OPT_SET: set_add(&options->sets, value); break;
         case OPT_RESUME: options->resume = true; break;

@@ -139,7 +139,7 @@ typedef struct ScenePreview {
 
 typedef struct Scene {
     char *name;   ///< of the outputs; the scene file's name without its ending by default
-    int frames;   ///< frames to make after frame 0, which is the start
+    int frames;   ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;    ///< frames a second
     int steps;    ///< steps a frame
     SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's

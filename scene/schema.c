@@ -369,7 +369,8 @@ static const Schema schema_preview = {
 static const SchemaRow scene_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(Scene, name),
      .doc = "of the outputs; the scene file's name without its ending by default"},
-    {"frames", ROW_INT, DIM_NONE, AT(Scene, frames), WITHIN(0, 1000000), .doc = "how many to make after the start"},
+    {"frames", ROW_INT, DIM_NONE, AT(Scene, frames), WITHIN(1, 1000000),
+     .doc = "how many to make; the first is the start, so that N frames span (N - 1)/fps"},
     {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames a second"},
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
     {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), OVER(0),

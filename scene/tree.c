@@ -4,12 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/scalar.h"
+
 enum { DEPTH_MOST = 64 };
 
 typedef struct Builder {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
+    const char *bytes; // of the document
+    size_t size;
     int set;
     Node *stack[DEPTH_MOST]; // open lists and maps
     char *keys[DEPTH_MOST];  // key that waits for its value, in each open map
@@ -92,13 +96,12 @@ static void builder_open(Builder *builder, NodeKind kind, ScenePlace place) {
 
 static void builder_value(Builder *builder, struct fy_event *event, ScenePlace place) {
     size_t length = 0;
-    const char *bytes = fy_token_get_text(event->scalar.value, &length);
-    char *text = arena_text(builder->arena, bytes ? bytes : "", bytes ? length : 0);
+    char *text = scalar_text(builder->arena, event->scalar.value, builder->bytes, builder->size, &length);
     if (!text) {
         builder->bad = true;
         return;
     }
-    if (bytes && strlen(text) != length) {
+    if (strlen(text) != length) {
         builder_fail(builder, place, "a text must not contain a zero character");
         return;
     }
@@ -190,10 +193,10 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-static void builder_run(Builder *builder, struct fy_diag *diag, const char *bytes, size_t size) {
+static void builder_run(Builder *builder, struct fy_diag *diag) {
     struct fy_parse_cfg config = {.flags = FYPCF_QUIET | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_AUTO, .diag = diag};
     struct fy_parser *parser = fy_parser_create(&config);
-    if (!parser || fy_parser_set_string(parser, bytes, size)) {
+    if (!parser || fy_parser_set_string(parser, builder->bytes, builder->size)) {
         builder->bad = true;
         fy_parser_destroy(parser);
         return;
@@ -227,7 +230,9 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     if (!diag)
         return NULL;
     fy_diag_set_collect_errors(diag, true);
-    builder_run(&builder, diag, bytes, size);
+    builder.bytes = bytes;
+    builder.size = size;
+    builder_run(&builder, diag);
     fy_diag_destroy(diag);
     if (builder.bad)
         return NULL;

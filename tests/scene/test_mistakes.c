@@ -52,7 +52,9 @@ static void test_values(void **state) {
     one("pace: 1e-60", "bad.yaml:3:7", "pace must be > 0");
     one("frames: 1e3", "bad.yaml:3:9", "whole number");
     one("frames: 2.0", "bad.yaml:3:9", "whole number");
-    one("frames: -1", "bad.yaml:3:9", "frames must be >= 0");
+    one("frames: 0", "bad.yaml:3:9", "frames must be >= 1");
+    one("frames: -1", "bad.yaml:3:9", "frames must be >= 1");
+    one("frames: 1000001", "bad.yaml:3:9", "out of range");
     one("frames: 99999999999999999999999", "bad.yaml:3:9", "out of range");
     one("frames: -99999999999999999999999", "bad.yaml:3:9", "out of range");
     one("seed: 18446744073709551616", "bad.yaml:3:7", "out of range");
@@ -177,8 +179,8 @@ static void test_limits(void **state) {
     messages = failing(text, 100000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     expect_origin_prefix(&messages, "bad.yaml:1:");
     scene_messages_free(&messages);
-    for (int i = 0; i < 50000; i++) // unknown keys without end: the first 200 are told, the rest counted
-        snprintf(text + 10 * i, 11, "k%07d:\n", i);
+    for (unsigned i = 0; i < 50000; i++) // unknown keys without end: the first 200 are told, the rest counted
+        snprintf(text + 10 * i, 11, "k%07u:\n", i % 10000000);
     messages = failing(text, 500000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     assert_int_equal(messages.count, 200);
     assert_true(messages.left_out >= 49800);

@@ -141,6 +141,47 @@ static void test_json(void **state) {
     scene_free(scene);
 }
 
+/// What is in quotes, in every style of YAML; read as an attribute's name, which may be any text.
+static void test_texts(void **state) {
+    (void)state;
+    static const struct {
+        const char *written, *read;
+    } texts[] = {
+        {"'it''s'", "it's"},
+        {"''''", "'"},
+        {"''''''", "''"},
+        {"'a''''b'", "a''b"},
+        {"'''''''''''''''''''''''''''''''''''''''''''''''''''''''''ime'", "''''''''''''''''''''''''''''ime"},
+        {"' a  '", " a  "},
+        {"'one  \n          two'", "one two"},
+        {"'one\r\n  \n\n          two''\n          ''three '", "one\n\ntwo' 'three "},
+        {"'\n          x\n          '", " x "},
+        {"'\303\251''\303\251'", "\303\251'\303\251"},
+        {"\"a\\tb\\u00e9 ''\"", "a\tb\303\251 ''"},
+        {"\"one\n          two \\\n          three\"", "one two three"},
+        {"it's a 'b''c'", "it's a 'b''c'"},
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "name: 'a''''b'\n" SHEET "    material:\n      mass_loss: {from: 0.1, to: 0.3, 'attribute': %s}\n",
+                 texts[i].written);
+        Scene *scene = good_scene(text, NULL, 0);
+        assert_string_equal(scene->name, "a''b");
+        assert_string_equal(scene->sheets[0].material.def.mass_loss.attribute, texts[i].read);
+        char *dump = dump_text(scene, SCENE_YAML);
+        Scene *again = good_scene(dump, NULL, 0);
+        assert_string_equal(again->sheets[0].material.def.mass_loss.attribute, texts[i].read);
+        free(dump);
+        scene_free(again);
+        scene_free(scene);
+    }
+    const char *set = "name='x''''y'";
+    Scene *scene = good_scene(SHEET, &set, 1);
+    assert_string_equal(scene->name, "x''y");
+    scene_free(scene);
+}
+
 static void test_set(void **state) {
     (void)state;
     static const char *const sets[] = {
@@ -174,7 +215,8 @@ static void test_set(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
-        cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_set),
+        cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_set),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,13 @@
+// The text of a single YAML value, unescaped.
+#ifndef SCENE_SCALAR_H
+#define SCENE_SCALAR_H
+
+#include <libfyaml.h>
+
+#include "scene/arena.h"
+
+/// The text of a scalar token (NULL is an empty one) of the input `bytes`, zero-terminated, in the arena; it may
+/// hold zeros of its own, which *length tells. NULL when out of memory.
+char *scalar_text(SceneArena *arena, struct fy_token *token, const char *bytes, size_t size, size_t *length);
+
+#endif
