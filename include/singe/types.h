@@ -242,7 +242,8 @@ typedef struct SingeSolverDef {
     int substeps;                              ///< per step, >= 1
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
-    float smoothing;                           ///< internal friction: share of the velocities' second differences lost in a step, 0 to 1
+    float smoothing;                           ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
+    float smoothing_length;                    ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
     float height_min;                          ///< smallest height of a centre over its corners, in thicknesses; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
 } SingeSolverDef;

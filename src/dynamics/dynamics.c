@@ -146,6 +146,6 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         Finish finish = {plan, dynamics, 1 / h_sub};
         pool_for(pool, (int)shell->particle_count, POOL_BLOCK, dynamics_velocities, &finish);
     }
-    dynamics_smooth(plan, shell, pool, dynamics);
+    dynamics_smooth(plan, shell, pool, h, dynamics);
     return dynamics_check(plan, pool, dynamics, error);
 }

@@ -50,8 +50,8 @@ uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState 
 /// Keeps every centre over its cell's corners (height.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, DynamicsState *dynamics);
 
-/// Internal friction of both layers (smooth.c).
-void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, DynamicsState *dynamics);
+/// Internal friction of both layers over a step of h seconds (smooth.c).
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics);
 
 /// Strands of a family that make about 2,048 springs: the least a thread is given.
 static inline int dynamics_strand_grain(const SpringSet *set, uint32_t family) {

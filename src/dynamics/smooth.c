@@ -1,15 +1,19 @@
-// Internal friction: paper is lossy, and what a projection leaves unsolved shows as jitter of single
-// particles. Once a step, along every strand of both layers, the second difference of velocities
+// Internal friction: bending paper loses energy, and what a projection leaves unsolved shows as jitter of
+// single particles and as a drumming of the whole sheet. Once a step, along every strand of both layers, the
+// second difference of velocities
 //
-//   r = v_a - 2 v_b + v_c      (three nodes in a row)
+//   r = v_a - 2 v_b + v_c      (three nodes at equal distances along a strand)
 //
-// is lessened by the share `smoothing` with the impulse that keeps momentum:
+// is lessened by the share 1 - exp(-smoothing h) with the impulse that keeps momentum:
 //
-//   v_a -= w_a j,  v_b += 2 w_b j,  v_c -= w_c j,   j = smoothing r / (w_a + 4 w_b + w_c)
+//   v_a -= w_a j,  v_b += 2 w_b j,  v_c -= w_c j,   j = share r / (w_a + 4 w_b + w_c)
 //
-// A rigid motion of a flat sheet has r = 0 and is not touched; the loss falls with the fourth power of the
-// wavelength.
+// first over the nodes `smoothing_length` apart, then over next neighbours. The first takes the drumming: what
+// it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
+// second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched.
 #include "dynamics/plan.h"
+
+#include <math.h>
 
 typedef struct Smooth {
     const DynamicsPlan *plan;
@@ -17,6 +21,7 @@ typedef struct Smooth {
     const float *weight;
     float (*velocity)[4];
     uint32_t first_strand;
+    float share;
 } Smooth;
 
 static void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c) {
@@ -24,7 +29,7 @@ static void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c)
     float weight = w[a] + 4 * w[b] + w[c];
     if (weight <= 0) return;
     float *va = job->velocity[a], *vb = job->velocity[b], *vc = job->velocity[c];
-    float share = job->plan->settings.solver.smoothing / weight;
+    float share = job->share / weight;
     for (int k = 0; k < 3; k++) {
         float j = share * (va[k] - 2 * vb[k] + vc[k]);
         va[k] -= w[a] * j;
@@ -33,22 +38,39 @@ static void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c)
     }
 }
 
-static void smooth_range(void *task, int begin, int end) {
-    const Smooth *job = task;
-    const SpringSet *set = job->set;
-    for (int i = begin; i < end; i++) {
-        uint32_t s = job->first_strand + (uint32_t)i;
-        for (uint32_t k = set->strand_first[s]; k + 1 < set->strand_first[s + 1]; k++)
-            if (job->weight[k] > 0 && job->weight[k + 1] > 0) smooth_triple(job, set->ends[k][0], set->ends[k][1], set->ends[k + 1][1]);
+/// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.
+static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint32_t reach) {
+    const uint32_t(*ends)[2] = job->set->ends;
+    uint32_t run = 0; // springs in a row that are there
+    for (uint32_t k = begin; k < end; k++) {
+        run = job->weight[k] > 0 ? run + 1 : 0;
+        if (run >= 2 * reach) smooth_triple(job, ends[k + 1 - 2 * reach][0], ends[k + 1 - reach][0], ends[k][1]);
     }
 }
 
-void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, DynamicsState *dynamics) {
+static uint32_t smooth_reach(const Smooth *job, uint32_t begin, uint32_t end) {
+    float length = 0;
+    for (uint32_t k = begin; k < end; k++) length += job->set->rest[k];
+    float reach = job->plan->settings.solver.smoothing_length * (float)(end - begin) / length;
+    return reach >= 2 ? (uint32_t)(reach < (float)(end - begin) ? reach + 0.5f : (float)(end - begin)) : 1;
+}
+
+static void smooth_range(void *task, int begin, int end) {
+    const Smooth *job = task;
+    for (int i = begin; i < end; i++) {
+        const uint32_t *first = &job->set->strand_first[job->first_strand + (uint32_t)i];
+        uint32_t reach = smooth_reach(job, first[0], first[1]);
+        if (reach > 1) smooth_strand(job, first[0], first[1], reach);
+        smooth_strand(job, first[0], first[1], 1);
+    }
+}
+
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics) {
     if (plan->settings.solver.smoothing <= 0) return;
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[layers[layer]];
-        Smooth job = {plan, set, plan->weight[layers[layer]], dynamics->velocity, 0};
+        Smooth job = {plan, set, plan->weight[layers[layer]], dynamics->velocity, 0, 1 - expf(-plan->settings.solver.smoothing * h)};
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
             uint32_t strands = set->family_first[f + 1] - job.first_strand;

@@ -88,7 +88,8 @@ SingeSolverDef singe_default_solver(void) {
         .substeps = 3,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
         .regularisation = {[SINGE_RED] = 4, [SINGE_GREEN] = 4, [SINGE_BLUE] = 0.01f, [SINGE_YELLOW] = 4},
-        .smoothing = 0.3f,
+        .smoothing = 170,
+        .smoothing_length = 0.02f,
         .height_min = 0.3f,
         .height_gain = 0.5f,
     };

@@ -23,7 +23,8 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
         if (!in_range(solver->regularisation[i], 1e-6f, 1e6f))
             return "solver.regularisation must be between 1e-6 and 1e6";
     }
-    if (!in_range(solver->smoothing, 0, 1)) return "solver.smoothing must be between 0 and 1";
+    if (!in_range(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
+    if (!in_range(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
     if (!in_range(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
     if (!in_range(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
     return NULL;

@@ -22,6 +22,7 @@ static void def_solver(Stream *stream, SingeSolverDef *solver) {
     STREAM(stream, solver->order);
     STREAM(stream, solver->regularisation);
     STREAM(stream, solver->smoothing);
+    STREAM(stream, solver->smoothing_length);
     STREAM(stream, solver->height_min);
     STREAM(stream, solver->height_gain);
 }

@@ -1,0 +1,195 @@
+// Internal friction, the order of the layers, and the weights of springs.
+#include "sheets.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "dynamics/plan.h"
+
+static const float pi = 3.14159265f;
+
+static SingeMaterialDef plain(void) {
+    SingeMaterialDef material = singe_default_material();
+    material.drag = 0;
+    material.damping = 0;
+    return material;
+}
+
+static void prepare(Bench *bench) {
+    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, bench->pool);
+}
+
+static void momentum(const Bench *bench, double p[3]) {
+    p[0] = p[1] = p[2] = 0;
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        for (int k = 0; k < 3; k++)
+            p[k] += (double)bench->state.dynamics.velocity[i][k] / (double)bench->plan->inverse_mass[i];
+}
+
+/// Share of a standing wave across the sheet that is left after `steps` of friction, measured off the margins.
+static double wave_left(float cell, float wavelength, int steps) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    uint32_t n = (uint32_t)lroundf(0.4f / cell);
+    bench_open(&bench, quads_grid(n, 4, cell, cell, false), &material, 1);
+    prepare(&bench);
+    float(*v)[4] = bench.state.dynamics.velocity;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        v[i][2] = sinf(2 * pi * bench.shell.rest_position[i][0] / wavelength);
+    for (int s = 0; s < steps; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    double dot = 0, square = 0;
+    for (uint32_t i = 0; i < bench.shell.vertex_count; i++) {
+        float x = bench.shell.rest_position[i][0];
+        if (x < 0.1f || x > 0.3f) continue;
+        double wave = sin(2 * 3.14159265 * (double)x / (double)wavelength);
+        dot += wave * (double)v[i][2], square += wave * wave;
+    }
+    bench_close(&bench);
+    return dot / square;
+}
+
+/// What friction takes from a wave goes by its length in metres, hardly by the mesh.
+static void test_waves_decay(void **unused) {
+    (void)unused;
+    double fine = wave_left(0.0025f, 0.1f, 5), coarse = wave_left(0.005f, 0.1f, 5);
+    assert_true(fine > 0.2 && fine < 0.9);
+    assert_true(fabs(fine - coarse) < 0.05);
+    assert_true(wave_left(0.0025f, 0.4f, 5) > 0.99); // long waves go on
+    assert_true(wave_left(0.0025f, 0.02f, 20) < 0.8); // nodes 2 cm apart do not see this one, neighbours do
+    assert_true(fabs(wave_left(0.0025f, 0.005f, 20)) < 0.1);
+}
+
+static void test_friction_keeps_momentum(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(20, 16, 0.004f, 0.004f, false), &material, 1);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
+    prepare(&bench);
+    float(*v)[4] = bench.state.dynamics.velocity;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        for (int k = 0; k < 3; k++) v[i][k] = 0.1f * (float)k + sinf((float)(i * (uint32_t)(k + 1)));
+    double before[3], after[3];
+    momentum(&bench, before);
+    for (int s = 0; s < 50; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    momentum(&bench, after);
+    for (int k = 0; k < 3; k++) assert_true(fabs(after[k] - before[k]) < 1e-5 * fabs(before[2]));
+    // a body that moves as one is not held back
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) v[i][0] = 1, v[i][1] = -2, v[i][2] = 3;
+    dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) assert_true(v[i][0] == 1 && v[i][1] == -2 && v[i][2] == 3);
+    bench_close(&bench);
+}
+
+/// Nothing passes a spring that is gone.
+static void test_friction_stops_at_cuts(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(20, 1, 0.01f, 0.01f, false), &material, 1);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        for (uint32_t k = 0; k < bench.shell.springs[c].count; k++) {
+            const uint32_t *ends = bench.shell.springs[c].ends[k];
+            float a = bench.shell.rest_position[ends[0]][0], b = bench.shell.rest_position[ends[1]][0];
+            if ((a < 0.1001f) != (b < 0.1001f)) bench.state.ablate.spring_flags[c][k] = 0;
+        }
+    prepare(&bench);
+    float(*v)[4] = bench.state.dynamics.velocity;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) v[i][2] = bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1;
+    for (int s = 0; s < 20; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        assert_true(v[i][2] == (bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1));
+    bench_close(&bench);
+}
+
+static double height_of(const Bench *bench, uint32_t cell) {
+    Vec mean = {0, 0, 0}, p[4];
+    for (int i = 0; i < 4; i++) {
+        p[i] = vec_load(bench->state.dynamics.position[bench->shell.cells[cell][i]]);
+        mean = vec_mad(mean, p[i], 0.25f);
+    }
+    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean), normal);
+}
+
+static void test_inverted_cells_are_mended(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    double thickness = (double)bench.shell.matter.thickness[shell_centre(&bench.shell, 0)];
+    for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) // the diagonal: centres pushed through their corners
+        bench.state.dynamics.position[shell_centre(&bench.shell, c)][2] -= (float)(1.5 * thickness);
+    prepare(&bench);
+    double before = 0, after = 0;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        before += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
+    assert_true(height_of(&bench, 9) < 0);
+    for (int pass = 0; pass < 30; pass++)
+        height_project(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, &bench.state.dynamics);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        after += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
+    for (uint32_t c = 0; c < bench.shell.cell_count; c++)
+        assert_true(height_of(&bench, c) > 0.99 * (double)bench.settings.solver.height_min * thickness);
+    assert_true(fabs(after - before) < 1e-6 * thickness); // a sheet of 3.2 g: the centre of mass stays
+    bench_close(&bench);
+}
+
+/// Eq 19 by hand: the mean of the ends' weights, softened by how far they are burnt; none where a spring is gone.
+static void test_weights(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    material.weight[SINGE_BLUE].value = 0.8f, material.char_weight = 0.4f, material.mass_min.value = 0.2f;
+    bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
+    const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
+    bench.state.burn.mass[blue->ends[0][0]] = 0.2f; // ash
+    bench.state.burn.mass[blue->ends[0][1]] = 0.6f; // half burnt
+    bench.state.ablate.spring_flags[SINGE_BLUE][1] = 0;
+    prepare(&bench);
+    assert_true(fabsf(bench.plan->weight[SINGE_BLUE][0] - 0.8f * (1 - 0.6f * 0.75f)) < 1e-6f);
+    assert_true(bench.plan->weight[SINGE_BLUE][1] == 0);
+    assert_true(fabsf(bench.plan->weight[SINGE_BLUE][blue->count - 1] - 0.8f) < 1e-6f);
+    bench_close(&bench);
+}
+
+/// A ribbon of compliant springs hangs as long whatever the number of substeps.
+static void test_compliance_is_physical(void **unused) {
+    (void)unused;
+    double stretch[2];
+    for (int run = 0; run < 2; run++) {
+        Bench bench;
+        SingeMaterialDef material = plain();
+        material.damping = 6;
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = 5;
+        bench_open(&bench, quads_grid(1, 10, 0.01f, 0.01f, false), &material, 1);
+        bench.plan->settings.solver.substeps = run ? 12 : 3;
+        bench.plan->settings.solver.height_min = 0;
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) bench.plan->settings.solver.regularisation[c] = 1e-6f;
+        bench.plan->settings.gravity[1] = -9.81f, bench.plan->settings.gravity[2] = 0;
+        for (uint32_t i = 0; i < bench.shell.vertex_count; i++)
+            if (bench.shell.rest_position[i][1] > 0.0999f) bench.state.dynamics.pinned[i] = 1;
+        for (int s = 0; s < 960; s++) bench_step(&bench, 1.0f / 480);
+        double low = 1;
+        for (uint32_t i = 0; i < bench.shell.vertex_count; i++) low = fmin(low, (double)bench.state.dynamics.position[i][1]);
+        stretch[run] = -low;
+        bench_close(&bench);
+    }
+    assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_waves_decay),
+        cmocka_unit_test(test_friction_keeps_momentum),
+        cmocka_unit_test(test_friction_stops_at_cuts),
+        cmocka_unit_test(test_inverted_cells_are_mended),
+        cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_compliance_is_physical),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
