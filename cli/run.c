@@ -1,5 +1,6 @@
 // singe run: frame 1 is the start, at time 0; each later frame is `steps` steps on from the one before it. Within
 // a frame the order is PLY, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on the disk.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -155,6 +156,7 @@ static SingeResult write_frame(Run *run, int frame, SingeStats *stats, SingeErro
         return result;
     }
     *stats = singe_sim_stats(run->sim);
+    run->totals->hottest = fmax(run->totals->hottest, (double)stats->temperature_max);
     charge(run, TOTAL_SURFACE, &clock);
     char *path = folder_ply(&run->folder, frame);
     result = ply_write_surface(path, &run->surface, stats->time, error);
@@ -294,6 +296,10 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
                  took);
+    SingeStats stats = singe_sim_stats(run->sim);
+    console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
+                 1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
+                 stats.particles);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
     if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume goes on from here");
     return strcmp(record->result, "complete") == 0 ? EXIT_GOOD : EXIT_FAILED;

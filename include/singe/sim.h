@@ -139,6 +139,7 @@ typedef struct SingeStats {
     uint32_t inverted_cells;       ///< whose centre has crossed to the other side of its corners
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
+    double front_speed;            ///< m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly
 } SingeStats;
 
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);

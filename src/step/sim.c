@@ -109,7 +109,7 @@ void singe_sim_destroy(SingeSim *sim) {
     dynamics_plan_free(memory, sim->dynamics);
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
-    FREE(memory, sim->strain, sim->shell.springs[SINGE_BLUE].count);
+    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
     FREE(memory, sim->events.items, sim->events.capacity);
     memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
     state_free(memory, &sim->state);
@@ -182,7 +182,7 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
-    ok = ok && NEW(memory, sim->strain, shell->springs[SINGE_BLUE].count);
+    ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
     // a particle ignites once and opens at most one hole; a piece has at least one particle
     size_t events = 3 * (size_t)shell->particle_count;
     ok = ok && NEW(memory, sim->events.items, events);
@@ -201,7 +201,7 @@ static void sim_unbuild(SingeSim *sim) {
     sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
-    FREE(memory, sim->strain, sim->shell.springs[SINGE_BLUE].count);
+    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
     FREE(memory, sim->events.items, sim->events.capacity);
     memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
     state_free(memory, &sim->state);

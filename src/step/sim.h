@@ -38,7 +38,7 @@ struct SingeSim {
     AblatePlan *ablate;
     DynamicsPlan *dynamics;
     double *partial;      ///< [pool_blocks(particles)]
-    float *strain;        ///< [blue springs]
+    float *sample;        ///< [blue springs], at least as many as cells: of a statistic
 };
 
 /// Notes a failure in sim->error and returns it.

@@ -54,11 +54,36 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
         float strain = fabsf(vec_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
         sum += (double)strain;
         if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
-        sim->strain[n++] = strain;
+        sim->sample[n++] = strain;
     }
     if (n == 0) return;
     stats->strain_mean = sum / (double)n;
-    stats->strain_p99 = (double)stats_select(sim->strain, n, (size_t)(0.99 * (double)(n - 1)));
+    stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));
+}
+
+/// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its middle.
+static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
+    Vec p[4];
+    for (int i = 0; i < 4; i++) p[i] = vec_load(sim->shell.rest_position[corner[i]]);
+    Vec a = vec_scale(vec_sub(vec_add(p[1], p[2]), vec_add(p[0], p[3])), 0.5f);
+    Vec b = vec_scale(vec_sub(vec_add(p[2], p[3]), vec_add(p[0], p[1])), 0.5f);
+    float ta = 0.5f * (time[1] + time[2] - time[0] - time[3]), tb = 0.5f * (time[2] + time[3] - time[0] - time[1]);
+    float aa = vec_dot(a, a), ab = vec_dot(a, b), bb = vec_dot(b, b), area2 = aa * bb - ab * ab;
+    return area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
+}
+
+/// A front that passes at speed v ignites places a distance d apart d/v after each other.
+static double stats_front_speed(const SingeSim *sim) {
+    size_t n = 0;
+    for (uint32_t c = 0; c < sim->shell.cell_count; c++) {
+        const uint32_t *corner = sim->shell.cells[c];
+        float time[4];
+        bool ignited = true;
+        for (int i = 0; i < 4; i++) ignited &= (time[i] = sim->state.burn.time_ignited[corner[i]]) >= 0;
+        float slope2 = ignited ? stats_slope2(sim, corner, time) : 0;
+        if (slope2 > 0) sim->sample[n++] = 1 / (sqrtf(slope2) * sim->def.pace);
+    }
+    return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
 }
 
 static uint32_t stats_inverted(const SingeSim *sim) {
@@ -124,6 +149,7 @@ SingeStats singe_sim_stats(const SingeSim *sim) {
     stats_ledgers(sim, &stats);
     stats_strain(sim, &stats);
     stats.inverted_cells = stats_inverted(sim);
+    stats.front_speed = stats_front_speed(sim);
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
     return stats;
 }

@@ -125,9 +125,43 @@ static void heat_without_fire(void **state) {
     singe_sim_destroy(sim);
 }
 
+/// Office paper through all four stages: the front's speed, from the pattern of times and from two gates.
+static void a_front_runs_along_a_strip(void **state) {
+    (void)state;
+    const float size = 0.002f, length = 0.1f;
+    SingeSimDef def = singe_default_sim();
+    def.gravity[2] = 0;
+    def.pace = 4;
+    SingeSim *sim = test_sim(&def, test_grid(50, 4, size, size), NULL);
+    SingeSourceId spot = test_spot(sim, 0, 0.004f, 0, 0.006f, 1100, 200);
+    double gate[2] = {0, 0}; // s, when the middle line had ignited up to 40 % and 90 %
+    uint32_t hit[2] = {0, 0};
+    SingeView view = singe_sim_view(sim);
+    for (uint32_t i = 0; i < view.particle_count; i++)
+        for (int k = 0; k < 2; k++) {
+            float d[2] = {view.rest_position[i][0] - (k ? 0.9f : 0.4f) * length, view.rest_position[i][1] - 0.004f};
+            if (fabsf(d[0]) + fabsf(d[1]) < 1e-5f) hit[k] = i;
+        }
+    for (int step = 0; step < 480 * 6 && gate[1] == 0; step++) {
+        test_ok(sim, singe_sim_step(sim));
+        if (step == 240) test_ok(sim, singe_sim_remove_source(sim, spot));
+        view = singe_sim_view(sim);
+        for (int k = 0; k < 2; k++)
+            if (view.time_ignited[hit[k]] >= 0) gate[k] = (double)view.time_ignited[hit[k]];
+    }
+    assert_true(gate[1] > gate[0] && gate[0] > 0);
+    double speed = 0.5 * (double)length / ((gate[1] - gate[0]) * (double)def.pace);
+    double measured = singe_sim_stats(sim).front_speed;
+    print_message("front: %.2f mm/s between gates, %.2f mm/s by its times\n", 1e3 * speed, 1e3 * measured);
+    assert_true(fabs(measured / speed - 1) < 0.05);
+    assert_true(speed > 4.4e-3 && speed < 7.0e-3);
+    singe_sim_destroy(sim);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ledgers_close),
+        cmocka_unit_test(a_front_runs_along_a_strip),
         cmocka_unit_test(combustion_is_eta_times_mass),
         cmocka_unit_test(statistics_match_the_view),
         cmocka_unit_test(a_sheet_at_rest),

@@ -73,7 +73,7 @@ static void assert_same_stats(const SingeStats *a, const SingeStats *b) {
     SAME(mass), SAME(mass_initial), SAME(mass_burnt), SAME(mass_removed), SAME(burnt_fraction);
     SAME(temperature_max), SAME(heat_in), SAME(heat_lost), SAME(heat_of_combustion), SAME(heat_stored);
     SAME(ledger_error), SAME(mass_ledger_error), SAME(strain_mean), SAME(strain_p99), SAME(strain_max);
-    SAME(inverted_cells), SAME(speed_rms_unburnt), SAME(thickening);
+    SAME(inverted_cells), SAME(speed_rms_unburnt), SAME(thickening), SAME(front_speed);
 #undef SAME
 }
 
