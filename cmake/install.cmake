@@ -29,5 +29,9 @@ configure_file(cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/singe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 if(SINGE_PROGRAM)
+  if(BUILD_SHARED_LIBS) # the program finds the library beside it wherever both are moved
+    file(RELATIVE_PATH singe_bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
+    set_target_properties(singe_program PROPERTIES INSTALL_RPATH "$ORIGIN/${singe_bin_to_lib}")
+  endif()
   install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
