@@ -5,6 +5,14 @@ install(TARGETS singe EXPORT singeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(NOT BUILD_SHARED_LIBS AND CMAKE_OBJCOPY AND CMAKE_SYSTEM_NAME STREQUAL Linux AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  install(CODE "
+    set(singe_archive \"${CMAKE_INSTALL_LIBDIR}/libsinge.a\")
+    set(singe_cc \"${CMAKE_C_COMPILER}\")
+    set(singe_objcopy \"${CMAKE_OBJCOPY}\")
+    set(singe_ar \"${CMAKE_AR}\")")
+  install(SCRIPT cmake/localise.cmake)
+endif()
 set_target_properties(singe PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
@@ -29,5 +37,9 @@ configure_file(cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/singe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 if(SINGE_PROGRAM)
+  if(BUILD_SHARED_LIBS) # the program finds the library beside it wherever both are moved
+    file(RELATIVE_PATH singe_bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
+    set_target_properties(singe_program PROPERTIES INSTALL_RPATH "$ORIGIN/${singe_bin_to_lib}")
+  endif()
   install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

@@ -165,6 +165,7 @@ static void builder_report(Builder *builder, struct fy_diag *diag) {
 // libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
 static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     int line = 1, column = 1;
+    bool begins = true; // a line, as libfyaml counts them: behind a lone \r and behind a byte order mark too
     const unsigned char *c = (const unsigned char *)bytes, *end = c + size;
     while (c < end) {
         int more = *c < 0x80                 ? 0
@@ -180,11 +181,13 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
             builder_fail(builder, place, "this byte is not text; a scene is UTF-8 without control characters");
             return false;
         }
-        if (column == 1 && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
+        if (begins && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
             ScenePlace place = {builder->set ? 0 : line, builder->set ? 0 : column, builder->set};
             builder_fail(builder, place, "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
+        bool mark = c == (const unsigned char *)bytes && more == 2 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
+        begins = *c == '\n' || *c == '\r' || mark;
         column++;
         if (*c == '\n')
             line++, column = 1;

@@ -1,6 +1,10 @@
-/// Singe: the Defs that describe a simulation. Each has a `singe_default_...()` that fills it with
+/// Singe: the Defs that describe a simulation. Each has a `singe_default_...()` that returns it with
 /// values that work; change what you need and pass it on. The simulation copies everything it is
 /// given, so a Def and the arrays it points to may be freed after the call.
+///
+/// Behind each lies `singe_init_...(def, struct_size)`, for callers that cannot use an inline function.
+/// It fills `struct_size` bytes, which is the caller's sizeof, and no more: fields of a newer header
+/// than the library become 0. A Def inside another must hold its own struct_size before the call.
 #ifndef SINGE_TYPES_H
 #define SINGE_TYPES_H
 
@@ -121,8 +125,14 @@ typedef struct SingeMaterialDef {
     float damping;                         ///< 1/s, of all velocities, >= 0
 } SingeMaterialDef;
 
+SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);
+
 /// 80 g/m2 office paper at its real pace.
-SINGE_API SingeMaterialDef singe_default_material(void);
+static inline SingeMaterialDef singe_default_material(void) {
+    SingeMaterialDef def;
+    singe_init_material(&def, sizeof def);
+    return def;
+}
 
 /// A sheet: a quad mesh and its material. Cells are counter-clockwise seen from the front; the centre
 /// layer lies `thickness` from the corner layer, on the side of the normal (the front).
@@ -141,7 +151,14 @@ typedef struct SingeSheetDef {
     float drop_pieces_below;   ///< m2; loose pieces smaller than this vanish; 0 keeps all
 } SingeSheetDef;
 
-SINGE_API SingeSheetDef singe_default_sheet(void);
+SINGE_API void singe_init_sheet(SingeSheetDef *def, size_t struct_size);
+
+static inline SingeSheetDef singe_default_sheet(void) {
+    SingeSheetDef def;
+    def.material.struct_size = sizeof def.material;
+    singe_init_sheet(&def, sizeof def);
+    return def;
+}
 
 typedef enum SingeSourceKind {
     SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats what is near it
@@ -181,7 +198,13 @@ typedef struct SingeSourceDef {
     void *callback_context;
 } SingeSourceDef;
 
-SINGE_API SingeSourceDef singe_default_source(void);
+SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);
+
+static inline SingeSourceDef singe_default_source(void) {
+    SingeSourceDef def;
+    singe_init_source(&def, sizeof def);
+    return def;
+}
 
 typedef enum SingeColliderKind {
     SINGE_COLLIDER_PLANE = 0,   ///< through `position`, normal = local z
@@ -206,7 +229,13 @@ typedef struct SingeColliderDef {
     const SingePoseKey *path;
 } SingeColliderDef;
 
-SINGE_API SingeColliderDef singe_default_collider(void);
+SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);
+
+static inline SingeColliderDef singe_default_collider(void) {
+    SingeColliderDef def;
+    singe_init_collider(&def, sizeof def);
+    return def;
+}
 
 /// Holds particles of one sheet: those within `radius` of any of the points (rest position) and the
 /// listed vertices. They follow the path, taken relative to its pose at the time the pin is added.
@@ -222,7 +251,13 @@ typedef struct SingePinDef {
     const SingePoseKey *path;
 } SingePinDef;
 
-SINGE_API SingePinDef singe_default_pin(void);
+SINGE_API void singe_init_pin(SingePinDef *def, size_t struct_size);
+
+static inline SingePinDef singe_default_pin(void) {
+    SingePinDef def;
+    singe_init_pin(&def, sizeof def);
+    return def;
+}
 
 /// The air's motion: a mean and seeded gusts that vary over time and space.
 typedef struct SingeWindDef {
@@ -234,7 +269,13 @@ typedef struct SingeWindDef {
     uint32_t seed;
 } SingeWindDef;
 
-SINGE_API SingeWindDef singe_default_wind(void);
+SINGE_API void singe_init_wind(SingeWindDef *def, size_t struct_size);
+
+static inline SingeWindDef singe_default_wind(void) {
+    SingeWindDef def;
+    singe_init_wind(&def, sizeof def);
+    return def;
+}
 
 /// The strand projection (docs/equations.md).
 typedef struct SingeSolverDef {
@@ -248,7 +289,13 @@ typedef struct SingeSolverDef {
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
 } SingeSolverDef;
 
-SINGE_API SingeSolverDef singe_default_solver(void);
+SINGE_API void singe_init_solver(SingeSolverDef *def, size_t struct_size);
+
+static inline SingeSolverDef singe_default_solver(void) {
+    SingeSolverDef def;
+    singe_init_solver(&def, sizeof def);
+    return def;
+}
 
 /// A simulation.
 typedef struct SingeSimDef {
@@ -268,7 +315,15 @@ typedef struct SingeSimDef {
     SingeSolverDef solver;
 } SingeSimDef;
 
-SINGE_API SingeSimDef singe_default_sim(void);
+SINGE_API void singe_init_sim(SingeSimDef *def, size_t struct_size);
+
+static inline SingeSimDef singe_default_sim(void) {
+    SingeSimDef def;
+    def.wind.struct_size = sizeof def.wind;
+    def.solver.struct_size = sizeof def.solver;
+    singe_init_sim(&def, sizeof def);
+    return def;
+}
 
 #ifdef __cplusplus
 }

@@ -2,12 +2,13 @@
 #include "singe/types.h"
 
 #include <math.h>
+#include <string.h>
 
 SingeParam singe_param(float value) {
     return (SingeParam){.value = value, .to = value, .noise = {.scale = 0.01f, .octaves = 4}};
 }
 
-SingeMaterialDef singe_default_material(void) {
+static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
         .grammage = 0.080f,
@@ -41,11 +42,11 @@ SingeMaterialDef singe_default_material(void) {
     return def;
 }
 
-SingeSheetDef singe_default_sheet(void) {
-    return (SingeSheetDef){.struct_size = sizeof(SingeSheetDef), .material = singe_default_material()};
+static SingeSheetDef standard_sheet(void) {
+    return (SingeSheetDef){.struct_size = sizeof(SingeSheetDef), .material = standard_material()};
 }
 
-SingeSourceDef singe_default_source(void) {
+static SingeSourceDef standard_source(void) {
     return (SingeSourceDef){
         .struct_size = sizeof(SingeSourceDef),
         .kind = SINGE_SOURCE_SPOT,
@@ -62,7 +63,7 @@ SingeSourceDef singe_default_source(void) {
     };
 }
 
-SingeColliderDef singe_default_collider(void) {
+static SingeColliderDef standard_collider(void) {
     return (SingeColliderDef){
         .struct_size = sizeof(SingeColliderDef),
         .kind = SINGE_COLLIDER_PLANE,
@@ -76,13 +77,13 @@ SingeColliderDef singe_default_collider(void) {
     };
 }
 
-SingePinDef singe_default_pin(void) { return (SingePinDef){.struct_size = sizeof(SingePinDef), .radius = 0.005f}; }
+static SingePinDef standard_pin(void) { return (SingePinDef){.struct_size = sizeof(SingePinDef), .radius = 0.005f}; }
 
-SingeWindDef singe_default_wind(void) {
+static SingeWindDef standard_wind(void) {
     return (SingeWindDef){.struct_size = sizeof(SingeWindDef), .gust_time = 0.5f, .gust_size = 0.3f, .seed = 1};
 }
 
-SingeSolverDef singe_default_solver(void) {
+static SingeSolverDef standard_solver(void) {
     return (SingeSolverDef){
         .struct_size = sizeof(SingeSolverDef),
         .substeps = 3,
@@ -95,7 +96,7 @@ SingeSolverDef singe_default_solver(void) {
     };
 }
 
-SingeSimDef singe_default_sim(void) {
+static SingeSimDef standard_sim(void) {
     return (SingeSimDef){
         .struct_size = sizeof(SingeSimDef),
         .thread_count = 1,
@@ -106,7 +107,91 @@ SingeSimDef singe_default_sim(void) {
         .ambient_temperature = 293.15f,
         .air_density = 1.2f,
         .heat_tolerance = 1e-5f,
-        .wind = singe_default_wind(),
-        .solver = singe_default_solver(),
+        .wind = standard_wind(),
+        .solver = standard_solver(),
     };
+}
+
+/// Fills a caller's part of `size` bytes with ours of `known`; zero where it is longer.
+static void fill(void *part, size_t size, const void *standard, size_t known) {
+    memset(part, 0, size);
+    memcpy(part, standard, size < known ? size : known);
+}
+
+static void fill_def(void *def, size_t size, const void *standard, size_t known) {
+    if (size < sizeof size) return;
+    fill(def, size, standard, known);
+    memcpy(def, &size, sizeof size);
+}
+
+/// The size that a Def inside another holds, at most what is left.
+static size_t inner_size(const void *inner, size_t left) {
+    size_t size = 0;
+    if (left >= sizeof size) memcpy(&size, inner, sizeof size);
+    return size < left ? size : left;
+}
+
+void singe_init_material(SingeMaterialDef *def, size_t struct_size) {
+    const SingeMaterialDef standard = standard_material();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_source(SingeSourceDef *def, size_t struct_size) {
+    const SingeSourceDef standard = standard_source();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_collider(SingeColliderDef *def, size_t struct_size) {
+    const SingeColliderDef standard = standard_collider();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_pin(SingePinDef *def, size_t struct_size) {
+    const SingePinDef standard = standard_pin();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_wind(SingeWindDef *def, size_t struct_size) {
+    const SingeWindDef standard = standard_wind();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+void singe_init_solver(SingeSolverDef *def, size_t struct_size) {
+    const SingeSolverDef standard = standard_solver();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
+// The Defs inside these have grown by themselves: what comes after one is found by the size that the caller's
+// header gave it.
+
+void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
+    const SingeSheetDef standard = standard_sheet();
+    const size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
+    char *bytes = (char *)def;
+    if (struct_size <= head) {
+        fill_def(def, struct_size, &standard, head);
+        return;
+    }
+    size_t inner = inner_size(bytes + head, struct_size - head);
+    fill_def(def, head, &standard, head);
+    memcpy(def, &struct_size, sizeof struct_size);
+    fill_def(bytes + head, inner, &standard.material, sizeof standard.material);
+    fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail, sizeof standard - tail);
+}
+
+void singe_init_sim(SingeSimDef *def, size_t struct_size) {
+    const SingeSimDef standard = standard_sim();
+    const size_t head = offsetof(SingeSimDef, wind);
+    char *bytes = (char *)def;
+    if (struct_size <= head) {
+        fill_def(def, struct_size, &standard, head);
+        return;
+    }
+    size_t wind = inner_size(bytes + head, struct_size - head), left = struct_size - head - wind;
+    size_t solver = inner_size(bytes + head + wind, left);
+    fill_def(def, head, &standard, head);
+    memcpy(def, &struct_size, sizeof struct_size);
+    fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);
+    fill_def(bytes + head + wind, solver, &standard.solver, sizeof standard.solver);
+    memset(bytes + head + wind + solver, 0, left - solver);
 }

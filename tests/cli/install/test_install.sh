@@ -18,6 +18,12 @@ library=$(dirname "$(find "$work/prefix" -name 'libsinge.*' | head -n 1)")
 export LD_LIBRARY_PATH=$library
 [ "$("$work/build/consumer")" = "0.1.0 5" ]
 
+# a client may use any name that does not begin with singe_
+if [ "$(uname)" = Linux ] && [ -f "$library/libsinge.a" ]; then
+    strangers=$(nm -g --defined-only "$library/libsinge.a" | awk 'NF == 3 && $3 !~ /^singe_/ { print $3 }')
+    [ -z "$strangers" ] || { echo "global names: $strangers"; exit 1; }
+fi
+
 # moved elsewhere, it must still be found: the files hold no path of this machine
 mv "$work/prefix" "$work/moved"
 pc=$(dirname "$(find "$work/moved" -name singe.pc)")
