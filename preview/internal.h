@@ -78,6 +78,9 @@ struct Preview {
     float linear[256];         ///< sRGB byte to linear
     V3 blackbody[BLACKBODY_COUNT];
     V3 *picture;               ///< [height * width] radiance
+    V3 *table;                 ///< [height * width] albedo of the table, once `table_known`
+    bool table_known;
+    uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
     V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
     Scene scene;
     double time;
@@ -122,6 +125,8 @@ void tracer_free(Preview *preview);
 // embree.c
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
+/// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
+bool tracer_near(const Scene *scene, V3 origin, V3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
 /// blocked[i] tells of the lanes with valid = -1 whether anything, shapes included, is in the way. Changes `valid`.
@@ -130,6 +135,15 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, b
 // shape.c
 /// Distance to the shape in (near, far), or -1; *normal points outward.
 float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float near, float far, V3 *normal);
+
+/// Radius of a sphere about its position that holds the shape.
+float shape_extent(const PreviewShape *shape);
+
+// mask.c
+size_t mask_size(const Preview *preview);
+void mask_fill(Preview *preview);
+/// Whether a sheet or a shape may be seen in the block of this pixel.
+bool mask_covers(const Preview *preview, int x, int y);
 
 // light.c
 void light_gather(Preview *preview);
@@ -155,7 +169,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
 
 // shade_ground.c
-void ground_shade(const Preview *preview, float distance, Point *point);
+V3 ground_albedo(const Preview *preview, V3 direction, float distance);
+void ground_shade(const Preview *preview, float distance, V3 albedo, Point *point);
 V3 background_colour(const Preview *preview, V3 direction);
 void shape_shade(const Preview *preview, const PreviewShape *shape, Point *point);
 

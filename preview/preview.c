@@ -136,10 +136,12 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
     for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+    if (!preview->picture || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
@@ -200,6 +202,8 @@ void preview_destroy(Preview *preview) {
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->mask, mask_size(preview), 0);
     for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);
     preview_resize(&allocator, preview, sizeof *preview, 0);
 }
