@@ -42,10 +42,12 @@ typedef struct Texture {
     float texels_per_metre; ///< of level 0, measured on the surface
 } Texture;
 
-typedef struct EmberLight {
-    V3 position, strength; ///< radiance times area over 2 pi: divide by distance squared
-    float softness;        ///< m2, added to the distance squared
-} EmberLight;
+/// Point sources. Those beyond the count have softness 1 and are black.
+typedef struct EmberLights {
+    float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
+    float softness[LIGHT_LIMIT]; ///< m2, added to the distance squared
+    V3 strength[LIGHT_LIMIT];    ///< radiance times area over 2 pi: divide by distance squared
+} EmberLights;
 
 typedef struct Camera {
     V3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
@@ -61,7 +63,7 @@ typedef struct Scene {
     uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
     V3 low, high;    ///< bounds of the drawn triangles
     float epsilon;   ///< m, distance by which secondary rays leave a surface
-    EmberLight lights[LIGHT_LIMIT];
+    EmberLights lights;
     int light_count;
 } Scene;
 

@@ -19,7 +19,10 @@ static V3 reflect(const Point *point, V3 l) {
         V3 half = v3_unit(v3_add(l, point->view), point->normal);
         float aligned = v3_dot(half, point->normal);
         if (aligned < 0.6f) return out; // the lobe is dark there
-        float lobe = point->gloss * powf(aligned, point->shininess);
+        // aligned^shininess by (1 - x/8)^8, near enough to exp(-x)
+        float p = maxf(1 - (1 - aligned) * point->shininess * 0.125f, 0);
+        p *= p, p *= p;
+        float lobe = point->gloss * p * p;
         out = v3_add(out, v3(lobe, lobe, lobe));
     }
     return out;
@@ -75,29 +78,37 @@ static bool sky_may_be_hidden(const Preview *preview, V3 p, float reach) {
 }
 
 /// The sun is a disc: its rays spread by sun_spread of the way they go. The margin is a little more than that.
-static bool sun_may_be_hidden(const Preview *preview, V3 p) {
+static bool sun_may_be_hidden(const Preview *preview, V3 p, float margin) {
     const Scene *scene = &preview->scene;
     V3 sun = preview->sun;
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
-    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise)) return true;
+    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
         float along = v3_dot(to, sun), extent = shape_extent(&preview->shapes[k]);
         V3 aside = v3_mad(to, sun, -along);
-        float near = extent + spread * maxf(along + extent, 0);
-        if (along > -extent && v3_dot(aside, aside) < near * near) return true;
+        float near = extent + margin + spread * maxf(along + extent, 0);
+        if (along > -extent - margin && v3_dot(aside, aside) < near * near) return true;
     }
     return false;
 }
 
+/// A low sheet far away hides too little of the table's sky to be seen: under 2 % where its height is less than
+/// 0.28 of the distance.
+static float table_reach(const Scene *scene, V3 p) {
+    return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
+}
+
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
-    float reach = sky_reach(&preview->scene);
-    for (int i = 0; i < LANES; i++) {
-        if (!is_lit(block, active, i)) continue;
-        V3 p = block->point[i].position;
-        if (sky_may_be_hidden(preview, p, reach) || sun_may_be_hidden(preview, p)) return true;
-    }
-    return false;
+    int first = 0;
+    while (first < LANES && !is_lit(block, active, first)) first++;
+    if (first == LANES) return false;
+    V3 p = block->point[first].position;
+    float spread = 0;
+    for (int i = first + 1; i < LANES; i++)
+        if (is_lit(block, active, i)) spread = maxf(spread, v3_length(v3_sub(block->point[i].position, p)));
+    return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
+           sun_may_be_hidden(preview, p, spread);
 }
 
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample) {
@@ -132,14 +143,17 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 }
 
 V3 light_embers(const Scene *scene, const Point *point, int first, int stride) {
-    V3 sum = {0, 0, 0};
-    for (int k = first; k < scene->light_count; k += stride) {
-        const EmberLight *light = &scene->lights[k];
-        V3 to = v3_sub(light->position, point->position);
-        float d2 = v3_dot(to, to) + light->softness, cosine = v3_dot(point->normal, to) / sqrtf(d2);
+    const EmberLights *l = &scene->lights;
+    V3 p = point->position, n = point->normal;
+    float least = 0.3f * point->transmission, weight[LIGHT_LIMIT];
+    // by arrays: four lights at a time
+    for (int k = 0; k < LIGHT_LIMIT; k++) {
+        float x = l->x[k] - p.x, y = l->y[k] - p.y, z = l->z[k] - p.z;
+        float d2 = x * x + y * y + z * z + l->softness[k], cosine = (n.x * x + n.y * y + n.z * z) / sqrtf(d2);
         // wrapped: clusters have an extent that a point does not, and the sheet they lie in must be lit too
-        float wrapped = maxf((cosine + 0.25f) / 1.25f, 0.3f * point->transmission);
-        sum = v3_mad(sum, light->strength, wrapped / d2);
+        weight[k] = maxf((cosine + 0.25f) * 0.8f, least) / d2;
     }
+    V3 sum = {0, 0, 0};
+    for (int k = first; k < scene->light_count; k += stride) sum = v3_mad(sum, l->strength[k], weight[k]);
     return v3_scale(v3_mul(sum, point->albedo), (float)stride);
 }
