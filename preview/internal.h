@@ -73,6 +73,7 @@ struct Preview {
     RTCDevice device;
     Camera camera;
     V3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
+    V3 sun_light, sky_light;   ///< what white paper sends back of them
     float sun_spread;          ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
@@ -164,9 +165,11 @@ typedef struct PaperState {
 /// False where the burnt edge has a hole at the picture's scale.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 /// Width of the glowing line, m, and the share of burn around which it lies.
-#define EMBER_WIDTH 0.00065f
-#define EMBER_BURN 0.80f
-#define EMBER_GAIN 4.6f
+#define EMBER_WIDTH 0.00045f
+#define EMBER_BURN 0.74f
+#define EMBER_GAIN 3.0f
+/// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
+static inline float ember_temperature(float mean) { return mean + 110; }
 /// How readily a place glows, 0 to 1, by its rate of burning (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
 

@@ -53,7 +53,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
     int asked[LANES];
     for (int i = 0; i < LANES; i++) asked[i] = block->valid[i];
     tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
-    V3 sun = v3_load(preview->def.sun_colour);
+    V3 sun = preview->sun_light;
     for (int i = 0; i < LANES; i++)
         if (asked[i] && !block->blocked[i]) block->light[i] = v3_add(block->light[i], v3_mul(reflected[i], sun));
 }
@@ -129,7 +129,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
     }
     tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
     bool table = isfinite(def->ground_height);
-    V3 sky = v3_load(def->sky_colour), sun = v3_scale(v3_load(def->sun_colour), maxf(preview->sun.z, 0));
+    V3 sky = preview->sky_light, sun = v3_scale(preview->sun_light, maxf(preview->sun.z, 0));
     V3 bounce = table ? v3_mul(v3_load(def->ground_colour), v3_mad(sky, sun, 0.8f)) : v3_scale(sky, 0.5f);
     for (int i = 0; i < LANES; i++) {
         if (!is_lit(block, active, i)) continue;
