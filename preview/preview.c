@@ -156,7 +156,7 @@ static void aim(Preview *preview) {
     preview->sun = v3_unit(v3_load(preview->def.sun_direction), v3(0, 0, 1));
     v3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
     // exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8
-    const float speed = 0.42f;
+    const float speed = 0.45f;
     preview->sun_light = v3_scale(v3_load(preview->def.sun_colour), speed);
     preview->sky_light = v3_scale(v3_load(preview->def.sky_colour), speed);
     preview->sun_spread = tanf(preview->def.sun_angle);

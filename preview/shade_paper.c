@@ -4,7 +4,7 @@
 // b the share burnt, T the temperature, P the highest temperature so far and N noise of the rest position (it sticks
 // to the paper),
 //
-//     b' = b + |grad b| delta + floor,   delta = 1.5 N(4 mm) + 0.7 N(1.3 mm) + 0.3 N(0.45 mm)  in mm:
+//     b' = b + |grad b| delta + floor,   delta = 1.5 N(4 mm) + 0.7 N(1.3 mm) + 0.22 N(0.45 mm)  in mm:
 //
 // isolines move by delta whatever the front's width is, so they turn ragged and lose the grid. The colours then
 // follow b' and P', for paper that browned stays brown: white - yellow - tan - brown (420 to 620 K), char by b' > 0.1,
@@ -52,11 +52,11 @@ static Bent bend(const PaperState *state, float footprint) {
     bent.coarse = detail(bent.place, 4.0f, footprint, 1);
     bent.middle = detail(bent.place, 1.3f, footprint, 2);
     bent.fine = detail(bent.place, 0.45f, footprint, 3);
-    float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.middle + 0.3e-3f * bent.fine;
+    float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.middle + 0.22e-3f * bent.fine;
     float slope = minf(state->gradient, 400.0f);
     float inside = stepf(0.15f, 0.5f, state->burn);
     bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.middle + 0.03f * bent.fine);
-    float jitter = (0.16f * bent.coarse + 0.09f * bent.middle + 0.05f * bent.fine) * (1 - 0.6f * inside);
+    float jitter = (0.17f * bent.coarse + 0.08f * bent.middle + 0.025f * bent.fine) * (1 - 0.6f * inside);
     float peak = maxf(state->peak, state->temperature);
     // nothing where there was no heat to speak of
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
@@ -77,27 +77,43 @@ static float fibres(V3 place, float footprint) {
 
 /// Cracks between crazed scales, wider and narrower by turns. 1 in a crack.
 static float cracks(const Bent *bent, float millimetres, float width, float footprint) {
-    V3 p = v3_mad(bent->place, v3(bent->middle, bent->fine, bent->coarse), 0.35e-3f);
+    V3 p = v3_mad(bent->place, v3(bent->middle, bent->fine, bent->coarse), 0.5e-3f);
     float least = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
     float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->middle);
     return minf(1, open / least) * (1 - stepf(0.4f, 1, noise_walls(v3_scale(p, 1000 / millimetres), 13) / maxf(open, least)));
 }
 
-/// What is left when all that can burn has: grey, matt, thin; a felt of mineral fibres with cracks and sooty patches.
-/// False where a crack lets one see through.
+/// Tilts the normal by the gradient of noise of that size, as crumpling does.
+static void crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
+    height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
+    if (height < 0.02f) return;
+    V3 p = v3_scale(place, 1000 / millimetres);
+    V3 slope = noise3_gradient(p, noise3(p, seed), seed);
+    slope = v3_mad(slope, point->normal, -v3_dot(slope, point->normal));
+    V3 tilted = v3_unit(v3_mad(point->normal, slope, -height), point->normal);
+    if (v3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
+}
+
+/// What is left when all that can burn has: a thin felt of mineral fibres, sooty in patches and paler where it burnt
+/// through, crumpled, cracked and worn to lace. False where one sees through it.
 static bool ash(const Bent *bent, float ink, Point *point) {
     float hot = stepf(760, 1000, bent->temperature);
     float amount = stepf(0.78f, 0.92f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * hot);
     if (amount <= 0.01f) return true;
-    float crack = cracks(bent, 3.4f, 0.16f, point->footprint), fibre = fibres(bent->place, point->footprint);
-    if (crack * amount > 0.80f) return false;
-    float soot = stepf(0.05f, 0.75f, 0.55f * bent->middle - 0.5f * bent->coarse + 0.25f * bent->fine);
-    float value = 0.30f + 0.10f * bent->coarse + 0.07f * bent->middle + 0.07f * bent->fine + 0.15f * fibre;
-    value *= (1 - 0.62f * soot) * (1 - 0.35f * ink);
-    V3 grey = v3_scale(v3(1.0f, 0.975f, 0.94f), clampf(value, 0.035f, 0.6f));
-    point->albedo = v3_scale(v3_mix(point->albedo, grey, amount), 1 - 0.9f * crack * amount);
+    float crack = cracks(bent, 6.5f, 0.05f, point->footprint);
+    float lace = detail(bent->place, 2.3f, point->footprint, 15) + 0.65f * bent->fine - 0.35f * bent->coarse;
+    if (maxf(stepf(0.50f, 0.75f, lace), 0.9f * crack) * amount > 0.75f) return false;
+    float fibre = fibres(bent->place, point->footprint);
+    float pale = stepf(-0.75f, 0.65f, 0.7f * bent->coarse + 0.55f * bent->middle + 0.2f * bent->fine);
+    float value = 0.055f + 0.27f * pale * pale + (0.05f + 0.20f * pale) * fibre + 0.03f * bent->fine;
+    // the rims of holes burn palest
+    value += 0.12f * stepf(0.15f, 0.45f, lace);
+    V3 grey = v3_scale(v3(1.0f, 0.98f, 0.955f), clampf(value * (1 - 0.35f * ink), 0.03f, 0.55f));
+    point->albedo = v3_scale(v3_mix(point->albedo, grey, amount), 1 - 0.7f * crack * amount);
     point->gloss *= 1 - amount;
     point->transmission = mixf(point->transmission, 0.20f, amount);
+    crumple(bent->place, 3.6f, 0.30f * amount, 16, point);
+    crumple(bent->place, 1.3f, 0.16f * amount, 17, point);
     return true;
 }
 
@@ -108,32 +124,21 @@ static void ember(const Preview *preview, const PaperState *state, const Bent *b
     V3 drift = v3_add(v3_scale(bent->place, 230), v3(0.35f * time, -0.2f * time, 0.9f * time));
     float alive = stepf(-0.45f, 0.55f, noise3(drift, 21) + 0.40f * bent->middle + 0.2f * bent->fine);
     float distance = (bent->burn - EMBER_BURN) / maxf(state->gradient, 20.0f);
-    float width = EMBER_WIDTH * (0.40f + 0.9f * alive);
+    float width = EMBER_WIDTH * (0.55f + 0.65f * alive);
     // sharp towards the char, slower to die towards the ash
     if (distance > 0) width *= 1.6f;
     float x = distance / width, profile = expf(-x * x);
-    float temperature = ember_temperature(state->temperature) + 110 * (alive - 0.6f) + 60 * bent->fine;
+    float temperature = ember_temperature(state->temperature) + 190 * (alive - 0.62f) + 60 * bent->fine;
     V3 glow = blackbody_glow(preview->blackbody, temperature);
-    float strength = EMBER_GAIN * activity * profile * (0.05f + 0.95f * alive * alive) * (0.8f + 0.5f * bent->fine);
+    float strength = EMBER_GAIN * activity * profile * (0.16f + 0.84f * alive * alive) * (0.85f + 0.4f * bent->fine);
     // red-hot cracks in the char beside it
     float near = expf(-0.05f * x * x);
     if (near > 0.05f) strength += EMBER_GAIN * 0.10f * activity * alive * near * cracks(bent, 1.6f, 0.12f, point->footprint);
     point->emission = v3_scale(glow, maxf(strength, 0));
 }
 
-/// Char is crazed: tilt its normal by the gradient of fine noise.
-static void char_surface(const Bent *bent, float amount, Point *point) {
-    float visible = clampf(1.6f - point->footprint * 900, 0, 1) * amount;
-    if (visible < 0.02f) return;
-    V3 p = v3_scale(bent->place, 1100);
-    V3 slope = noise3_gradient(p, noise3(p, 31), 31);
-    slope = v3_mad(slope, point->normal, -v3_dot(slope, point->normal));
-    V3 tilted = v3_unit(v3_mad(point->normal, slope, -0.16f * visible), point->normal);
-    if (v3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
-}
-
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
-    V3 white = v3(0.855f, 0.835f, 0.79f), colour = {1, 1, 1};
+    V3 white = v3(0.86f, 0.852f, 0.832f), colour = {1, 1, 1};
     if (state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count) {
         const Texture *texture = preview->textures ? &preview->textures[state->sheet] : NULL;
         if (texture && texture->count)
@@ -160,7 +165,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     if (!touched) return true;
 
     Bent bent = bend(state, point->footprint);
-    float by_heat = 0.76f * stepf(385, 640, bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
+    float by_heat = 0.76f * stepf(335, 640, bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
     float scorch = 1 - (1 - by_heat) * (1 - by_burn);
     float ink = 1 - clampf(v3_luminance(point->albedo), 0, 1);
     V3 burnt = v3_mul(scorch_colour(scorch), v3_mix(point->albedo, v3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
@@ -168,7 +173,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     point->albedo = v3_mix(burnt, char_colour(&bent, ink), black);
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     point->gloss = 0.035f * black, point->shininess = 10;
-    char_surface(&bent, black, point);
+    crumple(bent.place, 0.9f, 0.16f * black, 31, point);
     if (!ash(&bent, stepf(0.45f, 0.8f, ink), point)) return false;
     ember(preview, state, &bent, point);
     return true;
