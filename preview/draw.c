@@ -40,33 +40,20 @@ static void start_point(Point *point, const Preview *preview, V3 direction, floa
     point->footprint = preview->camera.pixel * distance;
 }
 
-static V3 blend(const float *a, const float *b, const float *c, float u, float v) {
-    float w = 1 - u - v;
-    return v3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
-}
-
 /// The look of the sheet at a hit; false at a hole.
 static bool hit_paper(const Preview *preview, const struct RTCHit16 *hit, int lane, float distance, V3 direction,
                       Point *point) {
     const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
     const PaperVertex *vertices = preview->scene.vertices;
     const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
-    float u = hit->u[lane], v = hit->v[lane], w = 1 - u - v;
+    float u = hit->u[lane], v = hit->v[lane];
     start_point(point, preview, direction, distance);
     V3 geometric = v3_unit(v3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
-    V3 normal = v3_unit(blend(a->normal, b->normal, c->normal, u, v), geometric);
+    V3 normal = v3_unit(v3_blend(a->normal, b->normal, c->normal, u, v), geometric);
     point->geometric = v3_dot(geometric, point->view) >= 0 ? geometric : v3_scale(geometric, -1);
     point->normal = v3_dot(normal, point->geometric) >= 0 ? normal : v3_scale(normal, -1);
-    PaperState state = {
-        .rest = blend(a->rest, b->rest, c->rest, u, v),
-        .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
-        .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
-        .peak = w * a->peak + u * b->peak + v * c->peak,
-        .burn = w * a->burn + u * b->burn + v * c->burn,
-        .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
-        .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
-        .sheet = a->sheet,
-    };
+    PaperState state;
+    paper_state(&preview->scene, hit->primID[lane], u, v, &state);
     return paper_shade(preview, &state, point);
 }
 

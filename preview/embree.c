@@ -12,6 +12,26 @@ static SingeResult embree_check(const Preview *preview, SingeError *error) {
     return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
 }
 
+/// Lets shadow rays through the holes that the picture shows in a burnt sheet.
+static void pass_holes(const struct RTCFilterFunctionNArguments *arguments) {
+    const Preview *preview = arguments->geometryUserPtr;
+    const Scene *scene = &preview->scene;
+    float footprint = preview->camera.pixel * preview->camera.reach;
+    // fields of N each: the normal's three, u, v, triangle; the accessors of the header are C++ only
+    unsigned count = arguments->N;
+    const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
+    const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;
+    for (unsigned i = 0; i < count; i++) {
+        if (!arguments->valid[i]) continue;
+        const uint32_t *t = scene->triangles[triangle[i]];
+        const PaperVertex *vertices = scene->vertices;
+        if (maxf(vertices[t[0]].burn, maxf(vertices[t[1]].burn, vertices[t[2]].burn)) <= PAPER_WHOLE) continue;
+        PaperState state;
+        paper_state(scene, triangle[i], u[i], v[i], &state);
+        if (paper_is_hole(&state, footprint)) arguments->valid[i] = 0;
+    }
+}
+
 SingeResult tracer_build(Preview *preview, SingeError *error) {
     Scene *scene = &preview->scene;
     tracer_release(preview);
@@ -25,6 +45,8 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
                                    sizeof *scene->positions, scene->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
                                    sizeof *scene->triangles, scene->triangle_count);
+        rtcSetGeometryUserData(geometry, preview);
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(built, geometry);
         rtcCommitScene(built);

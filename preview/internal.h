@@ -21,7 +21,7 @@ enum {
 #define BLACKBODY_STEP 10.0f
 #define PI_F 3.14159265f
 
-/// What shading reads of a vertex: one cache line.
+/// What shading reads of a vertex.
 typedef struct PaperVertex {
     float normal[3];
     float rest[3];       ///< m
@@ -32,6 +32,7 @@ typedef struct PaperVertex {
     float burn_rate;     ///< 1/s
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
+    float rim;           ///< 1 on the border of a piece, 0 inside
     float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
 } PaperVertex;
 
@@ -159,10 +160,15 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
     V3 rest;
-    float uv[2], temperature, peak, burn, burn_rate, gradient;
+    float uv[2], temperature, peak, burn, burn_rate, gradient, rim;
     int32_t sheet;
 } PaperState;
-/// False where the burnt edge has a hole at the picture's scale.
+/// The sheet's fields at a place in a triangle.
+void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
+/// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
+bool paper_is_hole(const PaperState *state, float footprint);
+#define PAPER_WHOLE 0.35f
+/// False where there is a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 /// Width of the glowing line, m, and the share of burn around which it lies.
 #define EMBER_WIDTH 0.00045f

@@ -33,6 +33,23 @@ static V3 askew(V3 r) {
               -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
+void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
+    const uint32_t *t = scene->triangles[triangle];
+    const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
+    float w = 1 - u - v;
+    *state = (PaperState){
+        .rest = v3_blend(a->rest, b->rest, c->rest, u, v),
+        .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
+        .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
+        .peak = w * a->peak + u * b->peak + v * c->peak,
+        .burn = w * a->burn + u * b->burn + v * c->burn,
+        .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
+        .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
+        .rim = w * a->rim + u * b->rim + v * c->rim,
+        .sheet = a->sheet,
+    };
+}
+
 /// Noise whose features are `millimetres` wide, gone where a pixel no longer resolves it.
 static float detail(V3 rest, float millimetres, float footprint, uint32_t seed) {
     float visible = 1.6f - footprint * 1000 / millimetres * 0.8f;
@@ -94,27 +111,49 @@ static void crumple(V3 place, float millimetres, float height, uint32_t seed, Po
     if (v3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
+/// How far the paper is ash, 0 to 1.
+static float ash_amount(const Bent *bent) {
+    return stepf(0.78f, 0.92f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * stepf(760, 1000, bent->temperature));
+}
+
+/// Noise that wears ash to lace: holes above 0.7.
+static float lace(const Bent *bent, float footprint) {
+    return detail(bent->place, 2.3f, footprint, 15) + 0.65f * bent->fine - 0.35f * bent->coarse;
+}
+
+/// Burnt borders crumble, so that the cut's straight pieces turn ragged within a cell of the mesh, and ash wears.
+static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
+    float bite = 0.42f + 0.40f * bent->middle + 0.35f * bent->fine + 0.25f * bent->coarse;
+    float burnt = stepf(PAPER_WHOLE, 0.65f, state->burn);
+    if (burnt > 0 && state->rim > 1 - burnt * clampf(bite, 0, 0.85f)) return true;
+    return bent->burn > 0.7f && ash_amount(bent) * stepf(0.60f, 0.85f, lace(bent, footprint)) > 0.5f;
+}
+
+bool paper_is_hole(const PaperState *state, float footprint) {
+    if (state->burn <= PAPER_WHOLE) return false;
+    Bent bent = bend(state, footprint);
+    return is_hole(state, &bent, footprint);
+}
+
 /// What is left when all that can burn has: a thin felt of mineral fibres, sooty in patches and paler where it burnt
-/// through, crumpled, cracked and worn to lace. False where one sees through it.
-static bool ash(const Bent *bent, float ink, Point *point) {
-    float hot = stepf(760, 1000, bent->temperature);
-    float amount = stepf(0.78f, 0.92f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * hot);
-    if (amount <= 0.01f) return true;
-    float crack = cracks(bent, 6.5f, 0.05f, point->footprint);
-    float lace = detail(bent->place, 2.3f, point->footprint, 15) + 0.65f * bent->fine - 0.35f * bent->coarse;
-    if (maxf(stepf(0.50f, 0.75f, lace), 0.9f * crack) * amount > 0.75f) return false;
-    float fibre = fibres(bent->place, point->footprint);
-    float pale = stepf(-0.75f, 0.65f, 0.7f * bent->coarse + 0.55f * bent->middle + 0.2f * bent->fine);
-    float value = 0.055f + 0.27f * pale * pale + (0.05f + 0.20f * pale) * fibre + 0.03f * bent->fine;
+/// through, creased and cracked.
+static void ash(const Bent *bent, float ink, Point *point) {
+    float amount = ash_amount(bent);
+    if (amount <= 0.01f) return;
+    float crack = cracks(bent, 6.5f, 0.06f, point->footprint), fibre = fibres(bent->place, point->footprint);
+    float crease = ridge(detail(v3_mad(bent->place, v3(bent->middle, bent->coarse, bent->fine), 0.6e-3f), 3.1f,
+                                point->footprint, 14),
+                         0.20f);
+    float pale = stepf(-0.9f, 0.8f, 0.8f * bent->coarse + 0.35f * bent->middle);
+    float value = 0.075f + 0.17f * pale + (0.05f + 0.13f * pale) * fibre + 0.09f * crease + 0.035f * bent->fine;
     // the rims of holes burn palest
-    value += 0.12f * stepf(0.15f, 0.45f, lace);
+    value += 0.10f * stepf(0.25f, 0.6f, lace(bent, point->footprint));
     V3 grey = v3_scale(v3(1.0f, 0.98f, 0.955f), clampf(value * (1 - 0.35f * ink), 0.03f, 0.55f));
-    point->albedo = v3_scale(v3_mix(point->albedo, grey, amount), 1 - 0.7f * crack * amount);
+    point->albedo = v3_scale(v3_mix(point->albedo, grey, amount), 1 - 0.75f * crack * amount);
     point->gloss *= 1 - amount;
     point->transmission = mixf(point->transmission, 0.20f, amount);
-    crumple(bent->place, 3.6f, 0.30f * amount, 16, point);
-    crumple(bent->place, 1.3f, 0.16f * amount, 17, point);
-    return true;
+    crumple(bent->place, 4.2f, 0.18f * amount, 16, point);
+    crumple(bent->place, 1.3f, 0.07f * amount, 17, point);
 }
 
 static void ember(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
@@ -165,6 +204,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     if (!touched) return true;
 
     Bent bent = bend(state, point->footprint);
+    if (is_hole(state, &bent, point->footprint)) return false;
     float by_heat = 0.76f * stepf(335, 640, bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
     float scorch = 1 - (1 - by_heat) * (1 - by_burn);
     float ink = 1 - clampf(v3_luminance(point->albedo), 0, 1);
@@ -174,7 +214,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     point->gloss = 0.035f * black, point->shininess = 10;
     crumple(bent.place, 0.9f, 0.16f * black, 31, point);
-    if (!ash(&bent, stepf(0.45f, 0.8f, ink), point)) return false;
+    ash(&bent, stepf(0.45f, 0.8f, ink), point);
     ember(preview, state, &bent, point);
     return true;
 }
