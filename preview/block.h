@@ -26,6 +26,9 @@ static inline void aim_ray(struct RTCRay16 *ray, int lane, V3 origin, V3 directi
 static inline void rest_ray(struct RTCRay16 *ray, int lane) { aim_ray(ray, lane, v3(0, 0, 0), v3(0, 0, 1), 0, -1); }
 
 
+/// Instead of a sample's number: the middle of the sun and an open sky, for where nothing can hide them.
+enum { SAMPLE_MIDDLE = -1 };
+
 // lighting.c
 /// Adds the light of the sun and the sky that reaches the eye from block->point, by one ray each.
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample);

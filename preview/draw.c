@@ -141,7 +141,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         float l = v3_luminance(colour), shown = l / (1 + l);
         block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
         if (point->lit && preview->scene.light_count)
-            colour = v3_add(colour, light_embers(&preview->scene, point, sample % stride, stride));
+            colour = v3_add(colour, light_embers(&preview->scene, point, stride > 1 ? sample % stride : 0, stride));
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = v3_add(block->sum[i], colour);
@@ -179,25 +179,39 @@ static void start_block(const Preview *preview, Block *block, int *active) {
     }
 }
 
-static void draw_block(Preview *preview, Block *block) {
-    int active[LANES], more[LANES], samples = preview->def.samples, first = samples;
-    int stride = samples % 4 == 0 ? 4 : 1;
+/// The picture gets the mean of what was summed.
+static void write_block(Preview *preview, const Block *block, const int *active, const int *taken) {
+    for (int i = 0; i < LANES; i++)
+        if (active[i])
+            preview->picture[pixel_index(preview, block, i)] = v3_scale(block->sum[i], 1 / (float)taken[i]);
+}
+
+/// Takes half of the samples of every pixel and the rest of those that need it.
+static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
+    int more[LANES], samples = preview->def.samples, first = samples, stride = samples % 4 == 0 ? 4 : 1;
     if (samples > 4) first = (samples / 2 + 3) / 4 * 4;
+    for (int s = 0; s < first; s++) add_sample(preview, block, active, bare, s, stride);
+    bool on = first < samples && find_restless(block, active, more);
+    for (int s = first; s < samples && on; s++) add_sample(preview, block, more, bare, s, stride);
+    for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+}
+
+static void draw_block(Preview *preview, Block *block) {
+    int active[LANES], taken[LANES];
     start_block(preview, block, active);
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
         aim_block(preview, block, (const float[2]){0, 0});
         for (int i = 0; i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
-        if (!light_may_be_hidden(preview, block, active)) samples = first = stride = 1;
     }
-    for (int s = 0; s < first; s++) add_sample(preview, block, active, bare, s, stride);
-    bool on = first < samples && find_restless(block, active, more);
-    for (int s = first; s < samples && on; s++) add_sample(preview, block, more, bare, s, stride);
-    for (int i = 0; i < LANES; i++)
-        if (active[i])
-            preview->picture[pixel_index(preview, block, i)] =
-                v3_scale(block->sum[i], 1 / (float)(on && more[i] ? samples : first));
+    if (bare && !light_may_be_hidden(preview, block, active)) {
+        add_light(preview, block, active, SAMPLE_MIDDLE, 1);
+        for (int i = 0; i < LANES; i++) taken[i] = 1;
+    } else {
+        add_samples(preview, block, active, bare, taken);
+    }
+    write_block(preview, block, active, taken);
 }
 
 /// The table's own colour in every pixel. The camera stands still, so it is found once.

@@ -28,7 +28,8 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float area = 0.5f * v3_length(v3_cross(v3_sub(pb, pa), v3_sub(pc, pa)));
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
-    V3 radiance = v3_scale(blackbody_glow(preview->blackbody, ember_temperature(temperature)), 0.4f * EMBER_GAIN * ember_activity(rate));
+    V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
+    V3 radiance = v3_scale(glow, 0.4f * EMBER_GAIN * ember_activity(rate));
     V3 strength = v3_scale(radiance, area * share / (2 * PI_F));
     float weight = v3_luminance(strength);
     if (!(weight > 0)) return;

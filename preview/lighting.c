@@ -39,8 +39,8 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         rest_ray(&block->shadow, i);
         if (!is_lit(block, active, i)) continue;
         const Point *point = &block->point[i];
-        float square[2], disc[2];
-        sample_square((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
+        float square[2] = {0, 0}, disc[2];
+        if (sample != SAMPLE_MIDDLE) sample_square((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
         sample_disc(square, disc);
         V3 l = v3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
         l = v3_unit(v3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
@@ -119,7 +119,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         rest_ray(&block->shadow, i);
         if (!is_lit(block, active, i)) continue;
         const Point *point = &block->point[i];
-        if (!sky_may_be_hidden(preview, point->position, reach)) continue;
+        if (sample == SAMPLE_MIDDLE || !sky_may_be_hidden(preview, point->position, reach)) continue;
         float square[2];
         sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
         V3 d = sample_cosine(point->normal, square);

@@ -141,7 +141,8 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+    if (!preview->picture || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
+        (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {

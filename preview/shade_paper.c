@@ -36,7 +36,7 @@ static V3 askew(V3 r) {
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
     const uint32_t *t = scene->triangles[triangle];
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
-    float w = 1 - u - v;
+    float w = 1 - u - v, least = minf(a->rim, minf(b->rim, c->rim));
     *state = (PaperState){
         .rest = v3_blend(a->rest, b->rest, c->rest, u, v),
         .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
@@ -45,7 +45,8 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .burn = w * a->burn + u * b->burn + v * c->burn,
         .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
         .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
-        .rim = w * a->rim + u * b->rim + v * c->rim,
+        // a triangle with no corner inside tells nothing of the distance: a strip or a crumb, which is to stay
+        .rim = least > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
         .sheet = a->sheet,
     };
 }
@@ -97,7 +98,8 @@ static float cracks(const Bent *bent, float millimetres, float width, float foot
     V3 p = v3_mad(bent->place, v3(bent->middle, bent->fine, bent->coarse), 0.5e-3f);
     float least = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
     float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->middle);
-    return minf(1, open / least) * (1 - stepf(0.4f, 1, noise_walls(v3_scale(p, 1000 / millimetres), 13) / maxf(open, least)));
+    float wall = noise_walls(v3_scale(p, 1000 / millimetres), 13);
+    return minf(1, open / least) * (1 - stepf(0.4f, 1, wall / maxf(open, least)));
 }
 
 /// Tilts the normal by the gradient of noise of that size, as crumpling does.
@@ -171,8 +173,8 @@ static void ember(const Preview *preview, const PaperState *state, const Bent *b
     V3 glow = blackbody_glow(preview->blackbody, temperature);
     float strength = EMBER_GAIN * activity * profile * (0.16f + 0.84f * alive * alive) * (0.85f + 0.4f * bent->fine);
     // red-hot cracks in the char beside it
-    float near = expf(-0.05f * x * x);
-    if (near > 0.05f) strength += EMBER_GAIN * 0.10f * activity * alive * near * cracks(bent, 1.6f, 0.12f, point->footprint);
+    float near = 0.10f * activity * alive * expf(-0.05f * x * x);
+    if (near > 0.003f) strength += EMBER_GAIN * near * cracks(bent, 1.6f, 0.12f, point->footprint);
     point->emission = v3_scale(glow, maxf(strength, 0));
 }
 
@@ -194,8 +196,8 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
 /// Char: dark, browner where it is thin; print stays readable on it, as a dull grey.
 static V3 char_colour(const Bent *bent, float ink) {
     float value = 1 + 0.45f * bent->middle + 0.35f * bent->fine + 0.3f * bent->coarse;
-    V3 soot = v3_scale(v3_mix(v3(0.026f, 0.019f, 0.015f), v3(0.017f, 0.016f, 0.0155f), stepf(0.25f, 0.6f, bent->burn)), value);
-    return v3_mad(soot, v3(0.026f, 0.026f, 0.028f), stepf(0.45f, 0.8f, ink));
+    V3 soot = v3_mix(v3(0.026f, 0.019f, 0.015f), v3(0.017f, 0.016f, 0.0155f), stepf(0.25f, 0.6f, bent->burn));
+    return v3_mad(v3_scale(soot, value), v3(0.026f, 0.026f, 0.028f), stepf(0.45f, 0.8f, ink));
 }
 
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {
