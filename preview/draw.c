@@ -1,8 +1,8 @@
 // One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
 //
 // A sample is: the nearest surface; its look; light = sun (a ray to a random point of its disc) + sky and bounce
-// (one ambient-occlusion ray) + embers (point sources); see lighting.c. Pixels whose first half of samples agree
-// stop there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing is
+// (one ambient-occlusion ray) + embers (point sources); see lighting.c. Pixels whose first samples agree stop
+// there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing is
 // intersected, and where no shadow can fall one sample is enough.
 // Everything random comes from the pixel's place and the sample's number, so threads do not matter.
 
@@ -164,7 +164,7 @@ static int find_restless(const Block *block, const int *active, int *more) {
     for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
     int count = 0;
     for (int i = 0; i < LANES; i++) {
-        bool calm = block->high[i] - block->low[i] < 0.02f && high - low < 0.25f;
+        bool calm = block->high[i] - block->low[i] < 0.02f && high - low < 0.15f;
         more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
     }
     return count;
@@ -186,10 +186,10 @@ static void write_block(Preview *preview, const Block *block, const int *active,
             preview->picture[pixel_index(preview, block, i)] = v3_scale(block->sum[i], 1 / (float)taken[i]);
 }
 
-/// Takes half of the samples of every pixel and the rest of those that need it.
+/// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = samples, stride = samples % 4 == 0 ? 4 : 1;
-    if (samples > 4) first = (samples / 2 + 3) / 4 * 4;
+    if (samples > 4) first = (samples / 4 + 3) / 4 * 4;
     for (int s = 0; s < first; s++) add_sample(preview, block, active, bare, s, stride);
     bool on = first < samples && find_restless(block, active, more);
     for (int s = first; s < samples && on; s++) add_sample(preview, block, more, bare, s, stride);
