@@ -12,6 +12,26 @@ static SingeResult embree_check(const Preview *preview, SingeError *error) {
     return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
 }
 
+/// Lets shadow rays through the holes that the picture shows in a burnt sheet.
+static void pass_holes(const struct RTCFilterFunctionNArguments *arguments) {
+    const Preview *preview = arguments->geometryUserPtr;
+    const Scene *scene = &preview->scene;
+    float footprint = preview->camera.pixel * preview->camera.reach;
+    // fields of N each: the normal's three, u, v, triangle; the accessors of the header are C++ only
+    unsigned count = arguments->N;
+    const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
+    const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;
+    for (unsigned i = 0; i < count; i++) {
+        if (!arguments->valid[i]) continue;
+        const uint32_t *t = scene->triangles[triangle[i]];
+        const PaperVertex *vertices = scene->vertices;
+        if (maxf(vertices[t[0]].burn, maxf(vertices[t[1]].burn, vertices[t[2]].burn)) <= PAPER_WHOLE) continue;
+        PaperState state;
+        paper_state(scene, triangle[i], u[i], v[i], &state);
+        if (paper_is_hole(&state, footprint)) arguments->valid[i] = 0;
+    }
+}
+
 SingeResult tracer_build(Preview *preview, SingeError *error) {
     Scene *scene = &preview->scene;
     tracer_release(preview);
@@ -25,6 +45,8 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
                                    sizeof *scene->positions, scene->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
                                    sizeof *scene->triangles, scene->triangle_count);
+        rtcSetGeometryUserData(geometry, preview);
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(built, geometry);
         rtcCommitScene(built);
@@ -48,12 +70,11 @@ void tracer_release(Preview *preview) {
 /// 1 / x, large but finite at 0 so that no 0 times infinity follows.
 static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
 
-/// Whether the ray meets the surface's bounds before `far`.
-static bool near_surface(const Scene *scene, V3 o, V3 d, float far) {
+bool tracer_near(const Scene *scene, V3 o, V3 d, float far, float margin) {
     float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
-    float x0 = (scene->low.x - o.x) * ix, x1 = (scene->high.x - o.x) * ix;
-    float y0 = (scene->low.y - o.y) * iy, y1 = (scene->high.y - o.y) * iy;
-    float z0 = (scene->low.z - o.z) * iz, z1 = (scene->high.z - o.z) * iz;
+    float x0 = (scene->low.x - margin - o.x) * ix, x1 = (scene->high.x + margin - o.x) * ix;
+    float y0 = (scene->low.y - margin - o.y) * iy, y1 = (scene->high.y + margin - o.y) * iy;
+    float z0 = (scene->low.z - margin - o.z) * iz, z1 = (scene->high.z + margin - o.z) * iz;
     float enter = maxf(maxf(minf(x0, x1), minf(y0, y1)), maxf(minf(z0, z1), 0));
     float leave = minf(minf(maxf(x0, x1), maxf(y0, y1)), minf(maxf(z0, z1), far));
     return !(enter > leave);
@@ -69,8 +90,8 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
         rays->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         wanted[i] = valid[i];
         if (wanted[i] && scene->embree)
-            wanted[i] = -near_surface(scene, v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
-                                      v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i]);
+            wanted[i] = -tracer_near(scene, v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
+                                      v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
         count += wanted[i] != 0;
     }
     if (!scene->embree || !count) return;
@@ -95,7 +116,7 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, bo
         if (!valid[i]) continue;
         V3 o = v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
         blocked[i] = shape_blocks(preview, o, d, ray->tfar[i]);
-        if (blocked[i] || !scene->embree || !near_surface(scene, o, d, ray->tfar[i])) valid[i] = 0;
+        if (blocked[i] || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }
     if (!count) return;

@@ -21,7 +21,7 @@ enum {
 #define BLACKBODY_STEP 10.0f
 #define PI_F 3.14159265f
 
-/// What shading reads of a vertex: one cache line.
+/// What shading reads of a vertex.
 typedef struct PaperVertex {
     float normal[3];
     float rest[3];       ///< m
@@ -32,6 +32,7 @@ typedef struct PaperVertex {
     float burn_rate;     ///< 1/s
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
+    float rim;           ///< 1 on the border of a piece, 0 inside
     float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
 } PaperVertex;
 
@@ -42,10 +43,12 @@ typedef struct Texture {
     float texels_per_metre; ///< of level 0, measured on the surface
 } Texture;
 
-typedef struct EmberLight {
-    V3 position, strength; ///< radiance times area over 2 pi: divide by distance squared
-    float softness;        ///< m2, added to the distance squared
-} EmberLight;
+/// Point sources. Those beyond the count have softness 1 and are black.
+typedef struct EmberLights {
+    float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
+    float softness[LIGHT_LIMIT]; ///< m2, added to the distance squared
+    V3 strength[LIGHT_LIMIT];    ///< radiance times area over 2 pi: divide by distance squared
+} EmberLights;
 
 typedef struct Camera {
     V3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
@@ -61,7 +64,7 @@ typedef struct Scene {
     uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
     V3 low, high;    ///< bounds of the drawn triangles
     float epsilon;   ///< m, distance by which secondary rays leave a surface
-    EmberLight lights[LIGHT_LIMIT];
+    EmberLights lights;
     int light_count;
 } Scene;
 
@@ -71,6 +74,7 @@ struct Preview {
     RTCDevice device;
     Camera camera;
     V3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
+    V3 sun_light, sky_light;   ///< what white paper sends back of them
     float sun_spread;          ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
@@ -78,6 +82,9 @@ struct Preview {
     float linear[256];         ///< sRGB byte to linear
     V3 blackbody[BLACKBODY_COUNT];
     V3 *picture;               ///< [height * width] radiance
+    V3 *table;                 ///< [height * width] albedo of the table, once `table_known`
+    bool table_known;
+    uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
     V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
     Scene scene;
     double time;
@@ -122,6 +129,8 @@ void tracer_free(Preview *preview);
 // embree.c
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
+/// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
+bool tracer_near(const Scene *scene, V3 origin, V3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
 /// blocked[i] tells of the lanes with valid = -1 whether anything, shapes included, is in the way. Changes `valid`.
@@ -130,6 +139,15 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, b
 // shape.c
 /// Distance to the shape in (near, far), or -1; *normal points outward.
 float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float near, float far, V3 *normal);
+
+/// Radius of a sphere about its position that holds the shape.
+float shape_extent(const PreviewShape *shape);
+
+// mask.c
+size_t mask_size(const Preview *preview);
+void mask_fill(Preview *preview);
+/// Whether a sheet or a shape may be seen in the block of this pixel.
+bool mask_covers(const Preview *preview, int x, int y);
 
 // light.c
 void light_gather(Preview *preview);
@@ -142,20 +160,28 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
     V3 rest;
-    float uv[2], temperature, peak, burn, burn_rate, gradient;
+    float uv[2], temperature, peak, burn, burn_rate, gradient, rim;
     int32_t sheet;
 } PaperState;
-/// False where the burnt edge has a hole at the picture's scale.
+/// The sheet's fields at a place in a triangle.
+void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
+/// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
+bool paper_is_hole(const PaperState *state, float footprint);
+#define PAPER_WHOLE 0.35f
+/// False where there is a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 /// Width of the glowing line, m, and the share of burn around which it lies.
-#define EMBER_WIDTH 0.00065f
-#define EMBER_BURN 0.80f
-#define EMBER_GAIN 4.6f
+#define EMBER_WIDTH 0.00045f
+#define EMBER_BURN 0.74f
+#define EMBER_GAIN 3.0f
+/// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
+static inline float ember_temperature(float mean) { return mean + 110; }
 /// How readily a place glows, 0 to 1, by its rate of burning (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
 
 // shade_ground.c
-void ground_shade(const Preview *preview, float distance, Point *point);
+V3 ground_albedo(const Preview *preview, V3 direction, float distance);
+void ground_shade(const Preview *preview, float distance, V3 albedo, Point *point);
 V3 background_colour(const Preview *preview, V3 direction);
 void shape_shade(const Preview *preview, const PreviewShape *shape, Point *point);
 

@@ -28,7 +28,8 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float area = 0.5f * v3_length(v3_cross(v3_sub(pb, pa), v3_sub(pc, pa)));
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
-    V3 radiance = v3_scale(blackbody_glow(preview->blackbody, temperature), 0.4f * EMBER_GAIN * ember_activity(rate));
+    V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
+    V3 radiance = v3_scale(glow, 0.4f * EMBER_GAIN * ember_activity(rate));
     V3 strength = v3_scale(radiance, area * share / (2 * PI_F));
     float weight = v3_luminance(strength);
     if (!(weight > 0)) return;
@@ -43,6 +44,13 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     cluster->weight += weight;
 }
 
+static void add_light(Scene *scene, V3 place, V3 strength, float softness) {
+    EmberLights *lights = &scene->lights;
+    int k = scene->light_count++;
+    lights->x[k] = place.x, lights->y[k] = place.y, lights->z[k] = place.z;
+    lights->strength[k] = strength, lights->softness[k] = softness;
+}
+
 static void add_shapes(Preview *preview) {
     Scene *scene = &preview->scene;
     for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
@@ -51,7 +59,7 @@ static void add_shapes(Preview *preview) {
         float r = shape->kind == SINGE_COLLIDER_BOX ? v3_length(v3_load(shape->half_size)) * 0.6f : shape->radius;
         V3 glow = blackbody_glow(preview->blackbody, shape->temperature);
         V3 place = v3_load(shape->position);
-        scene->lights[scene->light_count++] = (EmberLight){place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r};
+        add_light(scene, place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r);
     }
 }
 
@@ -59,6 +67,8 @@ void light_gather(Preview *preview) {
     Scene *scene = &preview->scene;
     Cluster clusters[GRID * GRID * GRID] = {{{0, 0, 0}, {0, 0, 0}, 0}};
     scene->light_count = 0;
+    scene->lights = (EmberLights){{0}, {0}, {0}, {0}, {{0, 0, 0}}};
+    for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
     add_shapes(preview);
     for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], clusters);
     float total = 0, kept = 0;
@@ -72,10 +82,10 @@ void light_gather(Preview *preview) {
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
         V3 place = v3_scale(cluster->place, 1 / cluster->weight);
-        scene->lights[scene->light_count++] = (EmberLight){place, cluster->strength, softness};
+        add_light(scene, place, cluster->strength, softness);
         kept += cluster->weight;
         cluster->weight = 0;
     }
     for (int i = first; i < scene->light_count && kept > 0; i++)
-        scene->lights[i].strength = v3_scale(scene->lights[i].strength, total / kept);
+        scene->lights.strength[i] = v3_scale(scene->lights.strength[i], total / kept);
 }

@@ -59,4 +59,22 @@ static inline V3 noise3_gradient(V3 p, float n, uint32_t seed) {
               (noise3(v3(p.x, p.y, p.z + e), seed) - n) / e);
 }
 
+/// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice
+/// (Worley 1996): 0 on the walls between their regions, about 0.5 in the middles.
+static inline float noise_walls(V3 p, uint32_t seed) {
+    float fx, fy, fz, first = 9, second = 9;
+    uint32_t ix = (uint32_t)noise_floor(p.x, &fx), iy = (uint32_t)noise_floor(p.y, &fy);
+    uint32_t iz = (uint32_t)noise_floor(p.z, &fz);
+    for (int k = 0; k < 27; k++) {
+        int dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
+        uint32_t h = ((ix + (uint32_t)dx) * 0x8da6b343u) ^ ((iy + (uint32_t)dy) * 0xd8163841u) ^
+                     ((iz + (uint32_t)dz) * 0xcb1ab31fu) ^ (seed * 0x165667b1u);
+        h = hash_u32(h);
+        float x = (float)dx + (float)(h & 1023) / 1024 - fx, y = (float)dy + (float)(h >> 10 & 1023) / 1024 - fy;
+        float z = (float)dz + (float)(h >> 20 & 1023) / 1024 - fz, d2 = x * x + y * y + z * z;
+        second = minf(second, maxf(first, d2)), first = minf(first, d2);
+    }
+    return sqrtf(second) - sqrtf(first);
+}
+
 #endif

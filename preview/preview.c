@@ -32,7 +32,7 @@ PreviewDef preview_default(void) {
         .width = 960, .height = 540, .samples = 8, .thread_count = 1,
         .camera = {.eye = {0, -0.42f, 0.34f}, .target = {0, -0.01f, 0}, .up = {0, 0, 1}, .fov = 0.6f},
         .sun_direction = {-0.55f, 0.45f, 0.62f}, .sun_angle = 0.045f,
-        .sun_colour = {1.16f, 1.04f, 0.88f}, .sky_colour = {0.25f, 0.285f, 0.34f},
+        .sun_colour = {2.2f, 2.05f, 1.85f}, .sky_colour = {0.4f, 0.45f, 0.53f},
         .ground_height = 0, .ground_colour = {0.235f, 0.145f, 0.085f}, .background = {0.16f, 0.15f, 0.145f},
         .exposure = 1,
     };
@@ -136,10 +136,13 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
     for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
+    if (!preview->picture || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
+        (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {
@@ -153,6 +156,10 @@ static void aim(Preview *preview) {
     preview->camera = camera_make(&preview->def);
     preview->sun = v3_unit(v3_load(preview->def.sun_direction), v3(0, 0, 1));
     v3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    // exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8
+    const float speed = 0.45f;
+    preview->sun_light = v3_scale(v3_load(preview->def.sun_colour), speed);
+    preview->sky_light = v3_scale(v3_load(preview->def.sky_colour), speed);
     preview->sun_spread = tanf(preview->def.sun_angle);
     tonemap_fill_linear(preview->linear);
     blackbody_fill(preview->blackbody);
@@ -200,6 +207,8 @@ void preview_destroy(Preview *preview) {
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->mask, mask_size(preview), 0);
     for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);
     preview_resize(&allocator, preview, sizeof *preview, 0);
 }

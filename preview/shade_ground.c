@@ -35,15 +35,24 @@ V3 background_colour(const Preview *preview, V3 direction) {
     return v3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
-void ground_shade(const Preview *preview, float distance, Point *point) {
+/// A pixel's size on the table: the mean of along and across.
+static float footprint(const Preview *preview, float distance, float cosine) {
+    return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
+}
+
+V3 ground_albedo(const Preview *preview, V3 direction, float distance) {
+    V3 p = v3_mad(preview->camera.eye, direction, distance);
+    return v3_mul(v3_load(preview->def.ground_colour),
+                  wood(preview, p.x, p.y, footprint(preview, distance, direction.z)));
+}
+
+void ground_shade(const Preview *preview, float distance, V3 albedo, Point *point) {
     float cosine = maxf(fabsf(point->view.z), 0.02f);
-    point->footprint = preview->camera.pixel * distance / sqrtf(cosine);
+    point->footprint = footprint(preview, distance, cosine);
     float far = distance / (9 * preview->camera.reach);
     point->fade = 1 - expf(-far * far * far);
     point->normal = point->geometric = v3(0, 0, point->view.z >= 0 ? 1.0f : -1.0f);
-    V3 grain = wood(preview, point->position.x, point->position.y, point->footprint);
-    point->albedo = v3_mul(v3_load(preview->def.ground_colour), grain);
-    point->transmission = 0;
+    point->albedo = albedo;
     point->gloss = 0.045f, point->shininess = 26;
     // a waxed table mirrors a little of the sky at grazing angles (Schlick)
     float grazing = 1 - cosine, mirror = 0.22f * grazing * grazing * grazing * grazing * grazing;

@@ -76,3 +76,8 @@ float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float 
     if (t > 0) *normal = v3_rotate(shape->rotation, n, 1);
     return t;
 }
+
+float shape_extent(const PreviewShape *shape) {
+    if (shape->kind == SINGE_COLLIDER_BOX) return v3_length(v3_load(shape->half_size));
+    return shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
+}

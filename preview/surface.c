@@ -2,6 +2,7 @@
 //
 // The gradient of burn in rest space is constant on a triangle: with edges e1, e2, N = e1 x e2,
 // grad b = [(b1 - b0) e2 x N + (b2 - b0) N x e1] / |N|^2; a vertex takes the mean by area of its triangles'.
+// Where the angles of a vertex's triangles in rest space fall short of 2 pi, it lies on the border of a piece.
 
 #include "preview/internal.h"
 
@@ -69,6 +70,16 @@ static void add_gradient(Scene *scene, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++) {
         v[k]->slope[0] += area * g.x, v[k]->slope[1] += area * g.y, v[k]->slope[2] += area * g.z;
         v[k]->gradient += area;
+    }
+}
+
+/// Adds the triangle's angles to its corners' `rim`.
+static void add_angles(Scene *scene, const uint32_t t[3]) {
+    for (int k = 0; k < 3; k++) {
+        PaperVertex *v = &scene->vertices[t[k]];
+        V3 a = v3_sub(v3_load(scene->vertices[t[(k + 1) % 3]].rest), v3_load(v->rest));
+        V3 b = v3_sub(v3_load(scene->vertices[t[(k + 2) % 3]].rest), v3_load(v->rest));
+        v->rim += atan2f(v3_length(v3_cross(a, b)), v3_dot(a, b));
     }
 }
 
@@ -147,11 +158,13 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         uint32_t *kept = scene->triangles[scene->triangle_count++];
         for (int k = 0; k < 3; k++) kept[k] = surface->triangles[t][k];
         add_gradient(scene, kept);
+        add_angles(scene, kept);
     }
     scene->vertex_count = surface->vertex_count;
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         PaperVertex *v = &scene->vertices[i];
         v->gradient = v->gradient > 0 ? v3_length(v3_load(v->slope)) / v->gradient : 0;
+        v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);
         // no triangle of the scene uses these; the builder still reads them
         float *p = scene->positions[i];
         if (!near_enough(p)) p[0] = p[1] = p[2] = 0;

@@ -1,15 +1,17 @@
 // Radiance to bytes.
 //
-// Film curve y = x (a x + b) / (x (c x + d) + 1), fitted to: slope 0.6 at black (a short toe), 0.18 -> 0.165,
-// white paper in the sun 0.85 -> 0.73 (0.87 in sRGB), 2 -> 0.95, and a / c = 1.02 so that it reaches 1.
+// Film curve: linear but for a short toe, f = x (1 - 0.4 exp(-x / 0.06)), and a shoulder above s = 0.6,
+// s + (1 - s) (1 - exp(-(f - s) / (1 - s))). White paper in the sun, 0.8, comes to 0.76 (0.89 in sRGB), and the
+// slope there is still 0.6, so that its wrinkles show.
 // Before it, each channel leaks a little into the others, as film does: what is very bright grows pale.
 // Then IEC 61966-2-1 and one level of triangular dither.
 
 #include "preview/internal.h"
 
 static float film(float x) {
-    const float a = 2.682f, b = 0.6f, c = 2.6294f, d = 0.5333f;
-    return clampf(x * (a * x + b) / (x * (c * x + d) + 1), 0, 1);
+    const float shoulder = 0.6f, rest = 1 - shoulder;
+    float f = x * (1 - 0.4f * expf(-x / 0.06f));
+    return f < shoulder ? f : shoulder + rest * (1 - expf((shoulder - f) / rest));
 }
 
 static float encode(float linear) {
@@ -29,6 +31,7 @@ static uint8_t quantise(float s, uint32_t key) {
 }
 
 enum { CURVE_COUNT = 4096 };
+#define LEAK 0.03f
 
 /// The curve and the encoding as one table over sqrt(x / CURVE_MAX): film() is slow and smooth.
 #define CURVE_MAX 16.0f
@@ -48,10 +51,10 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; i < count; i++) {
         V3 c = v3_scale(preview->picture[i], preview->def.exposure);
-        float leak = 0.045f * (c.x + c.y + c.z) / 3;
+        float leak = LEAK * (c.x + c.y + c.z) / 3;
         uint32_t key = (uint32_t)i * 3u + preview->def.seed * 0x9e3779b1u;
-        rgb[3 * i] = quantise(look_up(curve, 0.955f * c.x + leak), key);
-        rgb[3 * i + 1] = quantise(look_up(curve, 0.955f * c.y + leak), key + 1);
-        rgb[3 * i + 2] = quantise(look_up(curve, 0.955f * c.z + leak), key + 2);
+        rgb[3 * i] = quantise(look_up(curve, (1 - LEAK) * c.x + leak), key);
+        rgb[3 * i + 1] = quantise(look_up(curve, (1 - LEAK) * c.y + leak), key + 1);
+        rgb[3 * i + 2] = quantise(look_up(curve, (1 - LEAK) * c.z + leak), key + 2);
     }
 }

@@ -16,6 +16,11 @@ static inline V3 v3_scale(V3 a, float s) { return (V3){a.x * s, a.y * s, a.z * s
 /// a + b s
 static inline V3 v3_mad(V3 a, V3 b, float s) { return (V3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
 static inline V3 v3_mix(V3 a, V3 b, float s) { return v3_mad(a, v3_sub(b, a), s); }
+/// (1 - u - v) a + u b + v c
+static inline V3 v3_blend(const float *a, const float *b, const float *c, float u, float v) {
+    float w = 1 - u - v;
+    return v3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
+}
 static inline float v3_dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline V3 v3_cross(V3 a, V3 b) {
     return (V3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

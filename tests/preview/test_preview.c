@@ -1,71 +1,11 @@
 // Pictures of synthetic sheets: what is where, what is refused, and that threads and memory do not matter.
 
-#include "preview/preview.h"
+#include "fixture.h"
 #include "synthetic.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
-
-enum { W = 96, H = 64, BYTES = W * H * 3 };
-
-static PreviewDef small(void) {
-    PreviewDef def = preview_default();
-    def.width = W, def.height = H, def.samples = 8;
-    return def;
-}
-
-/// A camera straight above the origin: the middle of the picture is the origin, x to the right.
-static PreviewDef above(void) {
-    PreviewDef def = small();
-    def.camera = (PreviewCamera){.eye = {0, 0, 0.5f}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fov = 0.7f};
-    def.sun_direction[0] = 0, def.sun_direction[1] = 0.3f, def.sun_direction[2] = 1;
-    return def;
-}
-
-static void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
-    Preview *preview = NULL;
-    SingeError error = {0};
-    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
-    assert_int_equal(preview_draw(preview, surface, time, rgb, &error), SINGE_OK);
-    preview_destroy(preview);
-}
-
-static const uint8_t *pixel(const uint8_t *rgb, int x, int y) { return rgb + 3 * (y * W + x); }
-
-static float mean(const uint8_t *rgb, int channel) {
-    float sum = 0;
-    for (int i = 0; i < W * H; i++) sum += rgb[3 * i + channel];
-    return sum / (W * H);
-}
-
-/// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
-typedef struct Quad {
-    float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], peak[4], burn[4], rate[4];
-    int32_t sheet[4];
-    uint32_t triangles[2][3];
-    SingeSurface surface;
-} Quad;
-
-static void quad_make(Quad *q, float half, float z) {
-    memset(q, 0, sizeof *q);
-    for (int i = 0; i < 4; i++) {
-        float x = i == 1 || i == 2 ? half : -half, y = i >= 2 ? half : -half;
-        q->position[i][0] = q->rest[i][0] = x, q->position[i][1] = q->rest[i][1] = y, q->position[i][2] = z;
-        q->normal[i][2] = 1, q->uv[i][0] = x > 0, q->uv[i][1] = y > 0, q->temperature[i] = q->peak[i] = 293;
-    }
-    const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
-    memcpy(q->triangles, triangles, sizeof triangles);
-    q->surface = (SingeSurface){
-        .vertex_count = 4, .triangle_count = 2, .position = q->position, .normal = q->normal, .uv = q->uv,
-        .rest_position = q->rest, .temperature = q->temperature, .temperature_peak = q->peak,
-        .burn = q->burn, .burn_rate = q->rate,
-        .sheet = q->sheet, .triangles = q->triangles};
-}
 
 static void test_threads(void **state) {
     (void)state;
@@ -108,6 +48,30 @@ static void test_repeatable(void **state) {
     synthetic_free(&burning), synthetic_free(&cold);
 }
 
+/// What a preview keeps between frames (the table, the mask, the shapes) must not show in the next.
+static void test_same_after_others(void **state) {
+    (void)state;
+    SingeSurface burning, hanging, nothing = {0};
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 20, 0.05f, &burning));
+    assert_true(synthetic_make(SYNTHETIC_HANGING, 20, 0.05f, &hanging));
+    static uint8_t alone[BYTES], after[BYTES];
+    PreviewDef def = small();
+    draw(&def, &burning, 2, alone);
+    Preview *preview = NULL;
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0.05f, 0, 0.03f}, .radius = 0.03f,
+                         .temperature = 1200};
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    assert_int_equal(preview_set_shapes(preview, &ball, 1, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &hanging, 1, after, NULL), SINGE_OK);
+    assert_memory_not_equal(alone, after, BYTES);
+    assert_int_equal(preview_set_shapes(preview, NULL, 0, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &nothing, 7, after, NULL), SINGE_OK);
+    assert_int_equal(preview_draw(preview, &burning, 2, after, NULL), SINGE_OK);
+    assert_memory_equal(alone, after, BYTES);
+    preview_destroy(preview);
+    synthetic_free(&burning), synthetic_free(&hanging);
+}
+
 static void test_empty_surface(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
@@ -122,22 +86,6 @@ static void test_empty_surface(void **state) {
     p = pixel(rgb, W / 2, H / 2);
     assert_in_range(p[0], 60, 130); // the background: 0.16 of grey
     assert_true(abs(p[0] - p[2]) < 12);
-}
-
-static void test_white_paper(void **state) {
-    (void)state;
-    static uint8_t rgb[BYTES];
-    Quad q;
-    quad_make(&q, 0.1f, 0.01f);
-    PreviewDef def = above(); // no sheets, no pictures: white
-    draw(&def, &q.surface, 0, rgb);
-    for (int y = H / 2 - 8; y < H / 2 + 8; y++)
-        for (int x = W / 2 - 8; x < W / 2 + 8; x++) {
-            const uint8_t *p = pixel(rgb, x, y);
-            assert_in_range(p[0], 215, 252);
-            assert_in_range(p[1], 210, 252);
-            assert_in_range(p[2], 195, 250);
-        }
 }
 
 /// Left half red, right half blue, top row darker: uv and rows must be the right way round.
@@ -164,47 +112,6 @@ static void test_picture(void **state) {
     for (int i = 0; i < 4; i++) q.sheet[i] = 7 - 9 * (i & 1); // sheets that do not exist: white
     draw(&def, &q.surface, 0, rgb);
     assert_in_range(pixel(rgb, W / 2 - 14, H / 2 - 14)[1], 210, 252);
-}
-
-static void test_states(void **state) {
-    (void)state;
-    static uint8_t rgb[BYTES];
-    Quad q;
-    PreviewDef def = above();
-    float fresh, brown, black;
-    quad_make(&q, 0.1f, 0.01f);
-    draw(&def, &q.surface, 0, rgb);
-    fresh = pixel(rgb, W / 2, H / 2)[1];
-    for (int i = 0; i < 4; i++) q.temperature[i] = 520;
-    draw(&def, &q.surface, 0, rgb);
-    const uint8_t *p = pixel(rgb, W / 2, H / 2);
-    brown = p[1];
-    assert_true(p[0] > p[1] + 15 && p[1] > p[2] + 10);
-    for (int i = 0; i < 4; i++) q.temperature[i] = 400, q.burn[i] = 0.5f;
-    draw(&def, &q.surface, 0, rgb);
-    black = pixel(rgb, W / 2, H / 2)[1];
-    assert_true(fresh > brown + 30 && brown > black + 40 && black < 80);
-}
-
-/// Only where it is hot *and* burning does the char glow.
-static void test_ember(void **state) {
-    (void)state;
-    static uint8_t rgb[BYTES];
-    Quad q;
-    PreviewDef def = above();
-    quad_make(&q, 0.1f, 0.01f);
-    def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
-    for (int i = 0; i < 4; i++) q.burn[i] = 0.7f + 0.2f * (float)(i == 1 || i == 2), q.temperature[i] = 1100;
-    draw(&def, &q.surface, 0, rgb);
-    float idle = mean(rgb, 0);
-    for (int i = 0; i < 4; i++) q.rate[i] = 1;
-    draw(&def, &q.surface, 0, rgb);
-    float burning = mean(rgb, 0), burning_blue = mean(rgb, 2);
-    for (int i = 0; i < 4; i++) q.temperature[i] = 600;
-    draw(&def, &q.surface, 0, rgb);
-    assert_true(burning > idle + 1.5f);
-    assert_true(burning - mean(rgb, 0) > 1.5f);
-    assert_true(burning > burning_blue);
 }
 
 static void test_shapes(void **state) {
@@ -474,8 +381,8 @@ static void test_set_shapes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads), cmocka_unit_test(test_repeatable), cmocka_unit_test(test_empty_surface),
-        cmocka_unit_test(test_white_paper), cmocka_unit_test(test_picture), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_ember), cmocka_unit_test(test_shapes), cmocka_unit_test(test_hot_ball),
+        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_hot_ball),
         cmocka_unit_test(test_shadow), cmocka_unit_test(test_bad_vertices), cmocka_unit_test(test_bad_surface),
         cmocka_unit_test(test_bad_defs), cmocka_unit_test(test_odd_sizes), cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_set_shapes),

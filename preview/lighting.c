@@ -1,0 +1,159 @@
+// The light at the points that a block of rays sees. Radiance of a diffuse surface of albedo a:
+//
+//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (sky (1 + n_z)/2 + bounce (1 - n_z)/2) A + embers ]
+//
+// with V, A the visibilities and tau the paper's transmission; V by a ray to a random point of the sun's disc, A by
+// an ambient-occlusion ray.
+
+#include "preview/block.h"
+
+static const float occluded_sky = 0.22f; ///< light that still comes from where the sky is hidden
+
+/// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
+static V3 reflect(const Point *point, V3 l) {
+    float cosine = v3_dot(point->normal, l), side = v3_dot(point->geometric, l);
+    if (side <= 0) return v3_scale(point->albedo, point->transmission * maxf(-cosine, 0));
+    if (cosine <= 0) return v3(0, 0, 0);
+    V3 out = v3_scale(point->albedo, cosine);
+    if (point->gloss > 0) {
+        V3 half = v3_unit(v3_add(l, point->view), point->normal);
+        float aligned = v3_dot(half, point->normal);
+        if (aligned < 0.6f) return out; // the lobe is dark there
+        // aligned^shininess by (1 - x/8)^8, near enough to exp(-x)
+        float p = maxf(1 - (1 - aligned) * point->shininess * 0.125f, 0);
+        p *= p, p *= p;
+        float lobe = point->gloss * p * p;
+        out = v3_add(out, v3(lobe, lobe, lobe));
+    }
+    return out;
+}
+
+static bool is_lit(const Block *block, const int *active, int lane) {
+    return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
+}
+
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample) {
+    V3 reflected[LANES];
+    for (int i = 0; i < LANES; i++) {
+        block->valid[i] = 0;
+        rest_ray(&block->shadow, i);
+        if (!is_lit(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        float square[2] = {0, 0}, disc[2];
+        if (sample != SAMPLE_MIDDLE) sample_square((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
+        sample_disc(square, disc);
+        V3 l = v3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
+        l = v3_unit(v3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
+        reflected[i] = reflect(point, l);
+        if (reflected[i].x + reflected[i].y + reflected[i].z < 1e-4f) continue;
+        float side = v3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
+        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, side), l, 0, INFINITY);
+        block->valid[i] = -1;
+    }
+    int asked[LANES];
+    for (int i = 0; i < LANES; i++) asked[i] = block->valid[i];
+    tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
+    V3 sun = preview->sun_light;
+    for (int i = 0; i < LANES; i++)
+        if (asked[i] && !block->blocked[i]) block->light[i] = v3_add(block->light[i], v3_mul(reflected[i], sun));
+}
+
+/// Whether the point is nearer than `reach` to the surface's bounds.
+static bool within(const Scene *scene, V3 p, float reach) {
+    return p.x > scene->low.x - reach && p.x < scene->high.x + reach && p.y > scene->low.y - reach &&
+           p.y < scene->high.y + reach && p.z > scene->low.z - reach && p.z < scene->high.z + reach;
+}
+
+/// Length of the rays that ask how much of the sky is hidden.
+static float sky_reach(const Scene *scene) { return 0.28f * v3_length(v3_sub(scene->high, scene->low)) + 0.01f; }
+
+static bool sky_may_be_hidden(const Preview *preview, V3 p, float reach) {
+    if (within(&preview->scene, p, reach)) return true;
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        float near = shape_extent(&preview->shapes[k]) + reach;
+        V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
+        if (v3_dot(to, to) < near * near) return true;
+    }
+    return false;
+}
+
+/// The sun is a disc: its rays spread by sun_spread of the way they go. The margin is a little more than that.
+static bool sun_may_be_hidden(const Preview *preview, V3 p, float margin) {
+    const Scene *scene = &preview->scene;
+    V3 sun = preview->sun;
+    float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
+    if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
+        float along = v3_dot(to, sun), extent = shape_extent(&preview->shapes[k]);
+        V3 aside = v3_mad(to, sun, -along);
+        float near = extent + margin + spread * maxf(along + extent, 0);
+        if (along > -extent - margin && v3_dot(aside, aside) < near * near) return true;
+    }
+    return false;
+}
+
+/// A low sheet far away hides too little of the table's sky to be seen: under 2 % where its height is less than
+/// 0.28 of the distance.
+static float table_reach(const Scene *scene, V3 p) {
+    return minf(sky_reach(scene), 3.5f * maxf(scene->high.z - p.z, 0));
+}
+
+bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
+    int first = 0;
+    while (first < LANES && !is_lit(block, active, first)) first++;
+    if (first == LANES) return false;
+    V3 p = block->point[first].position;
+    float spread = 0;
+    for (int i = first + 1; i < LANES; i++)
+        if (is_lit(block, active, i)) spread = maxf(spread, v3_length(v3_sub(block->point[i].position, p)));
+    return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
+           sun_may_be_hidden(preview, p, spread);
+}
+
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample) {
+    const PreviewDef *def = &preview->def;
+    float reach = sky_reach(&preview->scene);
+    for (int i = 0; i < LANES; i++) {
+        block->valid[i] = 0;
+        rest_ray(&block->shadow, i);
+        if (!is_lit(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        if (sample == SAMPLE_MIDDLE || !sky_may_be_hidden(preview, point->position, reach)) continue;
+        float square[2];
+        sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
+        V3 d = sample_cosine(point->normal, square);
+        if (v3_dot(d, point->geometric) <= 0.01f) continue;
+        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, preview->scene.epsilon), d, 0, reach);
+        block->valid[i] = -1;
+    }
+    tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
+    bool table = isfinite(def->ground_height);
+    V3 sky = preview->sky_light, sun = v3_scale(preview->sun_light, maxf(preview->sun.z, 0));
+    V3 bounce = table ? v3_mul(v3_load(def->ground_colour), v3_mad(sky, sun, 0.8f)) : v3_scale(sky, 0.5f);
+    for (int i = 0; i < LANES; i++) {
+        if (!is_lit(block, active, i)) continue;
+        const Point *point = &block->point[i];
+        float open = block->blocked[i] ? occluded_sky : 1;
+        V3 ambient = v3_mix(bounce, sky, 0.5f + 0.5f * point->normal.z);
+        // thin paper also passes some of what falls on its other side
+        ambient = v3_mad(ambient, v3_mix(sky, bounce, 0.5f + 0.5f * point->normal.z), point->transmission);
+        block->light[i] = v3_mad(block->light[i], v3_mul(point->albedo, ambient), open);
+    }
+}
+
+V3 light_embers(const Scene *scene, const Point *point, int first, int stride) {
+    const EmberLights *l = &scene->lights;
+    V3 p = point->position, n = point->normal;
+    float least = 0.3f * point->transmission, weight[LIGHT_LIMIT];
+    // by arrays: four lights at a time
+    for (int k = 0; k < LIGHT_LIMIT; k++) {
+        float x = l->x[k] - p.x, y = l->y[k] - p.y, z = l->z[k] - p.z;
+        float d2 = x * x + y * y + z * z + l->softness[k], cosine = (n.x * x + n.y * y + n.z * z) / sqrtf(d2);
+        // wrapped: clusters have an extent that a point does not, and the sheet they lie in must be lit too
+        weight[k] = maxf((cosine + 0.25f) * 0.8f, least) / d2;
+    }
+    V3 sum = {0, 0, 0};
+    for (int k = first; k < scene->light_count; k += stride) sum = v3_mad(sum, l->strength[k], weight[k]);
+    return v3_scale(v3_mul(sum, point->albedo), (float)stride);
+}

@@ -1,0 +1,69 @@
+// Which blocks of the picture a sheet or a shape may touch: the rest needs no rays from the camera.
+//
+// A triangle marks the rectangle around its three corners in the picture, a shape that of the sphere around it,
+// widened by the reach of a pixel's samples. What reaches behind the camera marks everything.
+
+#include "preview/internal.h"
+
+#include <string.h>
+
+typedef struct Rectangle { float low[2], high[2]; } Rectangle;
+
+static const Rectangle nowhere = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+static const Rectangle everywhere = {{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
+
+static int blocks_across(const Preview *preview) { return (preview->def.width + BLOCK - 1) / BLOCK; }
+static int blocks_down(const Preview *preview) { return (preview->def.height + BLOCK - 1) / BLOCK; }
+
+size_t mask_size(const Preview *preview) { return (size_t)blocks_across(preview) * (size_t)blocks_down(preview); }
+
+/// Widens the rectangle, in pixels, to hold a point. Behind the camera or too near to it: everything.
+static void include(const Preview *preview, V3 p, Rectangle *r) {
+    const Camera *camera = &preview->camera;
+    V3 d = v3_sub(p, camera->eye);
+    float depth = v3_dot(d, camera->forward);
+    if (!(depth > 1e-3f * camera->reach)) {
+        *r = everywhere;
+        return;
+    }
+    float x = v3_dot(d, camera->right) / (v3_dot(camera->right, camera->right) * depth);
+    float y = v3_dot(d, camera->up) / (v3_dot(camera->up, camera->up) * depth);
+    float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
+    for (int c = 0; c < 2; c++) r->low[c] = minf(r->low[c], at[c]), r->high[c] = maxf(r->high[c], at[c]);
+}
+
+static void mark(Preview *preview, const Rectangle *r) {
+    const float reach = 1.5f; // pixels; a sample lies up to 0.9 from the middle of its pixel
+    int across = blocks_across(preview), down = blocks_down(preview);
+    int x0 = (int)clampf((r->low[0] - reach) / BLOCK, 0, (float)across);
+    int y0 = (int)clampf((r->low[1] - reach) / BLOCK, 0, (float)down);
+    int x1 = (int)clampf((r->high[0] + reach) / BLOCK, -1, (float)(across - 1));
+    int y1 = (int)clampf((r->high[1] + reach) / BLOCK, -1, (float)(down - 1));
+    for (int y = y0; y <= y1; y++)
+        for (int x = x0; x <= x1; x++) preview->mask[(size_t)y * (size_t)across + (size_t)x] = 1;
+}
+
+void mask_fill(Preview *preview) {
+    const Scene *scene = &preview->scene;
+    memset(preview->mask, 0, mask_size(preview));
+    for (uint32_t t = 0; t < scene->triangle_count; t++) {
+        Rectangle r = nowhere;
+        for (int k = 0; k < 3; k++) include(preview, v3_load(scene->positions[scene->triangles[t][k]]), &r);
+        mark(preview, &r);
+    }
+    for (uint32_t k = 0; k < preview->shape_count; k++) {
+        V3 centre = v3_load(preview->shapes[k].position);
+        float extent = shape_extent(&preview->shapes[k]);
+        Rectangle r = nowhere;
+        for (int corner = 0; corner < 8; corner++)
+            include(preview,
+                    v3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
+                       centre.z + (corner & 4 ? extent : -extent)),
+                    &r);
+        mark(preview, &r);
+    }
+}
+
+bool mask_covers(const Preview *preview, int x, int y) {
+    return preview->mask[(size_t)(y / BLOCK) * (size_t)blocks_across(preview) + (size_t)(x / BLOCK)] != 0;
+}

@@ -1,0 +1,70 @@
+// What the tests of the preview share: a small picture from above, and a quad of paper.
+#ifndef TESTS_PREVIEW_FIXTURE_H
+#define TESTS_PREVIEW_FIXTURE_H
+
+#include "preview/preview.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { W = 96, H = 64, BYTES = W * H * 3 };
+
+static inline PreviewDef small(void) {
+    PreviewDef def = preview_default();
+    def.width = W, def.height = H, def.samples = 8;
+    return def;
+}
+
+/// A camera straight above the origin: the middle of the picture is the origin, x to the right.
+static inline PreviewDef above(void) {
+    PreviewDef def = small();
+    def.camera = (PreviewCamera){.eye = {0, 0, 0.5f}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fov = 0.7f};
+    def.sun_direction[0] = 0, def.sun_direction[1] = 0.3f, def.sun_direction[2] = 1;
+    return def;
+}
+
+static inline void draw(const PreviewDef *def, const SingeSurface *surface, double time, uint8_t *rgb) {
+    Preview *preview = NULL;
+    SingeError error = {0};
+    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_draw(preview, surface, time, rgb, &error), SINGE_OK);
+    preview_destroy(preview);
+}
+
+static inline const uint8_t *pixel(const uint8_t *rgb, int x, int y) { return rgb + 3 * (y * W + x); }
+
+static inline float mean(const uint8_t *rgb, int channel) {
+    float sum = 0;
+    for (int i = 0; i < W * H; i++) sum += rgb[3 * i + channel];
+    return sum / (W * H);
+}
+
+/// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
+typedef struct Quad {
+    float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], peak[4], burn[4], rate[4];
+    int32_t sheet[4];
+    uint32_t triangles[2][3];
+    SingeSurface surface;
+} Quad;
+
+static inline void quad_make(Quad *q, float half, float z) {
+    memset(q, 0, sizeof *q);
+    for (int i = 0; i < 4; i++) {
+        float x = i == 1 || i == 2 ? half : -half, y = i >= 2 ? half : -half;
+        q->position[i][0] = q->rest[i][0] = x, q->position[i][1] = q->rest[i][1] = y, q->position[i][2] = z;
+        q->normal[i][2] = 1, q->uv[i][0] = x > 0, q->uv[i][1] = y > 0, q->temperature[i] = q->peak[i] = 293;
+    }
+    const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    memcpy(q->triangles, triangles, sizeof triangles);
+    q->surface = (SingeSurface){
+        .vertex_count = 4, .triangle_count = 2, .position = q->position, .normal = q->normal, .uv = q->uv,
+        .rest_position = q->rest, .temperature = q->temperature, .temperature_peak = q->peak,
+        .burn = q->burn, .burn_rate = q->rate,
+        .sheet = q->sheet, .triangles = q->triangles};
+}
+
+#endif

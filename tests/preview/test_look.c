@@ -1,0 +1,119 @@
+// How paper looks in each of its states: fresh, printed, browned, charred, glowing, burnt out.
+
+#include "fixture.h"
+
+#include <math.h>
+
+/// Mean over the middle of the picture.
+static float middle(const uint8_t *rgb, int channel) {
+    enum { HALF = 10 };
+    float sum = 0;
+    for (int y = H / 2 - HALF; y < H / 2 + HALF; y++)
+        for (int x = W / 2 - HALF; x < W / 2 + HALF; x++) sum += pixel(rgb, x, y)[channel];
+    return sum / (4 * HALF * HALF);
+}
+
+static void test_white_paper(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    PreviewDef def = above(); // no sheets, no pictures: white
+    draw(&def, &q.surface, 0, rgb);
+    for (int y = H / 2 - 8; y < H / 2 + 8; y++)
+        for (int x = W / 2 - 8; x < W / 2 + 8; x++) {
+            const uint8_t *p = pixel(rgb, x, y);
+            assert_in_range(p[0], 215, 252);
+            assert_in_range(p[1], 210, 252);
+            assert_in_range(p[2], 195, 250);
+        }
+}
+
+/// White in the sun keeps below the film's end, so that print and creases show.
+static void test_print_and_white(void **state) {
+    (void)state;
+    uint8_t texels[2 * 1 * 3] = {255, 255, 255, 20, 20, 20};
+    Image image = {.width = 2, .height = 1, .rgb = texels};
+    const Image *pictures[1] = {&image};
+    static uint8_t rgb[BYTES];
+    Quad q;
+    quad_make(&q, 0.1f, 0.01f);
+    PreviewDef def = above();
+    def.pictures = pictures, def.sheet_count = 1;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *white = pixel(rgb, W / 2 - 16, H / 2), *ink = pixel(rgb, W / 2 + 15, H / 2);
+    assert_in_range(white[0], 222, 242); // not clipped
+    assert_true(ink[0] < 70);
+}
+
+static void test_states(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    PreviewDef def = above();
+    float fresh, brown, black;
+    quad_make(&q, 0.1f, 0.01f);
+    draw(&def, &q.surface, 0, rgb);
+    fresh = pixel(rgb, W / 2, H / 2)[1];
+    for (int i = 0; i < 4; i++) q.temperature[i] = 520;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *p = pixel(rgb, W / 2, H / 2);
+    brown = p[1];
+    assert_true(p[0] > p[1] + 15 && p[1] > p[2] + 10);
+    for (int i = 0; i < 4; i++) q.temperature[i] = 400, q.burn[i] = 0.5f;
+    draw(&def, &q.surface, 0, rgb);
+    black = pixel(rgb, W / 2, H / 2)[1];
+    assert_true(fresh > brown + 30 && brown > black + 40 && black < 80);
+}
+
+/// Paper that was hot stays brown when it is cold again, and what burnt out is grey: paler than char, not white.
+static void test_cold_remains(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    for (int i = 0; i < 4; i++) q.peak[i] = 520;
+    draw(&def, &q.surface, 0, rgb);
+    const uint8_t *p = pixel(rgb, W / 2, H / 2);
+    assert_true(p[0] > p[1] + 15 && p[1] > p[2] + 10);
+    assert_in_range(p[1], 25, 180);
+    for (int i = 0; i < 4; i++) q.peak[i] = 1000, q.burn[i] = 0.5f;
+    draw(&def, &q.surface, 0, rgb);
+    float black = middle(rgb, 1);
+    for (int i = 0; i < 4; i++) q.burn[i] = 1;
+    draw(&def, &q.surface, 0, rgb);
+    float grey = middle(rgb, 1);
+    assert_true(grey > black + 15);
+    assert_in_range((int)grey, 60, 180);
+    assert_true(fabsf(middle(rgb, 0) - middle(rgb, 2)) < 30);
+}
+
+/// Only where it is hot *and* burning does the char glow.
+static void test_ember(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
+    for (int i = 0; i < 4; i++) q.burn[i] = 0.7f + 0.2f * (float)(i == 1 || i == 2), q.temperature[i] = 1100;
+    draw(&def, &q.surface, 0, rgb);
+    float idle = mean(rgb, 0);
+    for (int i = 0; i < 4; i++) q.rate[i] = 1;
+    draw(&def, &q.surface, 0, rgb);
+    float burning = mean(rgb, 0), burning_blue = mean(rgb, 2);
+    for (int i = 0; i < 4; i++) q.temperature[i] = 600;
+    draw(&def, &q.surface, 0, rgb);
+    assert_true(burning > idle + 1.5f);
+    assert_true(burning - mean(rgb, 0) > 1.5f);
+    assert_true(burning > burning_blue);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_white_paper), cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
+        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
