@@ -56,7 +56,8 @@ class Case(unittest.TestCase):
 
     def singe(self, *args, expect=0, **options):
         """Runs the program and checks its exit code. Returns what it printed: (stdout, stderr)."""
-        done = subprocess.run([SINGE, *args], capture_output=True, text=True, timeout=120, **options)
+        options.setdefault("timeout", 120)
+        done = subprocess.run([SINGE, *args], capture_output=True, text=True, **options)
         self.assertEqual(done.returncode, expect, f"singe {args}\n{done.stdout}\n{done.stderr}")
         return done.stdout, done.stderr
 
