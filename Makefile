@@ -1,11 +1,12 @@
 # make         builds Singe into build/
 # make demo    installs what it needs (Debian 12), builds, burns the letter and says where its video is
+# make pictures  draws the pictures of the documentation again, after make build
 # make check   installs, builds and runs every test; the last thing printed is the test runner's summary
 
 FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
 
-.PHONY: all demo check build build-asan build-fuzz setup clean
+.PHONY: all demo check pictures build build-asan build-fuzz setup clean
 
 all: build
 
@@ -34,6 +35,9 @@ check:
 	ctest --preset asan -j2
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 	ctest --preset release -j2
+
+pictures:
+	scripts/draw_pictures.sh
 
 clean:
 	rm -rf build build-asan build-tsan build-fuzz

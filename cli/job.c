@@ -66,6 +66,7 @@ static ExitCode finish_open(Job *job, Console *console, SingeResult result, Scen
         scene_free(job->scene);
         *job = (Job){0};
     } else {
+        scene_frame(job->scene, &job->assets);
         job->hooks = singe_default_sim();
         job->hooks.allocator = (SingeAllocator){libc_resize, NULL};
         job->hooks.log = console_log(console);

@@ -92,7 +92,9 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
 }
 
 void finish_preview(Reader *reader, const Node *map, void *object) {
-    const ScenePreview *preview = object;
+    ScenePreview *preview = object;
+    const Node *camera = node_find(map, "camera");
+    preview->camera_given = node_find(camera, "eye") || node_find(camera, "target");
     const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && d[0] == 0 && d[1] == 0 && d[2] == 0)

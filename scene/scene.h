@@ -129,6 +129,7 @@ typedef struct ScenePreview {
     int size[2]; ///< pixels
     int samples;
     PreviewCamera camera;
+    bool camera_given; ///< its eye or target; otherwise scene_frame places it
     float light_direction[3], light_angle, light_colour[3];
     float sky[3];
     float ground_height; ///< -INFINITY for none
@@ -201,6 +202,9 @@ SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *a
                                         SingeSim **sim, SceneMessages *messages);
 
 // ---- from scene to preview
+
+/// Places a camera that was not given so that all sheets, as they start, fill the picture.
+void scene_frame(Scene *scene, const SceneAssets *assets);
 
 /// Fills *def; the scene and the assets must outlive it. Threads: 1. Shapes: none (scene_shapes).
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def);

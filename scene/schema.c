@@ -315,7 +315,7 @@ static const Schema schema_solver = {.title = "the solver",
                                      .doc = "How springs are kept at their lengths."};
 
 static const SchemaRow camera_rows[] = {
-    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, ANY, .doc = "where it stands"},
+    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, ANY, .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
     {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, ANY, .doc = "what it looks at"},
     {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, ANY, .doc = "which way is up in the picture"},
     {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), .flags = ROW_OPEN_MIN | ROW_OPEN_MAX,

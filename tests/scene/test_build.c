@@ -177,10 +177,61 @@ static void test_examples(void **state) {
     }
 }
 
+/// How far from the picture's middle the sheets reach at most, 1 being its border; infinite when behind the camera.
+static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
+    const PreviewCamera *c = &scene->preview.camera;
+    double view[3], right[3], top[3], most = 0, lengths[2] = {0, 0};
+    for (int i = 0; i < 3; i++) view[i] = (double)c->target[i] - (double)c->eye[i];
+    for (int i = 0; i < 3; i++)
+        right[i] = view[(i + 1) % 3] * (double)c->up[(i + 2) % 3] - view[(i + 2) % 3] * (double)c->up[(i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        top[i] = right[(i + 1) % 3] * view[(i + 2) % 3] - right[(i + 2) % 3] * view[(i + 1) % 3];
+    for (int i = 0; i < 3; i++) lengths[0] += view[i] * view[i], lengths[1] += right[i] * right[i];
+    double half = tan(0.5 * (double)c->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
+    for (uint32_t s = 0; s < assets->sheet_count; s++)
+        for (uint32_t v = 0; v < assets->meshes[s].vertex_count; v++) {
+            double along = 0, x = 0, y = 0;
+            for (int i = 0; i < 3; i++) {
+                double d = (double)assets->meshes[s].positions[3 * v + (uint32_t)i] - (double)c->eye[i];
+                along += d * view[i], x += d * right[i], y += d * top[i];
+            }
+            if (along <= 0) return INFINITY;
+            along /= sqrt(lengths[0]);
+            x /= sqrt(lengths[1]), y /= sqrt(lengths[0] * lengths[1]);
+            most = fmax(most, fmax(fabs(x) / (along * half * aspect), fabs(y) / (along * half)));
+        }
+    return most;
+}
+
+static void test_camera_finds_the_sheets(void **state) {
+    (void)state;
+    static const char *const scenes[] = {
+        "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
+        "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0], translate: [3, 0, 1]}]",
+        "sheets: [{grid: {size: [20, 1], cells: [40, 2]}}, {grid: {size: [1, 1], cells: [2, 2]}, translate: [0, 0, 9]}]",
+        "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], preview: {size: [90, 200], camera: {up: [0, 1, 0], fov: 60}}}",
+    };
+    for (size_t i = 0; i <= sizeof scenes / sizeof *scenes; i++) {
+        bool given = i == sizeof scenes / sizeof *scenes;
+        Scene *scene = good_scene(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
+                                          "preview: {camera: {eye: [5, 5, 5]}}}" : scenes[i], NULL, 0);
+        SceneAssets assets;
+        SceneMessages messages = {0};
+        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+        scene_frame(scene, &assets);
+        const PreviewCamera *camera = &scene->preview.camera;
+        if (given) assert_true(camera->eye[0] == 5 && camera->target[0] == 0);
+        else assert_true(reach_in_picture(scene, &assets) > 0.55 && reach_in_picture(scene, &assets) < 1);
+        scene_assets_free(&assets);
+        scene_free(scene);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rotation),  cmocka_unit_test(test_sim),     cmocka_unit_test(test_refused),
         cmocka_unit_test(test_bad_files), cmocka_unit_test(test_preview), cmocka_unit_test(test_examples),
+        cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
