@@ -82,7 +82,8 @@ typedef struct SingeAllocator {
 
 typedef enum SingeLogLevel { SINGE_LOG_INFO = 0, SINGE_LOG_WARNING = 1, SINGE_LOG_ERROR = 2 } SingeLogLevel;
 
-/// Receives one line without its newline. The library never prints by itself.
+/// Receives one line without its newline: at commit what was made, and warnings of what will look bad. Errors are
+/// results. The library never prints by itself.
 typedef struct SingeLog {
     void (*write)(void *context, SingeLogLevel level, const char *line);
     void *context;

@@ -94,6 +94,22 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
     return SINGE_OK;
 }
 
+/// Frees what sim_build made, also so that a failed commit can be tried again.
+static void sim_unbuild(SingeSim *sim) {
+    Memory *memory = &sim->memory;
+    heat_plan_free(memory, sim->heat);
+    ablate_plan_free(memory, sim->ablate);
+    dynamics_plan_free(memory, sim->dynamics);
+    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL;
+    FREE(memory, sim->thickening, sim->shell.sheet_count);
+    FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
+    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
+    FREE(memory, sim->events.items, sim->events.capacity);
+    memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
+    state_free(memory, &sim->state);
+    shell_free(memory, &sim->shell);
+}
+
 void singe_sim_destroy(SingeSim *sim) {
     if (!sim) return;
     Memory *memory = &sim->memory;
@@ -104,16 +120,7 @@ void singe_sim_destroy(SingeSim *sim) {
     FREE(memory, sim->sources.items, sim->sources.capacity);
     FREE(memory, sim->colliders.items, sim->colliders.capacity);
     FREE(memory, sim->pins.items, sim->pins.capacity);
-    heat_plan_free(memory, sim->heat);
-    ablate_plan_free(memory, sim->ablate);
-    dynamics_plan_free(memory, sim->dynamics);
-    FREE(memory, sim->thickening, sim->shell.sheet_count);
-    FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
-    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
-    FREE(memory, sim->events.items, sim->events.capacity);
-    memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
-    state_free(memory, &sim->state);
-    shell_free(memory, &sim->shell);
+    sim_unbuild(sim);
     for (uint32_t i = 0; i < sim->sheet_count; i++) sheet_source_free(memory, &sim->sheets[i]);
     FREE(memory, sim->sheets, sim->sheet_capacity);
     Memory last = *memory;
@@ -192,22 +199,6 @@ SingeResult sim_build(SingeSim *sim) {
     return SINGE_OK;
 }
 
-/// Frees what sim_build made, so that a failed commit can be tried again.
-static void sim_unbuild(SingeSim *sim) {
-    Memory *memory = &sim->memory;
-    heat_plan_free(memory, sim->heat);
-    ablate_plan_free(memory, sim->ablate);
-    dynamics_plan_free(memory, sim->dynamics);
-    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL;
-    FREE(memory, sim->thickening, sim->shell.sheet_count);
-    FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
-    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
-    FREE(memory, sim->events.items, sim->events.capacity);
-    memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
-    state_free(memory, &sim->state);
-    shell_free(memory, &sim->shell);
-}
-
 SingeResult singe_sim_commit(SingeSim *sim) {
     if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "the simulation is committed already");
     if (sim->sheet_count == 0) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "there is no sheet");
@@ -223,5 +214,6 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     sim->events.count = 0;
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;
+    sim_log_commit(sim);
     return SINGE_OK;
 }

@@ -54,6 +54,9 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
 /// Everything commit builds from sim->sheets, without the first state (also used by load).
 SingeResult sim_build(SingeSim *sim);
 
+/// Tells the log what was committed, and what will look bad.
+void sim_log_commit(const SingeSim *sim);
+
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);
 

@@ -3,6 +3,7 @@
 import math
 import os
 import random
+import struct
 import time
 import unittest
 
@@ -43,11 +44,29 @@ class Example(Case):
                 self.assertTrue(math.isfinite(value), f"{name} of frame {row['frame']}")
         self.assertLess(max(self.column("ledger_error")), 1e-5)
         self.assertLess(max(self.column("mass_ledger_error")), 1e-6)
-        before = [row for row in self.rows if row["ignited"] == 0]
-        self.assertTrue(before)
-        self.assertEqual(max(row["inverted_cells"] for row in before), 0)
         self.assertEqual(self.rows[-1]["frame"], len(self.rows))
         self.say["ledgers"] = f"{max(self.column('ledger_error')):.1e}, {max(self.column('mass_ledger_error')):.1e}"
+
+    def before_the_fire(self):
+        """The same scene without its sources hangs, lies and falls without turning a cell inside out."""
+        self.run_example("cold", "--threads", "1", "--frames", "36", "--set", "sources=[]")
+        rows = [{k: float(v) for k, v in row.items()} for row in self.stats("cold")]
+        self.assertEqual(max(row["ignited"] for row in rows), 0)
+        self.assertEqual(max(row["inverted_cells"] for row in rows), 0)
+        self.assertLessEqual(max(row["strain_mean"] for row in rows), 0.01)
+
+    def ash_left(self):
+        """Vertices of the last frame that have burnt to ash and are still there."""
+        name = f"{self.NAME}.{len(self.rows):04d}.ply"
+        with open(self.path("whole", "ply", name), "rb") as file:
+            header, _, data = file.read().partition(b"end_header\n")
+        lines = header.decode().splitlines()
+        count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
+        kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
+        names = [line.split()[2] for line in kept if line.startswith("property")]
+        rows = struct.iter_unpack("<" + "f" * len(names), data[: 4 * len(names) * count])
+        burnt = names.index("char")
+        return sum(row[burnt] > 0.95 for row in rows)
 
     def told(self):
         print("  ".join(f"{name} {value}" for name, value in self.say.items()))
@@ -58,19 +77,22 @@ class Letter(Example):
 
     def test_burns(self):
         self.common()
+        self.before_the_fire()
         last = self.rows[-1]
+        ash = self.ash_left()
         hottest = max(self.column("temperature_max")) - ZERO_CELSIUS
         self.say["front"] = f"{1e3 * last['front_speed']:.2f} mm/s"
         self.say["hottest"] = f"{hottest:.0f} C"
         self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
-        self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles"
+        self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles, {ash} vertices of ash"
         self.told()
         self.assertTrue(750 <= hottest <= 950)
-        # office paper lying free, 4.4 to 7.0 mm/s; this one is uneven and on the whole a little slower
-        self.assertTrue(4.0e-3 <= last["front_speed"] <= 7.0e-3)
+        # what office paper does, lying free
+        self.assertTrue(4.4e-3 <= last["front_speed"] <= 7.0e-3)
         self.assertGreaterEqual(last["burnt_fraction"], 0.5)
         self.assertGreaterEqual(last["pieces"], 2)
         self.assertGreater(last["particles"], 100)
+        self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
         self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
         # the demo stays small
@@ -83,6 +105,7 @@ class LetterHanging(Example):
 
     def test_hangs_and_burns(self):
         self.common()
+        self.before_the_fire()
         second = self.rows[-int(self.fps):]
         rest = root_mean_square([row["speed_rms_unburnt"] for row in second])
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
@@ -103,6 +126,7 @@ class HotSphere(Example):
 
     def test_burns_through(self):
         self.common()
+        self.before_the_fire()
         last = self.rows[-1]
         self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{last['pieces']:.0f}"

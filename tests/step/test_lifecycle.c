@@ -2,6 +2,7 @@
 #include "step/scenes.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static SingeSim *create(void) {
@@ -159,6 +160,36 @@ static void particles_are_numbered_as_documented(void **state) {
     test_mesh_free(&second);
 }
 
+typedef struct Heard {
+    int lines[3];
+    char last[3][256];
+} Heard;
+
+static void hear(void *context, SingeLogLevel level, const char *line) {
+    Heard *heard = context;
+    heard->lines[level]++;
+    snprintf(heard->last[level], sizeof heard->last[level], "%s", line);
+}
+
+/// What was made is told at the commit; a step too long for the cells is warned of.
+static void the_log_hears_of_the_commit(void **state) {
+    (void)state;
+    for (int slow = 0; slow < 2; slow++) {
+        Heard heard = {0};
+        SingeSimDef def = singe_default_sim();
+        def.log = (SingeLog){hear, &heard};
+        if (slow) def.time_step = 0.1f;
+        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        assert_int_equal(heard.lines[SINGE_LOG_INFO], 2);
+        assert_non_null(strstr(heard.last[SINGE_LOG_INFO], "cells of 5 mm"));
+        assert_int_equal(heard.lines[SINGE_LOG_WARNING], slow);
+        if (slow) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
+        test_steps(sim, 1);
+        assert_int_equal(heard.lines[SINGE_LOG_INFO] + heard.lines[SINGE_LOG_WARNING], 2 + slow);
+        singe_sim_destroy(sim);
+    }
+}
+
 static void timers_and_time_grow(void **state) {
     (void)state;
     Scene scene = scene_make(NULL, 10);
@@ -207,6 +238,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
         cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
+        cmocka_unit_test(the_log_hears_of_the_commit),
         cmocka_unit_test(every_byte_is_counted_and_freed),
     };
     return cmocka_run_group_tests_name("step_lifecycle", tests, NULL, NULL);

@@ -1,0 +1,42 @@
+// What a simulation tells its host's log. Errors are results, not lines: the log has what no result says.
+#include "step/sim.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format, ...) {
+    const SingeLog *log = &sim->def.log;
+    if (!log->write) return;
+    char line[256];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(line, sizeof line, format, list);
+    va_end(list);
+    log->write(log->context, level, line);
+}
+
+/// A sheet that falls far within a substep, against its cells, is stretched visibly where it is held.
+static const float fall_most = 0.02f;
+
+static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
+    const SingeSimDef *def = &sim->def;
+    const Sheet *sheet = &sim->shell.sheets[index];
+    sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", index,
+            1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
+    float h = def->time_step / (float)def->solver.substeps;
+    float gravity = vec_length(vec_load(def->gravity));
+    if (gravity * h * h > fall_most * sheet->cell_size)
+        sim_log(sim, SINGE_LOG_WARNING,
+                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: it will stretch; more substeps or a "
+                "smaller time step help",
+                index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
+}
+
+void sim_log_commit(const SingeSim *sim) {
+    SingeCensus census = singe_sim_census(sim);
+    uint32_t springs = 0, strands = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c], strands += census.strands[c];
+    sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", census.particles, springs, strands,
+            1e-6 * (double)census.memory);
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
+}
