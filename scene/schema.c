@@ -194,7 +194,7 @@ static ScenePlace *source_place(void *object) { return &((SceneSource *)object)-
 static const SchemaRow source_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
      .doc =
-         "`ball`: a hot ball on a path; `spot`: a disc of heat fixed in space; `picture`: a flux drawn on the sheet; "
+         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `picture`: a flux drawn on the sheet; "
          "`plume`: hot gas rising from what burns"},
     SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
@@ -212,12 +212,12 @@ static const SchemaRow source_rows[] = {
      .sub = &schema_key, .doc = "its way; this or `position`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSource, picture), .kinds = PICTURE, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
-    SOURCE("flux", flux, DIM_FLUX, PICTURE, FROM(0), "where the picture is white"),
+    SOURCE("flux", flux, DIM_FLUX, PICTURE, FROM(0), "into each of the sheet's two layers where the picture is white"),
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
      .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
     SOURCE("share", plume_share, DIM_FRACTION, PLUME, WITHIN(0, 1),
-           "part of the heat of combustion that the gas carries"),
+           "power of the gas over that of the sheet's combustion; it comes on top"),
     SOURCE("height", plume_height, DIM_LENGTH, PLUME, OVER(0), "over which the gas cools to 1/e"),
     SOURCE("conductance", plume_conductance, DIM_CONDUCTANCE, PLUME, FROM(0), "from the gas to the sheet"),
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
@@ -377,7 +377,7 @@ static const SchemaRow scene_rows[] = {
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
     {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), OVER(0),
      .doc = "seconds of fire per second of motion; 1 is real, 4 burns four times as fast"},
-    {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), .doc = "for everything random"},
+    {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), .doc = "for the preview; noise and wind have seeds of their own"},
     {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), OVER(0),
      .doc = "of the air and all around"},
     {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, ANY, .doc = "z is up"},
