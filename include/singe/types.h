@@ -311,7 +311,7 @@ typedef struct SingeSimDef {
     float gravity[3];           ///< m/s2
     float ambient_temperature;  ///< K, > 0
     float air_density;          ///< kg/m3, >= 0
-    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0
+    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     SingeWindDef wind;
     SingeSolverDef solver;
 } SingeSimDef;

@@ -32,6 +32,7 @@ struct SingeSim {
     void *backup;      ///< the state's arena before the step
     EventList events;
     SingeTimers timers;
+    bool heat_warned;  ///< that the diffusion ran out of iterations
 
     // plans and scratch of the stages
     HeatPlan *heat;

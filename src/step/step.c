@@ -17,6 +17,16 @@ static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
     *start = now;
 }
 
+/// Says once that conduction is less exact than was asked for.
+static void step_warn(SingeSim *sim, const HeatCounters *heat) {
+    if (heat->unconverged == 0 || sim->heat_warned) return;
+    sim->heat_warned = true;
+    if (sim->def.log.write)
+        sim->def.log.write(sim->def.log.context, SINGE_LOG_WARNING,
+                           "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller "
+                           "time_step or pace, or a larger tolerance, helps (said once)");
+}
+
 static SingeResult step_stages(SingeSim *sim) {
     const Shell *shell = &sim->shell;
     const SingeSimDef *def = &sim->def;
@@ -28,8 +38,10 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->events.count = 0;
 
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
-    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat,
-                  &sim->timers.heat_iterations, error));
+    HeatCounters heat = {0, 0};
+    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat, &heat,
+                  error));
+    step_warn(sim, &heat);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
@@ -48,6 +60,7 @@ static SingeResult step_stages(SingeSim *sim) {
                       &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
+    sim->timers.heat_iterations += heat.iterations;
     sim->timers.strands_projected += counters.strands;
     sim->timers.contacts += counters.contacts;
     return SINGE_OK;

@@ -70,8 +70,7 @@ void rig_step(Rig *rig) {
     SingeView view = {.time = rig->state.time, .particle_count = rig->shell.particle_count,
                       .temperature = rig->state.heat.temperature};
     if (heat_step(rig->plan, &rig->shell, &rig->state, &rig->sources, &rig->colliders, &view, rig->pool, rig->h,
-                  &rig->state.heat,
-                  &rig->iterations, &rig->error))
+                  &rig->state.heat, &rig->counters, &rig->error))
         fail_msg("%s", rig->error.message);
     rig->state.time += (double)rig->h;
     rig->state.step++;

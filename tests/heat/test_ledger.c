@@ -102,7 +102,7 @@ static void threads_do_not_matter(void **unused) {
         assert_memory_equal(a->temperature, b->temperature, rig.shell.particle_count * sizeof *a->temperature);
         assert_true(a->heat_in == b->heat_in && a->heat_lost == b->heat_lost &&
                     a->heat_of_combustion == b->heat_of_combustion);
-        assert_int_equal(one.iterations, rig.iterations);
+        assert_int_equal(one.counters.iterations, rig.counters.iterations);
         rig_close(&rig);
     }
     rig_close(&one);
