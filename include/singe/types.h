@@ -281,7 +281,7 @@ static inline SingeWindDef singe_default_wind(void) {
 /// The strand projection (docs/equations.md).
 typedef struct SingeSolverDef {
     size_t struct_size;
-    int substeps;                              ///< per step, >= 1
+    int substeps;                              ///< per step, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
     float smoothing;                           ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0

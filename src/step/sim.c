@@ -14,7 +14,7 @@ static bool in_range(float value, float low, float high) { return value >= low &
 
 static const char *sim_check_solver(const SingeSolverDef *solver) {
     bool seen[SINGE_COLOUR_COUNT] = {false};
-    if (solver->substeps < 1 || solver->substeps > 10000) return "solver.substeps must be between 1 and 10000";
+    if (solver->substeps < 1 || solver->substeps > 1000) return "solver.substeps must be between 1 and 1000";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
