@@ -35,7 +35,9 @@ typedef struct HeatSettings {
 
 /// Operators and scratch of the stage, built once.
 typedef struct HeatPlan HeatPlan;
-SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan);
+/// Fails without memory (*error is not filled then) and where a sheet needs a front thickening above 1e6.
+SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
+                             SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).

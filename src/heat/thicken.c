@@ -28,5 +28,5 @@ float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, f
     if (!(rise > 0) || !(mass_rate > 0) || !(diffusivity > 0)) return 1;
     rise = fminf(rise, material->rate_ceiling);
     float needed = cell_size / (THICKEN_CELLS * sqrtf(diffusivity / (mass_rate * rise)));
-    return needed > 1 && needed < 1e6f ? needed : 1;
+    return needed > 1 ? needed : 1;
 }

@@ -176,7 +176,9 @@ SingeResult sim_build(SingeSim *sim) {
     sim->events.capacity = 0;
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
     ok = ok && (sim->backup = memory_new(memory, sim->state.arena_size, 1)) != NULL;
-    ok = ok && heat_plan_create(memory, shell, &heat, &sim->heat) == SINGE_OK;
+    SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
+    if (result && result != SINGE_ERROR_MEMORY) return result;
+    ok = !result;
     ok = ok && ablate_plan_create(memory, shell, &sim->ablate) == SINGE_OK;
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);

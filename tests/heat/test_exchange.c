@@ -202,7 +202,7 @@ static void running_out_of_memory_is_clean(void **unused) {
             Memory memory = memory_make((SingeAllocator){failing_resize, &failing});
             HeatPlan *plan = NULL;
             Source source = {0};
-            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan)
+            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)
                                            : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source,
                                                            &rig.error);
             if (!result) {

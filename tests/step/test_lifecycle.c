@@ -101,6 +101,14 @@ static void refused_sheets(void **state) {
     test_refused(sim, SINGE_ERROR_MESH, added ? added : singe_sim_commit(sim));
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
     singe_sim_destroy(sim);
+    sim = create(); // a front that no cell comes near to is found there too, and a commit can be tried again
+    fine.material.mass_rate = singe_param(1e12f);
+    test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
+    for (int k = 0; k < 2; k++) {
+        test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim));
+        assert_non_null(strstr(singe_sim_error(sim)->message, "thickening"));
+    }
+    singe_sim_destroy(sim);
     test_mesh_free(&fan);
     test_mesh_free(&good);
     test_mesh_free(&bad);
