@@ -190,4 +190,10 @@ void state_copy(const Shell *shell, State *to, const State *from);
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
 
+/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
+static inline float shell_burn_progress(float mass, float mass_min) {
+    float progress = (1 - mass) / (1 - mass_min);
+    return progress < 0 ? 0 : progress > 1 ? 1 : progress;
+}
+
 #endif
