@@ -383,7 +383,7 @@ static const SchemaRow scene_rows[] = {
     {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, ANY, .doc = "z is up"},
     {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), FROM(0), .doc = "for drag and wind"},
     {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), .flags = ROW_OPEN_MIN, WITHIN(0, 1),
-     .doc = "to which the heat equation is solved, relative"},
+     .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "what burns, at least one"},
     {"sources", ROW_LIST, DIM_NONE, AT(Scene, sources), EXTRA(Scene, source_count), .sub = &schema_source,

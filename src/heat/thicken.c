@@ -5,7 +5,7 @@
 // instead of delta,
 //
 //   delta = sqrt(alpha/(mu theta)),   theta = min(eta - (T_ign - T_amb), rate_ceiling)
-//   F = max(1, s/(c delta))
+//   F = max(1, s/(c delta)), refused above 1e6
 //
 // delta  m          thickness of the front, from diffusion over delta against burning
 // alpha  m2/s       diffusivity, mu 1/(K s) mass rate of eq 4
