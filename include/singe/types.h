@@ -163,7 +163,7 @@ static inline SingeSheetDef singe_default_sheet(void) {
 typedef enum SingeSourceKind {
     SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats what is near it
     SINGE_SOURCE_PICTURE = 1,  ///< a flux over uv, black none, white full
-    SINGE_SOURCE_SPOT = 2,     ///< a disc of flux fixed in space, on from `start` to `end`
+    SINGE_SOURCE_SPOT = 2,     ///< a ball that stands still
     SINGE_SOURCE_PLUME = 3,    ///< hot gas rising from whatever burns
     SINGE_SOURCE_CALLBACK = 4, ///< the caller's own
 } SingeSourceKind;
@@ -176,8 +176,9 @@ struct SingeView;
 typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flux, float *conductance,
                          float *conductance_temperature);
 
-/// Something that heats. Ball and spot: conductance towards `temperature`, full within `radius`,
-/// falling smoothly to nothing at `radius + falloff`.
+/// Something that heats. Ball and spot: conductance towards `temperature`, full within `radius` of a point in
+/// space, falling smoothly to nothing at `radius + falloff`. Fluxes and conductances are those into a layer, and
+/// a sheet has two: it takes twice as much a square metre.
 typedef struct SingeSourceDef {
     size_t struct_size;
     SingeSourceKind kind;
@@ -188,10 +189,10 @@ typedef struct SingeSourceDef {
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
     const SingePoseKey *path;  ///< positions only
     SingePicture picture;      ///< picture source
-    float flux;                ///< W/m2 where the picture is white
+    float flux;                ///< W/m2 into each layer where the picture is white
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength;
-    float plume_share;         ///< share of the heat of combustion that the plume carries, 0 to 1
+    float plume_share;         ///< power of the plume over that of combustion, 0 to 1; comes on top of it, counted in heat_in
     float plume_height;        ///< m, over which the plume's heat falls to 1/e, > 0
     float plume_conductance;   ///< W/(m2 K) from gas to sheet, >= 0
     SingeFluxFn *callback;     ///< not saved: set it again after a load
@@ -266,7 +267,7 @@ typedef struct SingeWindDef {
     float gust;        ///< m/s, amplitude, >= 0
     float gust_time;   ///< s, how long a gust lasts, > 0
     float gust_size;   ///< m, how far it reaches, > 0
-    uint32_t seed;
+    uint32_t seed;     ///< of the gusts
 } SingeWindDef;
 
 SINGE_API void singe_init_wind(SingeWindDef *def, size_t struct_size);
@@ -280,7 +281,7 @@ static inline SingeWindDef singe_default_wind(void) {
 /// The strand projection (docs/equations.md).
 typedef struct SingeSolverDef {
     size_t struct_size;
-    int substeps;                              ///< per step, >= 1
+    int substeps;                              ///< per step, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
     float smoothing;                           ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
@@ -304,13 +305,13 @@ typedef struct SingeSimDef {
     SingeLog log;
     SingeTasks tasks;
     int thread_count;           ///< of the simulation's own pool, 1 to 64
-    uint64_t seed;              ///< for everything that is random
+    uint64_t seed;              ///< not used by the simulation, saved with it: for a renderer; noise and wind have their own
     float time_step;            ///< s, h of the paper, > 0
     float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
     float gravity[3];           ///< m/s2
     float ambient_temperature;  ///< K, > 0
     float air_density;          ///< kg/m3, >= 0
-    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0
+    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     SingeWindDef wind;
     SingeSolverDef solver;
 } SingeSimDef;

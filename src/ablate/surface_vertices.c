@@ -34,13 +34,12 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
     const float (*velocity)[4] = (const float (*)[4])state->dynamics.velocity;
     const float (*rest)[4] = (const float (*)[4])shell->rest_position;
     const BurnState *burn = &state->burn;
-    float progress = (1 - burn->mass[particle]) / (1 - shell->matter.mass_min[particle]);
     Sample sample = {
         .u = shell->uv[particle][0], .v = shell->uv[particle][1],
         .temperature = state->heat.temperature[particle],
         .temperature_peak = state->heat.temperature_peak[particle],
         .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
-        .burn = progress < 0 ? 0 : progress > 1 ? 1 : progress,
+        .burn = shell_burn_progress(burn->mass[particle], shell->matter.mass_min[particle]),
         .time_ignited = burn->time_ignited[particle],
         .piece = state->ablate.piece[particle], .sheet = shell->matter.sheet[particle],
     };

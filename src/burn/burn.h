@@ -9,9 +9,6 @@
 /// as the mass goes from 1 to mass_min. In (0, 1] for sane materials, clamped to [0.05, 1].
 float burn_volume_ratio(float mass, float mass_min, float ash_density);
 
-/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
-float burn_progress(float mass, float mass_min);
-
 /// One step of length h: masses, times and target lengths. `thickening` holds F for every sheet; rates
 /// are divided by it. `partial` is scratch of pool_blocks(particle_count) doubles. Reads `state`,
 /// writes `burn` (which is &state->burn). Ignitions are pushed to `events` in order of particle.

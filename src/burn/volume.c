@@ -5,13 +5,8 @@
 // The density goes linearly from 1 to rho_ash with the burn progress b = (1 - m)/(1 - m_min).
 #include "burn/burn.h"
 
-float burn_progress(float mass, float mass_min) {
-    float progress = (1 - mass) / (1 - mass_min);
-    return progress < 0 ? 0 : progress > 1 ? 1 : progress;
-}
-
 float burn_volume_ratio(float mass, float mass_min, float ash_density) {
-    float density = 1 + (ash_density - 1) * burn_progress(mass, mass_min);
+    float density = 1 + (ash_density - 1) * shell_burn_progress(mass, mass_min);
     float ratio = mass / density;
     return ratio < 0.05f ? 0.05f : ratio > 1 ? 1 : ratio;
 }

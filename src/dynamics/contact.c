@@ -1,4 +1,5 @@
-// Contact with rigid primitives, projected within every projection (section 7), with Coulomb friction.
+// Contact with rigid primitives (section 7), with Coulomb friction. A substep has one projection, of all colours in
+// their order, and contact closes it: once a substep, after the colours.
 //
 // A particle nearer than the collider's offset is moved out along the normal by its depth p. Its slip
 // over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction

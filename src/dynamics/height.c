@@ -7,8 +7,9 @@
 //
 //   lambda = gain C / (w_centre + sum w_i / 16),   x_centre -= w_centre lambda n,   x_i += w_i lambda n / 4
 //
-// which keeps momentum: what holds a centre up presses its corners down. Cells of one family share no
-// corner; family follows family.
+// which keeps linear momentum: what holds a centre up presses its corners down. Angular momentum it keeps where the
+// centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
+// share no corner; family follows family.
 #include "dynamics/plan.h"
 
 typedef struct Height {

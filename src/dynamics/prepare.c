@@ -19,8 +19,7 @@ typedef struct Prepare {
 } Prepare;
 
 static float prepare_progress(const Shell *shell, const State *state, uint32_t particle) {
-    float least = shell->matter.mass_min[particle];
-    return fminf(fmaxf((1 - state->burn.mass[particle]) / (1 - least), 0), 1);
+    return shell_burn_progress(state->burn.mass[particle], shell->matter.mass_min[particle]);
 }
 
 static void prepare_cells(void *task, int begin, int end) {

@@ -4,13 +4,14 @@
 //
 //   r = v_a - 2 v_b + v_c      (three nodes at equal distances along a strand)
 //
-// is lessened by the share 1 - exp(-smoothing h) with the impulse that keeps momentum:
+// is lessened by the share 1 - exp(-smoothing h) with the impulse that keeps linear momentum:
 //
 //   v_a -= w_a j,  v_b += 2 w_b j,  v_c -= w_c j,   j = share r / (w_a + 4 w_b + w_c)
 //
 // first over the nodes `smoothing_length` apart, then over next neighbours. The first takes the drumming: what
 // it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
-// second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched.
+// second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched. Where the nodes
+// are not in line or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
 #include "dynamics/plan.h"
 
 #include <math.h>

@@ -9,7 +9,8 @@
 // Solved for the correction e = T - T*, (D + dt L) e = -dt L T*, by conjugate gradients with the diagonal as
 // preconditioner (Hestenes & Stiefel 1952): floats, sums in double by fixed blocks. Differences of temperature
 // are formed before anything is summed, so that the kelvins do not eat the digits. Stops when the residual,
-// in the norm of the inverse diagonal, is below `tolerance` times that of D (T* - T_amb).
+// in the norm of the inverse diagonal, is below `tolerance` times that of D (T* - T_amb), or after 200 iterations,
+// and then the step is counted as unconverged.
 //
 // The new temperature is then T = T* - dt D^-1 L (T* + e). What flows from i to j is minus what flows from j to i to
 // the last bit, so that sum D T is kept whatever the tolerance. Adding what is smaller than a float's last
@@ -138,7 +139,7 @@ static void conduct_finish(void *context, int begin, int end) {
     }
 }
 
-SingeResult heat_conduct(HeatPass *pass, uint64_t *iterations, double *made, SingeError *error) {
+SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error) {
     HeatPlan *plan = pass->plan;
     heat_blocks(pass, conduct_start);
     double residual = heat_sum(plan, 0), tolerance = plan->settings.tolerance;
@@ -154,8 +155,9 @@ SingeResult heat_conduct(HeatPass *pass, uint64_t *iterations, double *made, Sin
         double before = residual;
         residual = heat_sum(plan, 0);
         pass->direction = (float)(residual / before);
-        ++*iterations;
+        counters->iterations++;
     }
+    counters->unconverged += residual > enough;
     heat_blocks(pass, conduct_settle);
     heat_blocks(pass, conduct_finish);
     *made = heat_sum(plan, 0);

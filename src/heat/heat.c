@@ -82,7 +82,7 @@ static void heat_exchange(void *context, int begin, int end) {
 
 SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
                       const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
-                      uint64_t *iterations, SingeError *error) {
+                      HeatCounters *counters, SingeError *error) {
     HeatPass pass = {.plan = plan, .shell = shell, .state = state, .pool = pool, .h = h, .dt = h * plan->settings.pace};
     double made = 0;
     heat_matrix_follow(plan, shell, &state->ablate);
@@ -93,7 +93,7 @@ SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, co
     double in = heat_sum(plan, 0), lost = heat_sum(plan, 1), combustion = heat_sum(plan, 2);
 
     // eq 2 and 3: diffusion
-    TRY(heat_conduct(&pass, iterations, &made, error));
+    TRY(heat_conduct(&pass, counters, &made, error));
 
     for (uint32_t i = 0; i < plan->particles; i++) {
         float T = plan->next[i];

@@ -35,7 +35,9 @@ typedef struct HeatSettings {
 
 /// Operators and scratch of the stage, built once.
 typedef struct HeatPlan HeatPlan;
-SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan);
+/// Fails without memory (*error is not filled then) and where a sheet needs a front thickening above 1e6.
+SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
+                             SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).
@@ -44,10 +46,15 @@ float heat_thickening(const HeatPlan *plan, uint32_t sheet);
 float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, float mass_rate, float heating,
                           float ignition_temperature, float ambient_temperature, float cell_size);
 
+typedef struct HeatCounters {
+    uint64_t iterations;  ///< of the diffusion's solver
+    uint64_t unconverged; ///< steps that ended above the tolerance
+} HeatCounters;
+
 /// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is
 /// &state->heat). `view` is handed to callback sources. Returns SINGE_ERROR_DIVERGED with the
-/// particle when a temperature is not finite. *iterations counts the solver's.
+/// particle when a temperature is not finite. Adds to *counters.
 SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources, const ColliderList *colliders,
-                      const SingeView *view, Pool *pool, float h, HeatState *heat, uint64_t *iterations, SingeError *error);
+                      const SingeView *view, Pool *pool, float h, HeatState *heat, HeatCounters *counters, SingeError *error);
 
 #endif

@@ -1,6 +1,9 @@
 // Memory of the stage.
 #include "heat/plan.h"
 
+/// More is a mistake in the material: on cells of a millimetre its front would be a nanometre thick.
+static const float PLAN_THICKENING_MAX = 1e6f;
+
 /// Means of a sheet's parameters over its particles, for the front thickening.
 static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     const Sheet *sheet = &shell->sheets[s];
@@ -33,7 +36,23 @@ static bool plan_allocate(Memory *memory, HeatPlan *plan) {
            NEW(memory, plan->partial, (size_t)plan->blocks);
 }
 
-SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **out) {
+/// F of every sheet; fails where a material needs more than any front does.
+static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *error) {
+    for (uint32_t s = 0; s < plan->sheets; s++) {
+        float needed = plan_thickening(shell, s, plan->settings.ambient_temperature);
+        bool by_hand = shell->sheets[s].material.thickening > 0;
+        if (!by_hand && !(needed <= PLAN_THICKENING_MAX))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1,
+                             "sheet '%s': its fire's front is more than 1000000 times thinner than a cell; lower "
+                             "mass_rate, raise diffusivity or set thickening",
+                             shell->sheets[s].name);
+        plan->thickening[s] = needed;
+    }
+    return SINGE_OK;
+}
+
+SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **out,
+                             SingeError *error) {
     *out = NULL;
     HeatPlan *plan;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
@@ -46,8 +65,9 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     plan->springs = plan->spring_first[SINGE_COLOUR_COUNT];
     SingeResult result = plan_allocate(memory, plan) ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!result) {
-        for (uint32_t s = 0; s < plan->sheets; s++)
-            plan->thickening[s] = plan_thickening(shell, s, settings->ambient_temperature);
+        result = plan_thicken(plan, shell, error);
+    }
+    if (!result) {
         heat_operator(plan, shell);
         heat_plume_frame(&plan->plume, settings->up);
         result = heat_matrix_create(memory, plan, shell);

@@ -84,7 +84,7 @@ void heat_plume_frame(PlumeGrid *grid, const float up[3]);
 
 /// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
 /// the umbrella made.
-SingeResult heat_conduct(HeatPass *pass, uint64_t *iterations, double *made, SingeError *error);
+SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error);
 
 /// Calls run over [0, blocks) through the pool and adds up column c of plan->partial in order.
 void heat_blocks(HeatPass *pass, SingeTaskFn *run);

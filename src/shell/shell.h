@@ -135,7 +135,7 @@ typedef struct BurnState {
 } BurnState;
 
 typedef struct AblateState {
-    uint8_t *particle_flags;  ///< SINGE_ALIVE (SINGE_PINNED is the dynamics')
+    uint8_t *particle_flags;  ///< SINGE_ALIVE; SINGE_PINNED repeats dynamics.pinned for views (step/objects.c sets both)
     uint8_t *cell_flags;      ///< SINGE_ALIVE while any of its triangles is
     uint8_t *spring_flags[SINGE_COLOUR_COUNT];
     uint16_t *degree;         ///< [particles] springs alive at the particle
@@ -186,8 +186,14 @@ void state_rebase(const Shell *shell, State *state, void *arena);
 /// Makes `to` equal to `from`; both were created for this shell. Keeps the arena of `to`.
 void state_copy(const Shell *shell, State *to, const State *from);
 
-/// True where vertex v of the shell belongs to some cell (degree > 0 at the start).
+/// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
+
+/// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
+static inline float shell_burn_progress(float mass, float mass_min) {
+    float progress = (1 - mass) / (1 - mass_min);
+    return progress < 0 ? 0 : progress > 1 ? 1 : progress;
+}
 
 #endif

@@ -40,3 +40,11 @@ void sim_log_commit(const SingeSim *sim) {
             1e-6 * (double)census.memory);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
 }
+
+void sim_log_unconverged(SingeSim *sim) {
+    if (sim->heat_warned) return;
+    sim->heat_warned = true;
+    sim_log(sim, SINGE_LOG_WARNING,
+            "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller time_step or pace, or a "
+            "larger tolerance, helps (said once)");
+}

@@ -14,7 +14,7 @@ static bool in_range(float value, float low, float high) { return value >= low &
 
 static const char *sim_check_solver(const SingeSolverDef *solver) {
     bool seen[SINGE_COLOUR_COUNT] = {false};
-    if (solver->substeps < 1 || solver->substeps > 10000) return "solver.substeps must be between 1 and 10000";
+    if (solver->substeps < 1 || solver->substeps > 1000) return "solver.substeps must be between 1 and 1000";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
@@ -183,7 +183,9 @@ SingeResult sim_build(SingeSim *sim) {
     sim->events.capacity = 0;
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
     ok = ok && (sim->backup = memory_new(memory, sim->state.arena_size, 1)) != NULL;
-    ok = ok && heat_plan_create(memory, shell, &heat, &sim->heat) == SINGE_OK;
+    SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
+    if (result && result != SINGE_ERROR_MEMORY) return result;
+    ok = !result;
     ok = ok && ablate_plan_create(memory, shell, &sim->ablate) == SINGE_OK;
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);

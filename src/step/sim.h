@@ -32,6 +32,7 @@ struct SingeSim {
     void *backup;      ///< the state's arena before the step
     EventList events;
     SingeTimers timers;
+    bool heat_warned;  ///< that the diffusion ran out of iterations
 
     // plans and scratch of the stages
     HeatPlan *heat;
@@ -56,6 +57,8 @@ SingeResult sim_build(SingeSim *sim);
 
 /// Tells the log what was committed, and what will look bad.
 void sim_log_commit(const SingeSim *sim);
+/// Tells it once that conduction is less exact than was asked for.
+void sim_log_unconverged(SingeSim *sim);
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);

@@ -28,8 +28,10 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->events.count = 0;
 
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
-    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat,
-                  &sim->timers.heat_iterations, error));
+    HeatCounters heat = {0, 0};
+    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat, &heat,
+                  error));
+    if (heat.unconverged) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
@@ -48,6 +50,7 @@ static SingeResult step_stages(SingeSim *sim) {
                       &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
+    sim->timers.heat_iterations += heat.iterations;
     sim->timers.strands_projected += counters.strands;
     sim->timers.contacts += counters.contacts;
     return SINGE_OK;

@@ -207,6 +207,33 @@ static void nothing_goes_without_ablation(void **unused) {
     finish(b, plan);
 }
 
+/// Where m_loss lies under m_min the sheet burns to ash and stays whole.
+static void ash_stays_where_loss_is_below_least(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    material.mass_min = singe_param(0.3f), material.mass_loss = singe_param(0.2f);
+    BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
+    AblatePlan *plan = plan_for(b);
+    double partial[1];
+    float thickening = 1;
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 900;
+    for (int n = 0; n < 50; n++) { // 0.04 of the mass a step: ash after 18
+        assert_int_equal(burn_step(&b->shell, &b->state, NULL, 0.1f, 1, &thickening, partial, &b->state.burn,
+                                   &b->events, &b->error),
+                         SINGE_OK);
+        ablate(b, plan);
+    }
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        assert_true(b->state.burn.mass[i] == 0.3f);
+        assert_true(b->state.burn.time_burnt[i] == -1);
+    }
+    expect_springs(b, 36, 12, 24, 18);
+    assert_true(b->state.ablate.mass_removed == 0);
+    assert_int_equal(b->state.ablate.piece_count, 1);
+    assert_int_equal(b->state.ablate.topology_version, 0);
+    finish(b, plan);
+}
+
 static void burn_out_column(BurningSheet *b, uint32_t i) {
     for (uint32_t j = 0; j < b->ny; j++) burn_out_cell(b, i, j);
 }
@@ -459,6 +486,7 @@ int main(void) {
         cmocka_unit_test(yellow_and_green_go_with_the_cell),
         cmocka_unit_test(all_can_go),
         cmocka_unit_test(nothing_goes_without_ablation),
+        cmocka_unit_test(ash_stays_where_loss_is_below_least),
         cmocka_unit_test(pieces_split_and_keep_ids),
         cmocka_unit_test(equal_parts_keep_by_smallest_particle),
         cmocka_unit_test(small_loose_pieces_are_dropped),

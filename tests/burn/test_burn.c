@@ -27,8 +27,8 @@ static void volume_ratio_follows_eq_5(void **unused) {
     // never outside [0.05, 1]
     assert_float_equal(burn_volume_ratio(0.9f, 0.2f, 0.01f), 1, 0);
     assert_float_equal(burn_volume_ratio(0.0f, 0.0f, 1), 0.05f, 0);
-    assert_float_equal(burn_progress(0.6f, 0.2f), 0.5, 1e-6);
-    assert_float_equal(burn_progress(0.1f, 0.2f), 1, 0);
+    assert_float_equal(shell_burn_progress(0.6f, 0.2f), 0.5, 1e-6);
+    assert_float_equal(shell_burn_progress(0.1f, 0.2f), 1, 0);
 }
 
 static void no_exponent_is_a_straight_line(void **unused) {

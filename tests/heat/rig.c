@@ -51,7 +51,7 @@ void rig_open(Rig *rig, const RigDef *def) {
     sheet_source_free(&rig->memory, &source);
     free(positions), free(uv), free(cells);
     assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
-    assert_int_equal(heat_plan_create(&rig->memory, &rig->shell, &rig->settings, &rig->plan), SINGE_OK);
+    assert_int_equal(heat_plan_create(&rig->memory, &rig->shell, &rig->settings, &rig->plan, &rig->error), SINGE_OK);
     rig->sources = (SourceList){.capacity = 2, .items = rig->source};
     rig->colliders = (ColliderList){.capacity = 1, .items = rig->collider};
 }
@@ -70,8 +70,7 @@ void rig_step(Rig *rig) {
     SingeView view = {.time = rig->state.time, .particle_count = rig->shell.particle_count,
                       .temperature = rig->state.heat.temperature};
     if (heat_step(rig->plan, &rig->shell, &rig->state, &rig->sources, &rig->colliders, &view, rig->pool, rig->h,
-                  &rig->state.heat,
-                  &rig->iterations, &rig->error))
+                  &rig->state.heat, &rig->counters, &rig->error))
         fail_msg("%s", rig->error.message);
     rig->state.time += (double)rig->h;
     rig->state.step++;

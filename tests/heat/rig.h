@@ -35,7 +35,7 @@ typedef struct Rig {
     Source source[2];
     Collider collider[1];
     float h;
-    uint64_t iterations;
+    HeatCounters counters;
     SingeError error;
     double removed; ///< J, that left with particles
 } Rig;

@@ -259,6 +259,28 @@ static void linear_temperature_is_steady_on_skewed_quads(void **unused) {
     rig_close(&rig);
 }
 
+/// A long strip and a step of 20 s: the solver stops at its cap, says so, and loses no heat.
+static void iterations_have_an_end(void **unused) {
+    (void)unused;
+    RigDef def = rig_default(600, 1, 0.002f, 0.002f);
+    def.settings.tolerance = 1e-6f;
+    Rig rig;
+    rig_open(&rig, &def);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+        rig.state.heat.temperature[i] = rig_place(&rig, i)[0] < 0.3f ? 900 : 400;
+    double before = rig_content(&rig, 0);
+    rig_step(&rig);
+    assert_int_equal(rig.counters.unconverged, 0);
+    assert_true(rig.counters.iterations > 0 && rig.counters.iterations < 200);
+    rig.counters = (HeatCounters){0, 0};
+    rig.h = 20;
+    rig_step(&rig);
+    assert_int_equal(rig.counters.unconverged, 1);
+    assert_int_equal(rig.counters.iterations, 200);
+    CHECK_NEAR(rig_content(&rig, 0) / before, 1, 1e-6);
+    rig_close(&rig);
+}
+
 static void layers_even_out_at_their_rate(void **unused) {
     (void)unused;
     RigDef def = rig_default(8, 6, 0.002f, 0.003f);
@@ -320,6 +342,7 @@ int main(void) {
         cmocka_unit_test(insulated_sheet_keeps_its_heat),
         cmocka_unit_test(uniform_temperature_stays_to_the_bit),
         cmocka_unit_test(linear_temperature_is_steady_on_skewed_quads),
+        cmocka_unit_test(iterations_have_an_end),
         cmocka_unit_test(layers_even_out_at_their_rate),
         cmocka_unit_test(what_is_gone_conducts_nothing),
     };

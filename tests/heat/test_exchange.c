@@ -163,7 +163,7 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
         SingeView view = {0};
         assert_int_equal(heat_step(rig.plan, &rig.shell, &rig.state, &rig.sources, NULL, &view, NULL, rig.h,
                                    &rig.state.heat,
-                                   &rig.iterations, &rig.error), SINGE_ERROR_DIVERGED);
+                                   &rig.counters, &rig.error), SINGE_ERROR_DIVERGED);
         assert_int_equal(rig.error.element, 7);
         assert_string_equal(rig.error.stage, "heat");
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(rig.state.heat.temperature[i] == 300);
@@ -202,7 +202,7 @@ static void running_out_of_memory_is_clean(void **unused) {
             Memory memory = memory_make((SingeAllocator){failing_resize, &failing});
             HeatPlan *plan = NULL;
             Source source = {0};
-            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan)
+            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)
                                            : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source,
                                                            &rig.error);
             if (!result) {

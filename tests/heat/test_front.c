@@ -101,6 +101,7 @@ static void thickening_by_hand_and_its_limits(void **unused) {
     assert_true(heat_thickening_for(&material, 0, 9e-3f, 2400, 513, 293, 0.01f) == 1);
     assert_true(heat_thickening_for(&material, 1e-5f, 0, 2400, 513, 293, 0.01f) == 1);
     assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 100, 513, 293, 0.01f) == 1);
+    assert_true(heat_thickening_for(&material, 1e-20f, 1e10f, 2400, 513, 293, 0.01f) > 1e6f); // the plan refuses it
 }
 
 int main(void) {

@@ -102,7 +102,7 @@ static void threads_do_not_matter(void **unused) {
         assert_memory_equal(a->temperature, b->temperature, rig.shell.particle_count * sizeof *a->temperature);
         assert_true(a->heat_in == b->heat_in && a->heat_lost == b->heat_lost &&
                     a->heat_of_combustion == b->heat_of_combustion);
-        assert_int_equal(one.iterations, rig.iterations);
+        assert_int_equal(one.counters.iterations, rig.counters.iterations);
         rig_close(&rig);
     }
     rig_close(&one);
@@ -120,7 +120,8 @@ static void a_new_plan_goes_on_to_the_bit(void **unused) {
         for (int step = 0; step < 60; step++) {
             if (k && step == 35) {
                 heat_plan_free(&rigs[k].memory, rigs[k].plan);
-                assert_int_equal(heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan),
+                assert_int_equal(heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan,
+                                                  &rigs[k].error),
                                  SINGE_OK);
             }
             burn(&rigs[k], step % 10 == 0);

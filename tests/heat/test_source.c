@@ -203,6 +203,49 @@ static void plume_heats_what_is_above(void **unused) {
     }
 }
 
+static void lift(float position[3], int column, int row) {
+    (void)column, (void)row;
+    position[2] = 0.006f; // half a cell of the plume's grid
+}
+
+/// Excess temperature of the gas at the middle of a level sheet that burns everywhere, from one heat step. The heat of
+/// combustion and the heat brought in go to `heat`.
+static double plume_excess(float rate, float share, float pace, double heat[2]) {
+    RigDef def = inert(40, 40);
+    def.shape = lift;
+    def.material.heating = singe_param(2400);
+    def.settings.pace = pace;
+    Rig rig;
+    rig_open(&rig, &def);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = rate;
+    SingeSourceDef source = singe_default_source();
+    source.kind = SINGE_SOURCE_PLUME;
+    source.plume_share = share, source.plume_conductance = 1e4f;
+    rig_source(&rig, &source);
+    rig_step(&rig);
+    double own = 300 + 2400 * (double)rate * 0.002, a = 0.002 * (double)pace * 1e4 / PER_AREA;
+    double T = (double)rig.state.heat.temperature[rig_vertex(&rig, 20, 20)];
+    heat[0] = rig.state.heat.heat_of_combustion, heat[1] = rig.state.heat.heat_in;
+    rig_close(&rig);
+    return (T * (1 + a) - own) / a - 293;
+}
+
+/// Both layers set power free over the whole level; half of the cell is below the corners.
+static void plume_follows_its_formula(void **unused) {
+    (void)unused;
+    double once[2], heat[2];
+    double carry = 0.5 * 353 / 293 * 1005 * sqrt(9.81 * 0.1 / 293); // W/(m2 K^1.5)
+    double excess = plume_excess(0.5f, 0.5f, 1, once);
+    CHECK_NEAR(excess, pow(0.5 * 2 * PER_AREA * 2400 * 0.5 * 0.5 / carry, 2.0 / 3), 0.002 * excess);
+    CHECK_NEAR(plume_excess(4, 0.5f, 1, heat), 4 * excess, 0.002 * 4 * excess); // 8 times the power
+    CHECK_NEAR(plume_excess(0.5f, 1, 1, heat), pow(2, 2.0 / 3) * excess, 0.003 * excess);
+    assert_true(heat[0] == once[0] && heat[1] > once[1]); // the share is not taken from combustion
+    CHECK_NEAR(plume_excess(4, 0.5f, 8, heat), excess, 0.002 * excess); // the same fire, shown 8 times as fast
+    CHECK_NEAR(plume_excess(100, 1, 1, heat), 1200, 1);
+    plume_excess(0.5f, 0, 1, heat);
+    assert_true(heat[0] == once[0] && heat[1] == 0);
+}
+
 static void plume_copes_with_any_place(void **unused) {
     (void)unused;
     RigDef def = inert(6, 6);
@@ -275,8 +318,8 @@ int main(void) {
         cmocka_unit_test(relaxes_to_the_source_by_the_formula), cmocka_unit_test(never_overshoots),
         cmocka_unit_test(falls_off_smoothly_and_moves),         cmocka_unit_test(contact_heats_the_near_layer),
         cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
-        cmocka_unit_test(plume_heats_what_is_above),            cmocka_unit_test(plume_copes_with_any_place),
-        cmocka_unit_test(bad_defs_are_refused),
+        cmocka_unit_test(plume_heats_what_is_above),            cmocka_unit_test(plume_follows_its_formula),
+        cmocka_unit_test(plume_copes_with_any_place),           cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);
 }

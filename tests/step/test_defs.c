@@ -40,6 +40,7 @@ static void bad_simulations(void **state) {
     SIM_BAD(wind.gust_size, 0, "gust_size");
     SIM_BAD(wind.velocity[0], NAN, "velocity");
     SIM_BAD(solver.substeps, 0, "substeps");
+    SIM_BAD(solver.substeps, 1001, "substeps");
     SIM_BAD(solver.order[0], SINGE_RED, "order");
     SIM_BAD(solver.order[3], (SingeColour)4, "order");
     SIM_BAD(solver.regularisation[2], 0, "regularisation");
@@ -70,6 +71,7 @@ static void limits_are_inclusive(void **state) {
     SingeError error;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) def.solver.regularisation[i] = 1e-6f;
     def.pace = 1e-6f, def.heat_tolerance = 1e-9f, def.time_step = 1e-9f, def.solver.height_gain = 1;
+    def.solver.substeps = 1000;
     assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
     singe_sim_destroy(sim);
 }

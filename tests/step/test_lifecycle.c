@@ -102,6 +102,14 @@ static void refused_sheets(void **state) {
     test_refused(sim, SINGE_ERROR_MESH, added ? added : singe_sim_commit(sim));
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
     singe_sim_destroy(sim);
+    sim = create(); // a front that no cell comes near to is found there too, and a commit can be tried again
+    fine.material.mass_rate = singe_param(1e12f);
+    test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
+    for (int k = 0; k < 2; k++) {
+        test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim));
+        assert_non_null(strstr(singe_sim_error(sim)->message, "thickening"));
+    }
+    singe_sim_destroy(sim);
     test_mesh_free(&fan);
     test_mesh_free(&good);
     test_mesh_free(&bad);
@@ -213,6 +221,31 @@ static void timers_and_time_grow(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
+static void count_warnings(void *context, SingeLogLevel level, const char *line) {
+    *(int *)context += level == SINGE_LOG_WARNING && strstr(line, "iterations") != NULL;
+}
+
+/// Steps too long for the solver of the heat equation are taken all the same, and one line tells of it.
+static void warns_once_of_conduction_cut_short(void **state) {
+    (void)state;
+    int warnings = 0;
+    SingeSimDef def = singe_default_sim();
+    def.log = (SingeLog){count_warnings, &warnings};
+    SingeMaterialDef material = singe_default_material();
+    material.convection = material.emissivity = 0;
+    SingeSim *sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
+    test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
+    test_steps(sim, 2);
+    assert_int_equal(warnings, 0);
+    singe_sim_destroy(sim);
+    def.pace = 1e5f;
+    sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
+    test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
+    test_steps(sim, 3);
+    assert_int_equal(warnings, 1);
+    singe_sim_destroy(sim);
+}
+
 static void every_byte_is_counted_and_freed(void **state) {
     (void)state;
     TestAllocator hook = {0};
@@ -239,7 +272,7 @@ int main(void) {
         cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
         cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
         cmocka_unit_test(the_log_hears_of_the_commit),
-        cmocka_unit_test(every_byte_is_counted_and_freed),
+        cmocka_unit_test(warns_once_of_conduction_cut_short), cmocka_unit_test(every_byte_is_counted_and_freed),
     };
     return cmocka_run_group_tests_name("step_lifecycle", tests, NULL, NULL);
 }
