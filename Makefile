@@ -6,7 +6,7 @@
 FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
 
-.PHONY: all demo check pictures build build-asan build-fuzz setup clean
+.PHONY: all demo check pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -22,6 +22,16 @@ build-fuzz:
 	cmake --preset fuzz
 	cmake --build --preset fuzz
 
+# without the preview and with only the public names to see, the command still builds
+build-shared:
+	cmake --preset shared
+	cmake --build --preset shared
+
+# what threads share, under the thread sanitizer
+build-tsan:
+	cmake --preset tsan
+	cmake --build --preset tsan --target test_base_pool test_step_threads
+
 demo:
 	scripts/setup.sh
 	$(MAKE) build
@@ -31,7 +41,9 @@ demo:
 check:
 	scripts/setup.sh --check
 	scripts/check_arrows.sh
-	$(MAKE) build build-asan build-fuzz
+	$(MAKE) build build-asan build-fuzz build-shared build-tsan
+	build-shared/cli/singe --version
+	ctest --preset tsan -R "^(base_pool|step_threads)$$"
 	ctest --preset asan -j2
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 	ctest --preset release -j2
@@ -40,4 +52,4 @@ pictures:
 	scripts/draw_pictures.sh
 
 clean:
-	rm -rf build build-asan build-tsan build-fuzz
+	rm -rf build build-asan build-tsan build-fuzz build-shared
