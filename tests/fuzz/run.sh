@@ -1,41 +1,45 @@
 #!/bin/sh
-# Runs every fuzz target for some seconds: run.sh BUILD_DIR [SECONDS]. Fails when one of them finds something;
-# what it found is left in BUILD_DIR/fuzz/TARGET/.
+# Runs every fuzz target for some seconds, two at a time: run.sh BUILD_DIR [SECONDS]. Fails when one of them finds
+# something; what it found is left in BUILD_DIR/fuzz/TARGET/.
 set -u
 build=${1:?usage: run.sh BUILD_DIR [SECONDS]}
 seconds=${2:-30}
 seeds=$(cd "$(dirname "$0")" && pwd)/seeds
 build=$(cd "$build" && pwd) || exit 2
-status=0
 export UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
-found=0
-summary=""
-for program in "$build"/tests/fuzz/fuzz_*; do
-    [ -f "$program" ] && [ -x "$program" ] || continue
-    found=1
-    name=$(basename "$program" | sed 's/^fuzz_//')
+
+# Leaves its summary in BUILD_DIR/fuzz/TARGET/summary.
+fuzz() {
+    name=$(basename "$1" | sed 's/^fuzz_//')
     work=$build/fuzz/$name
     mkdir -p "$work/corpus" "$work/findings"
     start="$work/corpus"
     if [ -d "$seeds/$name" ]; then start="$start $seeds/$name"; fi
-    echo "fuzz_$name: $seconds s"
     # shellcheck disable=SC2086
-    if "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+    if "$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
         -artifact_prefix="$work/findings/" $start >"$work/log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/log")
-        summary="$summary  fuzz_$name: ok, ${runs:-?} runs
-"
+        echo "  fuzz_$name: ok, ${runs:-?} runs" >"$work/summary"
     else
-        status=1
         tail -n 40 "$work/log"
-        summary="$summary  fuzz_$name: FOUND SOMETHING, see $work/log and $work/findings
-"
+        echo "  fuzz_$name: FOUND SOMETHING, see $work/log and $work/findings" >"$work/summary"
     fi
+}
+
+rm -f "$build"/fuzz/*/summary
+count=0
+for program in "$build"/tests/fuzz/fuzz_*; do
+    [ -f "$program" ] && [ -x "$program" ] || continue
+    count=$((count + 1))
+    echo "$(basename "$program"): $seconds s"
+    fuzz "$program" &
+    [ $((count % 2)) = 1 ] || wait
 done
-if [ $found = 0 ]; then
+wait
+if [ $count = 0 ]; then
     echo "no fuzz targets under $build/tests/fuzz" >&2
     exit 2
 fi
 echo "fuzzing:"
-printf '%s' "$summary"
-exit $status
+cat "$build"/fuzz/*/summary
+[ "$(cat "$build"/fuzz/*/summary | grep -c ': ok, ')" = $count ]
