@@ -1,4 +1,5 @@
 // The files of a scene: meshes, transformed, and pictures.
+#include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
 
@@ -121,7 +122,7 @@ static void *many(Loader *loader, size_t count, size_t size) {
 
 SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
     Loader loader = {scene, assets, messages, false};
-    uint32_t before = message_total(messages);
+    uint32_t before = message_total(messages), first = messages->count;
     *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
@@ -138,6 +139,9 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
             load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
     if (message_total(messages) == before && !loader.no_memory)
         return SINGE_OK;
+    if (!loader.no_memory)
+        sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
+    messages_sort(messages, first);
     scene_assets_free(assets);
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
 }
