@@ -69,7 +69,7 @@ const Schema schema_noise = {
 // ---- sheets
 
 static const SchemaRow grid_rows[] = {
-    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e6),
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4),
      .flags = ROW_REQUIRED, .doc = "along x and y"},
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "how many cells along x and y"},
@@ -176,11 +176,12 @@ static const SchemaRow sheet_rows[] = {
      .doc = "PNG or JPEG, printed on both sides in the preview"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
-    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e6),
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
      .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
     {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
      .doc = "about x, then y, then z, after the scaling"},
-    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, ANY, .doc = "after the rotation"},
+    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
+     .doc = "after the rotation; a sheet must lie within 10 km of the origin"},
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
     {"drop_pieces_below", ROW_FLOAT, DIM_AREA, AT(SceneSheet, drop_pieces_below), FROM(0),
      .doc = "loose pieces smaller than this vanish; 0 keeps all"},

@@ -184,10 +184,14 @@ static void test_bad_meshes(void **state) {
             assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
         scene_messages_free(&messages);
     }
-    SceneMessages messages = refused("sheets:\n  - grid: {size: [1e-6, 1e6], cells: [2, 2]}\n  - mesh: fan.obj\n", folder);
+    SceneMessages messages = refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: fan.obj\n", folder);
     assert_int_equal(messages.count, 2);
     assert_string_equal(messages.items[0].origin, "t.yaml:2:5");
     assert_non_null(strstr(messages.items[0].text, "the grid cannot be used: cell 0 has"));
+    scene_messages_free(&messages);
+    messages = refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n", folder);
+    assert_int_equal(messages.count, 1);
+    assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
     scene_messages_free(&messages);
     static const char *const names[] = {"fan.obj", "flat.ply", "touch.obj", "words.obj"};
     for (int i = 0; i < 4; i++) {
