@@ -83,6 +83,17 @@ class Usage(Case):
             self.assertIn(word, out)
         self.assertEqual(sorted(os.listdir(self.dir)), ["tiny.yaml"], "check writes no files")
 
+    def test_check_says_good_last(self):
+        out, _ = self.singe("check", self.scene)
+        self.assertEqual(out.splitlines()[-1], self.scene + ": good")
+        # a scene that is well formed and fails in its first step
+        out, err = self.singe("check", self.scene, "--set", "sheets.0.velocity=[1e6, 0, 0]", "--set", "air_density=0",
+                             expect=1)
+        self.assertNotIn("good", out)
+        self.assertIn("error", err)
+        help = " ".join(self.singe("check", "--help")[0].split())
+        self.assertIn("1 a step of it fails", help)
+
     def test_check_set(self):
         out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[4, 4]", "--frames=3")
         self.assertIn("particles     41", out)
