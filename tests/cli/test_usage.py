@@ -1,9 +1,10 @@
 """Usage, check, and what is refused before anything is written."""
 
 import os
+import subprocess
 import unittest
 
-from support import SINGE, Case
+from support import HAS_PREVIEW, SINGE, Case
 
 
 class Usage(Case):
@@ -93,6 +94,17 @@ class Usage(Case):
         self.assertIn("error", err)
         help = " ".join(self.singe("check", "--help")[0].split())
         self.assertIn("1 a step of it fails", help)
+
+    def test_standard_output_that_is_full(self):
+        self.singe("run", self.scene, "-o", self.path("o"), "--no-preview", "--quiet")
+        for args in (["--help"], ["--version"], ["run", "--help"], ["check", self.scene], ["scene-doc"],
+                     ["run", self.scene, "-o", self.path("p"), "--no-preview"],
+                     ["render", self.path("o"), "--sheet", "2x1"] if HAS_PREVIEW else ["render", "--help"]):
+            with self.subTest(args), open("/dev/full", "w") as full:
+                done = subprocess.run([SINGE, *args], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("error: cannot write to standard output: No space left on device", done.stderr)
+        self.singe("run", self.scene, "-o", self.path("o"), "--no-preview", "--quiet") # which prints nothing
 
     def test_check_set(self):
         out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[4, 4]", "--frames=3")
