@@ -198,12 +198,15 @@ bool value_is_text(const Node *node) {
     return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];
 }
 
+bool value_names_files(const char *text) {
+    bool good = *text && *text != '.' && strlen(text) <= 100;
+    for (const char *c = text; good && *c; c++)
+        good = (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c);
+    return good;
+}
+
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
-    bool good = value_is_text(node) && strlen(node->text) <= 100;
-    for (const char *c = good ? node->text : ""; *c; c++)
-        good = good && (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c) &&
-               !(c == node->text && *c == '.');
-    if (good)
+    if (value_is_text(node) && value_names_files(node->text))
         *field = node->text;
     else
         value_wrong(reader, node, row);

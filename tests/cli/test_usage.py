@@ -77,6 +77,17 @@ class Usage(Case):
         self.singe("run", bad, expect=2, cwd=self.dir)
         self.singe("check", bad, expect=2, cwd=self.dir)
 
+    def test_one_rule_for_names(self):
+        """A name that the scene gives, and one taken from its file."""
+        for name in "a:b", "100%", "n" * 101, ".dot":
+            with self.subTest(name):
+                given = self.write_scene("given.yaml", extra=f'name: "{name}"\n')
+                self.assertIn("at most 100 characters", self.singe("check", given, expect=2)[1])
+                taken = self.write_scene(name + ".yaml")
+                self.assertIn("give the scene a name", self.singe("check", taken, expect=2)[1])
+                self.singe("check", taken, "--set", "name=good")
+        self.singe("check", self.write_scene("n" * 100 + ".yaml"))
+
     def test_check(self):
         out, _ = self.singe("check", self.scene)
         for word in ("particles     313", "springs       1440", "red         576", "green       264", "blue        312",
