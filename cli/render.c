@@ -207,7 +207,7 @@ static ExitCode render_frames(Render *render) {
     int width, height;
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
-    if (!result) result = folder_create(&render->folder, &error);
+    if (!result) result = folder_create(&render->folder, !o->only_sheet, &error);
     if (!result && o->columns) {
         pictures_size(render->pictures, &width, &height);
         result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);

@@ -246,7 +246,7 @@ static ExitCode resume(Run *run) {
 static ExitCode start(Run *run) {
     SingeError error = {0};
     int removed = 0;
-    SingeResult result = folder_clean(&run->folder, &removed, &error);
+    SingeResult result = folder_clean(&run->folder, run->pictures != NULL, &removed, &error);
     if (removed)
         console_note(run->console, "removed %d files of an earlier run of '%s' in %s", removed, run->folder.name,
                      run->folder.path);
@@ -267,7 +267,7 @@ static ExitCode prepare(Run *run, const RunOptions *options) {
     if (options->resume && (code = resume(run))) return code;
     // built before anything of an earlier run is touched
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
-    result = folder_create(&run->folder, &error);
+    result = folder_create(&run->folder, run->pictures != NULL, &error);
     if (!result) result = folder_sweep(&run->folder, &error);
     if (result) return fail(run, &error, EXIT_FAILED);
     return run->first ? EXIT_GOOD : start(run);
