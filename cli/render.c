@@ -222,10 +222,10 @@ static ExitCode render_frames(Render *render) {
     if (interrupted) return EXIT_FAILED;
     if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
     if (o->first || o->only_sheet) return EXIT_GOOD;
-    if (video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first, render->last) &&
-        !o->quiet)
-        printf("%s\n", render->folder.video);
-    return EXIT_GOOD;
+    VideoResult video = video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first,
+                                   render->last);
+    if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.video);
+    return video == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
 }
 
 int command_render(int argc, char **argv) {

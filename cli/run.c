@@ -32,7 +32,7 @@ static const ArgCommand run_command = {
     "run", "SCENE", "Burns what the scene file describes and leaves a cache, pictures, a video and numbers in DIR.",
     run_options, OPT_COUNT,
     "Ctrl-C ends the run after its frame; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
-    "interrupted, 2 bad input."};
+    "interrupted, or its video did, 2 bad input."};
 
 typedef struct RunOptions {
     const char *scene, *output;
@@ -285,8 +285,10 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     }
     stats_close(&run->stats);
     console_clear(run->console);
+    VideoResult video = VIDEO_NO_PROGRAM;
     if (run->pictures && record->frames_done > 0)
-        record->video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
+        video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
+    record->video = video == VIDEO_MADE;
     run->totals->wall_seconds = run->wall_before + console_clock() - run->started;
     if (record_write(record, &run->folder, &run->job, &write_error)) {
         console_result(run->console, &write_error);
@@ -302,7 +304,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                  stats.particles);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
     if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume goes on from here");
-    return strcmp(record->result, "complete") == 0 ? EXIT_GOOD : EXIT_FAILED;
+    return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;
 }
 
 static ExitCode run_scene(Run *run, const RunOptions *options) {

@@ -104,6 +104,27 @@ class Output(Case):
             self.assertEqual(os.system(command), 0)
             self.assertTrue(os.path.exists(self.path("o", "preview.mp4")))
 
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_ffmpeg_that_fails(self):
+        """All else is there, the reason is told even to the quiet, and the exit code is 1."""
+        for number, (script, why) in enumerate((
+            ("exit 3", "ffmpeg failed (exit 3)"),
+            ("kill -9 $$", "ffmpeg was stopped (signal 9)"),
+            ("exit 0", "cannot write preview.mp4"),
+        )):
+            out, env = f"o{number}", self.fake_ffmpeg(script)
+            with self.subTest(script):
+                _, err = self.run_scene(out, "--frames", "2", "--quiet", preview=True, expect=1, env=env)
+                self.assertIn("error: no video: " + why, err)
+                self.assertIn("\n  ffmpeg ", err)
+                self.assertEqual(set(os.listdir(self.path(out))),
+                                 {"checkpoint.singe", "frames", "ply", "run.json", "stats.csv"})
+                self.assertEqual((self.record(out)["result"], self.record(out)["video"]), ("complete", False))
+                shown, err = self.singe("render", self.path(out), expect=1, env=env)
+                self.assertIn("error: no video: " + why, err)
+                self.assertNotIn("preview.mp4", shown)
+                self.assertEqual(len(os.listdir(self.path(out, "frames"))), 2)
+
     def test_no_preview_leaves_no_frames(self):
         self.run_scene("o", "--frames", "2")
         self.assertEqual(set(os.listdir(self.path("o"))), {"checkpoint.singe", "ply", "run.json", "stats.csv"})
