@@ -16,7 +16,8 @@ static const ArgOption check_options[OPT_COUNT] = {
 
 static const ArgCommand check_command = {
     "check", "SCENE", "Reads a scene with its meshes and pictures, builds it, and says what it consists of and costs.",
-    check_options, OPT_COUNT, "Exit codes: 0 the scene is good, 1 no memory, 2 bad input."};
+    check_options, OPT_COUNT, "Exit codes: 0 the scene is good; 1 a step of it fails, there is no memory, or standard output cannot be written;\n"
+    "2 bad input."};
 
 /// Real steps are timed until there are this many or this much time has gone.
 enum { CHECK_STEPS = 10 };
@@ -91,7 +92,6 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         float thickening = singe_sim_stats(sim).thickening;
         CheckTimes times = {0};
         SingeError error = {0};
-        printf("%s: good\n", path);
         report_shell(&census);
         if (time_steps(&job, sim, &times, &error)) {
             fflush(stdout);
@@ -99,6 +99,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
             code = EXIT_FAILED;
         } else {
             report_times(&job, &times, thickening);
+            printf("%s: good\n", path); // now that it has made its first steps
         }
     }
     singe_sim_destroy(sim);

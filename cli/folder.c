@@ -65,10 +65,10 @@ static SingeResult make_all(const char *path, SingeError *error) {
     return result;
 }
 
-SingeResult folder_create(const Folder *folder, SingeError *error) {
+SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error) {
     static const char *const inner[] = {"ply", "frames"};
     SingeResult result = make_all(folder->path, error);
-    for (int i = 0; i < 2 && !result; i++) {
+    for (int i = 0; i < 1 + pictures && !result; i++) {
         char *path = text_format("%s/%s", folder->path, inner[i]);
         result = make_one(path, error);
         if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
@@ -113,13 +113,13 @@ static SingeResult remove_file(const char *path, int *removed, SingeError *error
     return SINGE_OK;
 }
 
-/// Removes frames, where `frames` is set, and what a killed run left half written.
+/// Removes frames, where `frames` is set, and what a killed run left half written. The folder need not be there.
 static SingeResult clean_frames(const Folder *folder, const char *inner, const char *ending, bool frames, int *removed,
                                 SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner);
     DIR *dir = opendir(path);
-    SingeResult result = dir ? SINGE_OK : folder_fail(path, "list", errno, error);
-    for (struct dirent *entry; !result && (entry = readdir(dir));) {
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+    for (struct dirent *entry; dir && (entry = readdir(dir)) && !result;) {
         const char *rest;
         if (!frame_of(folder, entry->d_name, ending, &rest)) continue;
         if (!(*rest == 0 && frames) && !is_temporary(rest)) continue;
@@ -160,13 +160,18 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     return result;
 }
 
-SingeResult folder_clean(const Folder *folder, int *removed, SingeError *error) {
+SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error) {
     *removed = 0;
     // the checkpoint goes first: without its frames it must not be resumed from
     SingeResult result = remove_file(folder->checkpoint, removed, error);
     if (!result) result = remove_file(folder->video, removed, error);
     if (!result) result = clean_frames(folder, "ply", ".ply", true, removed, error);
     if (!result) result = clean_frames(folder, "frames", ".png", true, removed, error);
+    if (!result && !pictures) {
+        char *frames = text_format("%s/frames", folder->path);
+        rmdir(frames); // fails, and may, where something else is in it
+        free(frames);
+    }
     return result;
 }
 

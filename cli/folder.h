@@ -18,16 +18,16 @@ typedef struct Folder {
 Folder folder_name(const char *path, const char *name);
 void folder_free(Folder *folder);
 
-/// Makes the folder, those above it, and the two in it.
-SINGE_NODISCARD SingeResult folder_create(const Folder *folder, SingeError *error);
+/// Makes the folder, those above it, ply/ and, for `pictures`, frames/ in it.
+SINGE_NODISCARD SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error);
 
 /// Paths of a frame, from malloc.
 char *folder_ply(const Folder *folder, int frame);
 char *folder_png(const Folder *folder, int frame);
 
 /// Removes what an earlier run of the same name left (its frames, checkpoint, video), and nothing that is
-/// not named as such files are. *removed is the number of files.
-SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, int *removed, SingeError *error);
+/// not named as such files are. *removed is the number of files. Without `pictures` an empty frames/ goes too.
+SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error);
 
 /// Removes what a killed run left half written under temporary names.
 SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);

@@ -1,7 +1,6 @@
 #include "cli/job.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/text.h"
@@ -48,15 +47,6 @@ static void *libc_resize(void *context, void *block, size_t old_size, size_t new
     return NULL;
 }
 
-/// Names become file names.
-static bool scene_good(Console *console, const Scene *scene) {
-    const char *name = scene->name;
-    if (*name && *name != '.' && !strchr(name, '/') && strlen(name) <= 200) return true;
-    console_error(console,
-                  "the scene's name '%s' cannot name files: expected 1 to 200 characters, no '/', no '.' first", name);
-    return false;
-}
-
 static ExitCode finish_open(Job *job, Console *console, SingeResult result, SceneMessages *messages, int threads) {
     if (!result) result = scene_load(job->scene, &job->assets, messages);
     if (result) {
@@ -73,10 +63,6 @@ static ExitCode finish_open(Job *job, Console *console, SingeResult result, Scen
         job->hooks.thread_count = threads;
     }
     scene_messages_free(messages);
-    if (!result && !scene_good(console, job->scene)) {
-        job_close(job);
-        return EXIT_INPUT;
-    }
     return job_exit(result);
 }
 

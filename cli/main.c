@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,6 +27,16 @@ static void help(void) {
            "Exit codes: 0 good, 1 the run failed or was interrupted, 2 bad input.\n");
 }
 
+/// What was printed must have arrived: a full disk or a closed pipe is a failure.
+static int finish(int code) {
+    errno = 0;
+    bool failed = fflush(stdout) != 0;
+    if (!failed && !ferror(stdout)) return code;
+    fprintf(stderr, "singe: error: cannot write to standard output%s%s\n", errno ? ": " : "",
+            errno ? strerror(errno) : "");
+    return code == EXIT_GOOD ? EXIT_FAILED : code;
+}
+
 int main(int argc, char **argv) {
     if (argc < 2) {
         fputs("singe: error: needs a command: run, check or render\nsee: singe --help\n", stderr);
@@ -33,14 +44,14 @@ int main(int argc, char **argv) {
     }
     const char *word = argv[1];
     for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(word, commands[i].name) == 0) return commands[i].run(argc - 2, argv + 2);
+        if (strcmp(word, commands[i].name) == 0) return finish(commands[i].run(argc - 2, argv + 2));
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
         help();
-        return EXIT_GOOD;
+        return finish(EXIT_GOOD);
     }
     if (strcmp(word, "--version") == 0) {
         printf("singe %s\n", singe_version());
-        return EXIT_GOOD;
+        return finish(EXIT_GOOD);
     }
     const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
     fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", word);

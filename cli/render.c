@@ -207,7 +207,7 @@ static ExitCode render_frames(Render *render) {
     int width, height;
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
-    if (!result) result = folder_create(&render->folder, &error);
+    if (!result) result = folder_create(&render->folder, !o->only_sheet, &error);
     if (!result && o->columns) {
         pictures_size(render->pictures, &width, &height);
         result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);
@@ -222,10 +222,10 @@ static ExitCode render_frames(Render *render) {
     if (interrupted) return EXIT_FAILED;
     if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
     if (o->first || o->only_sheet) return EXIT_GOOD;
-    if (video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first, render->last) &&
-        !o->quiet)
-        printf("%s\n", render->folder.video);
-    return EXIT_GOOD;
+    VideoResult video = video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first,
+                                   render->last);
+    if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.video);
+    return video == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
 }
 
 int command_render(int argc, char **argv) {

@@ -32,7 +32,7 @@ static const ArgCommand run_command = {
     "run", "SCENE", "Burns what the scene file describes and leaves a cache, pictures, a video and numbers in DIR.",
     run_options, OPT_COUNT,
     "Ctrl-C ends the run after its frame; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
-    "interrupted, 2 bad input."};
+    "interrupted, or its video did, 2 bad input."};
 
 typedef struct RunOptions {
     const char *scene, *output;
@@ -246,7 +246,7 @@ static ExitCode resume(Run *run) {
 static ExitCode start(Run *run) {
     SingeError error = {0};
     int removed = 0;
-    SingeResult result = folder_clean(&run->folder, &removed, &error);
+    SingeResult result = folder_clean(&run->folder, run->pictures != NULL, &removed, &error);
     if (removed)
         console_note(run->console, "removed %d files of an earlier run of '%s' in %s", removed, run->folder.name,
                      run->folder.path);
@@ -267,7 +267,7 @@ static ExitCode prepare(Run *run, const RunOptions *options) {
     if (options->resume && (code = resume(run))) return code;
     // built before anything of an earlier run is touched
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
-    result = folder_create(&run->folder, &error);
+    result = folder_create(&run->folder, run->pictures != NULL, &error);
     if (!result) result = folder_sweep(&run->folder, &error);
     if (result) return fail(run, &error, EXIT_FAILED);
     return run->first ? EXIT_GOOD : start(run);
@@ -285,8 +285,10 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     }
     stats_close(&run->stats);
     console_clear(run->console);
+    VideoResult video = VIDEO_NO_PROGRAM;
     if (run->pictures && record->frames_done > 0)
-        record->video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
+        video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
+    record->video = video == VIDEO_MADE;
     run->totals->wall_seconds = run->wall_before + console_clock() - run->started;
     if (record_write(record, &run->folder, &run->job, &write_error)) {
         console_result(run->console, &write_error);
@@ -302,7 +304,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                  stats.particles);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
     if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume goes on from here");
-    return strcmp(record->result, "complete") == 0 ? EXIT_GOOD : EXIT_FAILED;
+    return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;
 }
 
 static ExitCode run_scene(Run *run, const RunOptions *options) {

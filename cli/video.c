@@ -39,7 +39,7 @@ static char *shell_quote(const char *text) {
     return quoted;
 }
 
-static void tell_command(Console *console, const char *why, char *const *arguments) {
+static void tell_command(Console *console, VideoResult result, const char *why, char *const *arguments) {
     char *line = text_format("ffmpeg");
     for (char *const *a = arguments + 1; *a; a++) {
         char *quoted = shell_quote(*a), *longer = text_format("%s %s", line, quoted);
@@ -47,12 +47,13 @@ static void tell_command(Console *console, const char *why, char *const *argumen
         free(line);
         line = longer;
     }
-    console_warn(console, "%s; to make the video later:\n  %s", why, line);
+    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no video: %s; to make it later:\n  %s", why, line);
+    else console_error(console, "no video: %s; to make it later:\n  %s", why, line);
     free(line);
 }
 
-/// Runs the program and waits. 0: it ended well; else why not.
-static const char *spawn(char *const *arguments, char why[160]) {
+/// Runs the program and waits. Unless it ended well, `why` says why not.
+static VideoResult spawn(char *const *arguments, char why[160]) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t shielded; // what the program ignores the child must not
@@ -70,17 +71,17 @@ static const char *spawn(char *const *arguments, char why[160]) {
     posix_spawn_file_actions_destroy(&actions);
     if (reason) {
         snprintf(why, 160, "cannot run ffmpeg (%s)", strerror(reason));
-        return why;
+        return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;
     }
-    int status;
+    int status = 0; // kept where the system has reaped the child itself; then the file tells
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return NULL;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return VIDEO_MADE;
     if (WIFEXITED(status)) snprintf(why, 160, "ffmpeg failed (exit %d)", WEXITSTATUS(status));
-    else snprintf(why, 160, "ffmpeg was stopped");
-    return why;
+    else snprintf(why, 160, "ffmpeg was stopped (signal %d)", WTERMSIG(status));
+    return VIDEO_FAILED;
 }
 
-bool video_make(Console *console, const Folder *folder, double fps, int first, int last) {
+VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last) {
     char *path = pattern_escape(folder->path), *name = pattern_escape(folder->name), why[160];
     // "file:" keeps a colon in a path from being read as a protocol, and a dash as an option
     char *input = text_format("file:%s/frames/%s.%%04d.png", path, name);
@@ -93,17 +94,17 @@ bool video_make(Console *console, const Folder *folder, double fps, int first, i
                          "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
                          "-movflags", "+faststart", "-f", "mp4", part, NULL};
     int last_argument = (int)(sizeof arguments / sizeof *arguments) - 2;
-    const char *failure = spawn(arguments, why);
+    VideoResult result = spawn(arguments, why);
     const char *written = part + 5;
-    if (!failure && rename(written, folder->video) != 0) {
+    if (result == VIDEO_MADE && rename(written, folder->video) != 0) {
         snprintf(why, sizeof why, "cannot write preview.mp4 (%s)", strerror(errno));
-        failure = why;
+        result = VIDEO_FAILED;
     }
-    if (failure) {
+    if (result != VIDEO_MADE) {
         unlink(written);
         arguments[last_argument] = final;
-        tell_command(console, failure, arguments);
+        tell_command(console, result, why, arguments);
     }
     free(path), free(name), free(input), free(part), free(final), free(rate), free(start), free(count);
-    return !failure;
+    return result;
 }

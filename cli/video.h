@@ -5,8 +5,14 @@
 #include "cli/console.h"
 #include "cli/folder.h"
 
-/// Makes the video of the frames from `first` up to `last`. Without ffmpeg, or when it fails, a warning tells the
-/// command that makes it later. True when the video is there.
-bool video_make(Console *console, const Folder *folder, double fps, int first, int last);
+typedef enum VideoResult {
+    VIDEO_MADE,
+    VIDEO_NO_PROGRAM, ///< there is no ffmpeg
+    VIDEO_FAILED,     ///< there is, but it left no video
+} VideoResult;
+
+/// Makes the video of the frames from `first` up to `last`. A warning where there is no ffmpeg, or an error where it
+/// fails, tells why and the command that makes the video later.
+VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last);
 
 #endif

@@ -30,6 +30,7 @@ typedef struct Mesh {
     float *positions;  ///< [3 * vertex_count], file units
     float *uv;         ///< [2 * vertex_count] or NULL
     uint32_t *cells;   ///< [4 * cell_count]
+    uint32_t *cell_lines; ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
     SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
     SingeAllocator allocator;
 } Mesh;

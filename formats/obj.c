@@ -228,6 +228,7 @@ static SingeResult obj_fill_cells(Obj *obj, Mesh *mesh) {
                               (unsigned long long)obj->uv_count);
             cell[k] = (uint32_t)face->vertex[k];
         }
+        mesh->cell_lines[f] = face->line;
         int repeat = mesh_cell_repeats(cell);
         if (repeat >= 0)
             return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line, "%s:%u: face uses vertex %u twice",
@@ -269,9 +270,10 @@ static bool obj_has_uv(const Obj *obj) {
 
 static SingeResult obj_finish(Obj *obj, Mesh *mesh) {
     mesh->allocator = obj->allocator;
-    mesh->cells = store_new(obj->allocator, obj->face_count, 4 * sizeof *mesh->cells);
-    if (!mesh->cells) return refuse_memory(obj->error, "obj", obj->name);
     mesh->cell_count = (uint32_t)obj->face_count;
+    mesh->cells = store_new(obj->allocator, obj->face_count, 4 * sizeof *mesh->cells);
+    mesh->cell_lines = store_new(obj->allocator, obj->face_count, sizeof *mesh->cell_lines);
+    if (!mesh->cells || !mesh->cell_lines) return refuse_memory(obj->error, "obj", obj->name);
     TRY(obj_fill_cells(obj, mesh));
     if (!store_trim(obj->allocator, &obj->positions, &obj->position_capacity, obj->position_count,
                     sizeof *obj->positions))

@@ -52,5 +52,6 @@ void mesh_free(Mesh *mesh) {
     store_free(mesh->allocator, mesh->positions, vertices, 3 * sizeof *mesh->positions);
     store_free(mesh->allocator, mesh->uv, vertices, 2 * sizeof *mesh->uv);
     store_free(mesh->allocator, mesh->cells, mesh->cell_count, 4 * sizeof *mesh->cells);
+    store_free(mesh->allocator, mesh->cell_lines, mesh->cell_count, sizeof *mesh->cell_lines);
     memset(mesh, 0, sizeof *mesh);
 }

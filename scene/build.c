@@ -1,4 +1,5 @@
 // From a scene and its files to a simulation.
+#include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
 
@@ -35,26 +36,43 @@ static SingeResult no_memory(SceneBuilder *builder, ScenePlace place) {
     return SINGE_ERROR_MEMORY;
 }
 
-static SingeResult build_sheet(SceneBuilder *builder, uint32_t index) {
-    const SceneSheet *sheet = &builder->scene->sheets[index];
-    const Mesh *mesh = &builder->assets->meshes[index];
-    SingeSheetDef def = singe_default_sheet();
-    def.name = sheet->name;
-    def.vertex_count = mesh->vertex_count;
-    def.positions = mesh->positions;
-    def.cell_count = mesh->cell_count;
-    def.cells = mesh->cells;
-    def.uv = mesh->uv;
-    def.attribute_count = mesh->attribute_count;
-    def.attributes = mesh->attributes;
-    def.material = sheet->material.def;
+void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t index, SingeSheetDef *def) {
+    const SceneSheet *sheet = &scene->sheets[index];
+    const Mesh *mesh = &assets->meshes[index];
+    *def = singe_default_sheet();
+    def->name = sheet->name;
+    def->vertex_count = mesh->vertex_count;
+    def->positions = mesh->positions;
+    def->cell_count = mesh->cell_count;
+    def->cells = mesh->cells;
+    def->uv = mesh->uv;
+    def->attribute_count = mesh->attribute_count;
+    def->attributes = mesh->attributes;
+    def->material = sheet->material.def;
     for (int i = 0; i < SCENE_PARAM_COUNT; i++)
-        material_param(&def.material, i)->picture = builder->assets->params[index][i];
+        material_param(&def->material, i)->picture = assets->params[index][i];
     for (int c = 0; c < 3; c++)
-        def.velocity[c] = sheet->velocity[c];
-    def.drop_pieces_below = sheet->drop_pieces_below;
-    SingeResult result = singe_sim_add_sheet(builder->sim, &def, &builder->sheets[index]);
-    return result ? build_fail(builder, result, sheet->place, singe_sim_error(builder->sim)) : SINGE_OK;
+        def->velocity[c] = sheet->velocity[c];
+    def->drop_pieces_below = sheet->drop_pieces_below;
+}
+
+/// Adds the sheets and commits. When one is refused, the others are looked at as well.
+static SingeResult build_sheets(SceneBuilder *builder) {
+    const Scene *scene = builder->scene;
+    SingeResult result = SINGE_OK;
+    ScenePlace place = {0};
+    for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
+        SingeSheetDef def;
+        scene_sheet_def(scene, builder->assets, i, &def);
+        place = scene->sheets[i].place;
+        result = singe_sim_add_sheet(builder->sim, &def, &builder->sheets[i]);
+    }
+    if (!result && (result = singe_sim_commit(builder->sim)) && scene->sheet_count > 1)
+        place = (ScenePlace){0};
+    if (result && (result == SINGE_ERROR_MEMORY ||
+                   !sheet_faults(scene, builder->assets, FAULTS_OF_SHEETS, builder->messages)))
+        return build_fail(builder, result, place, singe_sim_error(builder->sim));
+    return result;
 }
 
 static SingeResult build_source(SceneBuilder *builder, uint32_t index) {
@@ -110,12 +128,7 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
 
 static SingeResult build_all(SceneBuilder *builder) {
     const Scene *scene = builder->scene;
-    SingeResult result = SINGE_OK;
-    for (uint32_t i = 0; i < scene->sheet_count && !result; i++)
-        result = build_sheet(builder, i);
-    if (!result && (result = singe_sim_commit(builder->sim)))
-        build_fail(builder, result, scene->sheet_count == 1 ? scene->sheets[0].place : (ScenePlace){0},
-                   singe_sim_error(builder->sim));
+    SingeResult result = build_sheets(builder);
     for (uint32_t i = 0; i < scene->source_count && !result; i++)
         result = build_source(builder, i);
     for (uint32_t i = 0; i < scene->collider_count && !result; i++)

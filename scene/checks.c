@@ -150,8 +150,20 @@ static void resolve_pin(Reader *reader, const Node *node, Scene *scene, ScenePin
                 pin->sheet, nearest_hint(&nearest, hint, sizeof hint));
 }
 
+// The step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10.
+static void check_step(Reader *reader, const Node *map, const Scene *scene) {
+    double rate = (double)scene->fps * scene->steps;
+    const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *node = fps ? fps : steps;
+    if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6))
+        return;
+    message_add(reader->messages, reader->text, node ? node->place : map->place,
+                "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
+                (double)scene->fps, scene->steps, rate);
+}
+
 void finish_scene(Reader *reader, const Node *map, void *object) {
     Scene *scene = object;
+    check_step(reader, map, scene);
     const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count)

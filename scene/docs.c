@@ -135,12 +135,13 @@ static bool has_default(const SchemaRow *row, const void *object) {
 }
 
 static void put_row(FILE *file, const SchemaRow *row, const void *object) {
-    char range[80] = "";
-    if (row->min > -1e6)
-        row_range(row, range, sizeof range);
+    char range[80];
+    row_range(row, range, sizeof range);
+    if (strcmp(range, "-1000000 to 1000000") == 0) // goes without saying
+        range[0] = 0;
     fprintf(file, "| `%s` | ", row->key);
     put_type(file, row);
-    fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "", row->flags & ROW_NONE ? "any, none" : "");
+    fprintf(file, " | %s%s%s | ", range, row->flags & ROW_INF ? ", inf" : "", row->flags & ROW_NONE ? ", none" : "");
     if (row->flags & ROW_REQUIRED) {
         fputs("*required*", file);
     } else if (has_default(row, object)) {

@@ -1,34 +1,50 @@
 // What a row takes, in words.
 #include "scene/schema.h"
 
-#include <math.h>
 #include <string.h>
 
-// A bound in the unit of bare numbers, without digits that nobody wrote.
+// A bound in the unit of bare numbers, without digits that nobody wrote: 1e-06 is 1e-6.
 static void bound_print(const SchemaRow *row, double bound, char *buffer, size_t size) {
-    if (row->type == ROW_INT || row->type == ROW_INTS || row->type == ROW_INDICES || row->type == ROW_UINT32)
+    if (row->type == ROW_INT || row->type == ROW_INTS || row->type == ROW_INDICES || row->type == ROW_UINT32) {
         snprintf(buffer, size, "%.0f", bound);
-    else
-        quantity_print((float)bound, row->dimension, buffer, size);
+        return;
+    }
+    quantity_print((float)bound, row->dimension, buffer, size);
+    char *power = strchr(buffer, 'e');
+    if (power) {
+        char *digits = power + 1 + (power[1] == '-'), *rest = power + 2;
+        rest += strspn(rest, "0");
+        memmove(digits, rest, strlen(rest) + 1);
+    }
 }
 
 void row_range(const SchemaRow *row, char *buffer, size_t size) {
     char low[32], high[32];
     buffer[0] = 0;
-    if (row->type == ROW_PARAM || row->type == ROW_FLOAT || row->type == ROW_VECTOR || row->type == ROW_INT ||
-        row->type == ROW_INTS || row->type == ROW_STRENGTH) {
-        bool wide = row->max >= 1e6;
-        bound_print(row, row->min, low, sizeof low);
-        if (!wide)
-            bound_print(row, row->max, high, sizeof high);
-        if (row->min <= -1e6 && wide)
-            snprintf(buffer, size, "-1e6 to 1e6");
-        else if (wide)
-            snprintf(buffer, size, row->flags & ROW_OPEN_MIN ? "> %s" : ">= %s", low);
-        else
-            snprintf(buffer, size, "%s%s to %s%s", row->flags & ROW_OPEN_MIN ? "> " : "", low,
-                     row->flags & ROW_OPEN_MAX ? "< " : "", high);
+    switch (row->type) {
+    case ROW_UINT32:
+    case ROW_UINT64:
+        if (row->max <= row->min) {
+            snprintf(buffer, size, "0 to %s", row->type == ROW_UINT32 ? "4294967295" : "18446744073709551615");
+            return;
+        }
+        break;
+    case ROW_PARAM:
+    case ROW_FLOAT:
+    case ROW_VECTOR:
+    case ROW_POSITION:
+    case ROW_ROTATION:
+    case ROW_POINTS:
+    case ROW_STRENGTH:
+    case ROW_INT:
+    case ROW_INTS:
+    case ROW_INDICES: break;
+    default: return;
     }
+    bound_print(row, row->min, low, sizeof low);
+    bound_print(row, row->max, high, sizeof high);
+    snprintf(buffer, size, "%s%s to %s%s", row->flags & ROW_OPEN_MIN ? "> " : "", low,
+             row->flags & ROW_OPEN_MAX ? "< " : "", high);
 }
 
 static size_t add(char *buffer, size_t size, const char *text) {

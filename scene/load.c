@@ -1,4 +1,5 @@
 // The files of a scene: meshes, transformed, and pictures.
+#include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
 
@@ -41,9 +42,14 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *
     image_free(&image);
 }
 
-static void transform(const SceneSheet *sheet, Mesh *mesh) {
+/// What lies farther out the simulation takes for a failure.
+static const float place_most = 1e4f;
+
+/// Scales, turns and moves the mesh. Returns whether all of it lies where it can be simulated.
+static bool transform(const SceneSheet *sheet, Mesh *mesh) {
     double r[9];
     rotation_matrix(sheet->rotate, r);
+    bool near = true;
     bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         float *p = mesh->positions + 3 * (size_t)v;
@@ -52,8 +58,9 @@ static void transform(const SceneSheet *sheet, Mesh *mesh) {
         for (int i = 0; i < 3 && turned; i++)
             q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
-            p[i] = (float)(q[i] + (double)sheet->translate[i]);
+            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < place_most && near;
     }
+    return near;
 }
 
 static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
@@ -73,8 +80,8 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
     }
     if (result)
         loader_fail(loader, &file, result, error.message);
-    else
-        transform(sheet, mesh);
+    else if (!transform(sheet, mesh))
+        message_add(loader->messages, loader->scene->text, file.place, "the sheet reaches beyond 10 km from the origin");
 }
 
 static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
@@ -121,7 +128,7 @@ static void *many(Loader *loader, size_t count, size_t size) {
 
 SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
     Loader loader = {scene, assets, messages, false};
-    uint32_t before = message_total(messages);
+    uint32_t before = message_total(messages), first = messages->count;
     *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
@@ -138,6 +145,9 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
             load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
     if (message_total(messages) == before && !loader.no_memory)
         return SINGE_OK;
+    if (!loader.no_memory)
+        sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
+    messages_sort(messages, first);
     scene_assets_free(assets);
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
 }

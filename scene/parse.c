@@ -1,5 +1,5 @@
 // scene_read and scene_parse: bytes → tree → --set → scene.
-#include "scene/schema.h"
+#include "scene/values.h"
 
 #include <string.h>
 
@@ -27,6 +27,18 @@ static char *stem(SceneArena *arena, const char *path) {
     return length ? arena_text(arena, name, length) : arena_text(arena, "scene", 5);
 }
 
+// The name of a scene that gives none. A file may be called what its outputs may not.
+static void take_name(Reader *reader, const Node *root) {
+    SchemaRow row = {.key = "name", .type = ROW_NAME};
+    char expected[240];
+    row_expected(&row, expected, sizeof expected);
+    reader->scene->name = stem(reader->arena, reader->text->name);
+    if (reader->scene->name && !node_find(root, "name") && !value_names_files(reader->scene->name))
+        message_add(reader->messages, reader->text, (ScenePlace){0},
+                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s", reader->scene->name,
+                    expected);
+}
+
 static void scene_fill(Reader *reader, const Node *root) {
     Scene *scene = reader->scene;
     if (root->kind != NODE_MAP) {
@@ -38,7 +50,7 @@ static void scene_fill(Reader *reader, const Node *root) {
     default_scene(reader->arena, scene);
     schema_read(reader, &schema_scene, root, scene);
     if (!scene->name)
-        scene->name = stem(reader->arena, reader->text->name);
+        take_name(reader, root);
     scene->sim.time_step = (float)(1 / ((double)scene->fps * scene->steps));
 }
 

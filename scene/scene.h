@@ -192,12 +192,14 @@ typedef struct SceneAssets {
     SingePicture *source_pictures; ///< [source_count]
 } SceneAssets;
 
-/// Reads every file that the scene names. On failure *assets is empty and *messages points at the names.
+/// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at
+/// those of meshes that were read and that the library would refuse.
 SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages);
 void scene_assets_free(SceneAssets *assets);
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
-/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object.
+/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused, or
+/// the first other object.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 

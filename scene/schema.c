@@ -5,12 +5,16 @@
 
 #define AT(type, member) .offset = offsetof(type, member)
 #define EXTRA(type, member) .extra = offsetof(type, member)
+#define DEGREE (3.14159265358979323846 / 180)
 #define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
 
-// ranges, in held units
+// ranges, in held units, never wider than what the library takes (tests/scene/test_ranges.c)
+#define MUCH 1e9
 #define ANY .min = -1e6, .max = 1e6
-#define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = INFINITY
-#define FROM(low) .min = (low), .max = INFINITY
+#define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
+#define KELVIN .min = 1, .max = 1e4
+#define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
+#define FROM(low) .min = (low), .max = MUCH
 #define WITHIN(low, high) .min = (low), .max = (high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
@@ -35,7 +39,7 @@ enum {
 static const SchemaRow key_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SceneKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
     {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, ANY, .doc = "where"},
-    {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, ANY,
+    {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, TURN,
      .doc = "turned about the x axis, then y, then z, all fixed in the world"},
 };
 static const Schema schema_key = {
@@ -53,7 +57,7 @@ static const Schema schema_strength = {
     .doc = "How strong a picture source is at a time; straight lines in between. Times must increase."};
 
 static const SchemaRow noise_rows[] = {
-    {"scale", ROW_FLOAT, DIM_LENGTH, AT(SingeNoise, scale), OVER(0), .doc = "size of the largest features"},
+    {"scale", ROW_FLOAT, DIM_LENGTH, AT(SingeNoise, scale), WITHIN(1e-6, 1e6), .doc = "size of the largest features"},
     {"octaves", ROW_INT, DIM_NONE, AT(SingeNoise, octaves), WITHIN(1, 8),
      .doc = "layers of detail, each half the size and half the strength of the one before"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SingeNoise, seed), .doc = "another seed, another noise"},
@@ -65,8 +69,8 @@ const Schema schema_noise = {
 // ---- sheets
 
 static const SchemaRow grid_rows[] = {
-    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, .min = 0, .max = 1e6,
-     .flags = ROW_OPEN_MIN | ROW_REQUIRED, .doc = "along x and y"},
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4),
+     .flags = ROW_REQUIRED, .doc = "along x and y"},
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "how many cells along x and y"},
 };
@@ -98,7 +102,7 @@ static const SchemaRow compliance_rows[] = {PER_COLOUR(DIM_COMPLIANCE, FROM(0))}
 static const Schema schema_compliance = {
     .title = "compliances", .size = 4 * sizeof(float), ROWS(compliance_rows),
     .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding."};
-static const SchemaRow regularisation_rows[] = {PER_COLOUR(DIM_NONE, OVER(0))};
+static const SchemaRow regularisation_rows[] = {PER_COLOUR(DIM_NONE, WITHIN(1e-6, 1e6))};
 static const Schema schema_regularisation = {
     .title = "regularisations", .size = 4 * sizeof(float), ROWS(regularisation_rows),
     .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. Larger is "
@@ -109,9 +113,9 @@ static const Schema schema_regularisation = {
 #define NUMBER(name, member, dim, range_, text)                                                                        \
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
 static const SchemaRow material_rows[] = {
-    NUMBER("grammage", grammage, DIM_GRAMMAGE, OVER(0), "mass per area before it burns"),
-    NUMBER("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, OVER(0), "heat to warm a kilogram by a kelvin"),
-    PARAM("thickness", thickness, 0, DIM_LENGTH, OVER(0),
+    NUMBER("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
+    NUMBER("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, WITHIN(1e-3, MUCH), "heat to warm a kilogram by a kelvin"),
+    PARAM("thickness", thickness, 0, DIM_LENGTH, WITHIN(1e-6, 100),
           "distance of the model's two layers; it sets the size of the wrinkles, and is larger than the real sheet's"),
     {"heat_operator", ROW_ENUM, DIM_NONE, AT(SceneMaterial, def.heat_operator), .names = operator_names,
      .doc = "`surface`: finite volumes in each layer; `umbrella`: the paper's eq 3"},
@@ -125,7 +129,7 @@ static const SchemaRow material_rows[] = {
     NUMBER("thickening", thickening, DIM_NONE, FROM(0),
            "widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as "
            "little as the cells need"),
-    PARAM("temperature", temperature, 2, DIM_TEMPERATURE, OVER(0), "at the start"),
+    PARAM("temperature", temperature, 2, DIM_TEMPERATURE, KELVIN, "at the start"),
     PARAM("ignition_temperature", ignition_temperature, 3, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
     PARAM("heating", heating, 4, DIM_TEMPERATURE_DIFFERENCE, FROM(0),
           "eta of eq 1: warming when all of the mass burns with no losses"),
@@ -172,11 +176,12 @@ static const SchemaRow sheet_rows[] = {
      .doc = "PNG or JPEG, printed on both sides in the preview"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
-    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), OVER(0),
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
      .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
-    {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, ANY,
+    {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
      .doc = "about x, then y, then z, after the scaling"},
-    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, ANY, .doc = "after the rotation"},
+    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
+     .doc = "after the rotation; a sheet must lie within 10 km of the origin"},
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
     {"drop_pieces_below", ROW_FLOAT, DIM_AREA, AT(SceneSheet, drop_pieces_below), FROM(0),
      .doc = "loose pieces smaller than this vanish; 0 keeps all"},
@@ -199,7 +204,7 @@ static const SchemaRow source_rows[] = {
     SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
      .doc = "to here; `inf` is for ever"},
-    SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, OVER(0), "of the ball or the flame"),
+    SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, KELVIN, "of the ball or the flame"),
     SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "how well its heat reaches the sheet"),
     SOURCE("radius", radius, DIM_LENGTH, BALL | SPOT, FROM(0), "full heat within it"),
     SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
@@ -217,8 +222,8 @@ static const SchemaRow source_rows[] = {
      .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
     SOURCE("share", plume_share, DIM_FRACTION, PLUME, WITHIN(0, 1),
-           "power of the gas over that of the sheet's combustion; it comes on top"),
-    SOURCE("height", plume_height, DIM_LENGTH, PLUME, OVER(0), "over which the gas cools to 1/e"),
+            "power of the gas over that of the sheet's combustion; it comes on top"),
+    SOURCE("height", plume_height, DIM_LENGTH, PLUME, WITHIN(1e-6, 1e6), "over which the gas cools to 1/e"),
     SOURCE("conductance", plume_conductance, DIM_CONDUCTANCE, PLUME, FROM(0), "from the gas to the sheet"),
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
 };
@@ -233,21 +238,21 @@ static ScenePlace *collider_place(void *object) { return &((SceneCollider *)obje
 static const SchemaRow collider_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
      .doc = "`plane` (its normal is its own z axis), `sphere`, `box` or `capsule` (along its own z axis)"},
-    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, OVER(0), "of the sphere or the capsule"),
-    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX, OVER(0),
+    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e6), "of the sphere or the capsule"),
+    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX, WITHIN(1e-6, 1e6),
      .doc = "half of the box's lengths along its own axes"},
-    COLLIDER("height", height, DIM_LENGTH, CAPSULE, FROM(0), "between the centres of the capsule's caps"),
+    COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, ANY, .doc = "of its centre, when it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
-     .flags = ROW_SHORT, ANY, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
+     .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
      .doc = "its way"},
-    COLLIDER("friction", friction, DIM_NONE, 0, FROM(0), "Coulomb's coefficient"),
-    COLLIDER("offset", offset, DIM_LENGTH, 0, FROM(0), "distance that sheets keep from the surface"),
-    COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, OVER(0), "matters when `conductance` is not 0"),
+    COLLIDER("friction", friction, DIM_NONE, 0, WITHIN(0, 1000), "Coulomb's coefficient"),
+    COLLIDER("offset", offset, DIM_LENGTH, 0, WITHIN(0, 1000), "distance that sheets keep from the surface"),
+    COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, KELVIN, "matters when `conductance` is not 0"),
     COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
-    COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, FROM(0), "how near counts as contact for heat"),
+    COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, WITHIN(0, 1000), "how near counts as contact for heat"),
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = SPHERE | BOX | CAPSULE,
      WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = SPHERE | BOX | CAPSULE,
@@ -269,7 +274,7 @@ static const SchemaRow pin_rows[] = {
      .doc = "name of the sheet, or its number from 0; the first by default"},
     {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
      .doc = "places [x, y, z] in the world at the start"},
-    {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), FROM(0),
+    {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
      .doc = "what is this near to one of the points is held; 0 holds the nearest vertex of each"},
     {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
      .doc = "numbers of the mesh's vertices, from 0"},
@@ -283,11 +288,11 @@ static const Schema schema_pin = {
 // ---- wind, solver, preview
 
 static const SchemaRow wind_rows[] = {
-    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, ANY,
+    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, WITHIN(-1000, 1000),
      .doc = "mean of the air's motion"},
-    {"gust", ROW_FLOAT, DIM_SPEED, AT(SingeWindDef, gust), FROM(0), .doc = "how strong gusts are"},
-    {"gust_time", ROW_FLOAT, DIM_TIME, AT(SingeWindDef, gust_time), OVER(0), .doc = "how long a gust lasts"},
-    {"gust_size", ROW_FLOAT, DIM_LENGTH, AT(SingeWindDef, gust_size), OVER(0), .doc = "how far a gust reaches"},
+    {"gust", ROW_FLOAT, DIM_SPEED, AT(SingeWindDef, gust), WITHIN(0, 1000), .doc = "how strong gusts are"},
+    {"gust_time", ROW_FLOAT, DIM_TIME, AT(SingeWindDef, gust_time), WITHIN(1e-6, 1e6), .doc = "how long a gust lasts"},
+    {"gust_size", ROW_FLOAT, DIM_LENGTH, AT(SingeWindDef, gust_size), WITHIN(1e-6, 1e6), .doc = "how far a gust reaches"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SingeWindDef, seed), .doc = "another seed, other gusts"},
 };
 static const Schema schema_wind = {
@@ -315,11 +320,10 @@ static const Schema schema_solver = {.title = "the solver",
                                      .doc = "How springs are kept at their lengths."};
 
 static const SchemaRow camera_rows[] = {
-    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, ANY, .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
-    {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, ANY, .doc = "what it looks at"},
-    {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, ANY, .doc = "which way is up in the picture"},
-    {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), .flags = ROW_OPEN_MIN | ROW_OPEN_MAX,
-     WITHIN(0, 3.14159265358979), .doc = "angle of view from bottom to top"},
+    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4), .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
+    {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, WITHIN(-1e4, 1e4), .doc = "what it looks at"},
+    {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, WITHIN(-1e4, 1e4), .doc = "which way is up in the picture"},
+    {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), WITHIN(0.1 * DEGREE, 175 * DEGREE), .doc = "angle of view from bottom to top"},
 };
 static const Schema schema_camera = {.title = "the camera",
                                      .size = sizeof(PreviewCamera),
@@ -330,16 +334,16 @@ static const Schema schema_camera = {.title = "the camera",
 static const SchemaRow light_rows[] = {
     {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, ANY,
      .doc = "towards the light, any length"},
-    {"angle", ROW_FLOAT, DIM_ANGLE, AT(ScenePreview, light_angle), WITHIN(0, 1.57079632679490),
+    {"angle", ROW_FLOAT, DIM_ANGLE, AT(ScenePreview, light_angle), WITHIN(0, 85 * DEGREE),
      .doc = "its apparent radius: larger is softer"},
-    {"colour", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_colour), .length = 3, .min = 0, .max = 1e6,
+    {"colour", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_colour), .length = 3, .min = 0, .max = 1e4,
      .doc = "linear red, green, blue; may exceed 1"},
 };
 static const Schema schema_light = {
     .title = "the light", .size = sizeof(ScenePreview), ROWS(light_rows), .doc = "One distant light."};
 
 static const SchemaRow ground_rows[] = {
-    {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, ground_height), .flags = ROW_NONE, ANY,
+    {"height", ROW_FLOAT, DIM_LENGTH, AT(ScenePreview, ground_height), .flags = ROW_NONE, WITHIN(-1e4, 1e4),
      .doc = "its z; `none`: no ground is drawn"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(ScenePreview, ground_colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue"},
@@ -355,12 +359,12 @@ static const SchemaRow preview_rows[] = {
      .doc = "rays a pixel: more is smoother and slower"},
     {"camera", ROW_MAP, DIM_NONE, AT(ScenePreview, camera), .sub = &schema_camera, .doc = "from where"},
     {"light", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_light, .doc = "the one light"},
-    {"sky", ROW_VECTOR, DIM_NONE, AT(ScenePreview, sky), .length = 3, .min = 0, .max = 1e6,
+    {"sky", ROW_VECTOR, DIM_NONE, AT(ScenePreview, sky), .length = 3, .min = 0, .max = 1e4,
      .doc = "light from all around, linear red, green, blue"},
     {"ground", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_ground, .doc = "the floor"},
-    {"background", ROW_VECTOR, DIM_NONE, AT(ScenePreview, background), .length = 3, .min = 0, .max = 1e6,
+    {"background", ROW_VECTOR, DIM_NONE, AT(ScenePreview, background), .length = 3, .min = 0, .max = 1e4,
      .doc = "behind everything, linear red, green, blue"},
-    {"exposure", ROW_FLOAT, DIM_NONE, AT(ScenePreview, exposure), OVER(0), .doc = "multiplies all light"},
+    {"exposure", ROW_FLOAT, DIM_NONE, AT(ScenePreview, exposure), WITHIN(1e-6, 1000), .doc = "multiplies all light"},
 };
 static const Schema schema_preview = {
     .title = "the preview", .size = sizeof(ScenePreview), ROWS(preview_rows), .finish = finish_preview,
@@ -375,14 +379,15 @@ static const SchemaRow scene_rows[] = {
      .doc = "how many to make; the first is the start, so that N frames span (N - 1)/fps"},
     {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames a second"},
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
-    {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), OVER(0),
+    {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), WITHIN(1e-6, 1e6),
      .doc = "seconds of fire per second of motion; 1 is real, 4 burns four times as fast"},
     {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), .doc = "for the preview; noise and wind have seeds of their own"},
-    {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), OVER(0),
+    {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), KELVIN,
      .doc = "of the air and all around"},
-    {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, ANY, .doc = "z is up"},
-    {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), FROM(0), .doc = "for drag and wind"},
-    {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), .flags = ROW_OPEN_MIN, WITHIN(0, 1),
+    {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, WITHIN(-1e4, 1e4),
+     .doc = "z is up"},
+    {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), WITHIN(0, 1000), .doc = "for drag and wind"},
+    {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), WITHIN(1e-9, 1),
      .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "what burns, at least one"},

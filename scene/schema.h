@@ -83,7 +83,7 @@ extern const Schema schema_noise;
 unsigned schema_kind(const Schema *schema, const void *object);
 static inline bool row_allowed(const SchemaRow *row, unsigned kind) { return !row->kinds || (row->kinds & kind); }
 
-/// "> 0", "0 to 1", "0 to < 1" or "" for a row's range, in the unit of bare numbers.
+/// "1 to 100", "> 0 to 1e9", "0 to < 1" or, where a row is no number, "": its range in the unit of bare numbers.
 void row_range(const SchemaRow *row, char *buffer, size_t size);
 /// What a row's value must be, for messages: "a temperature (K, C, F)".
 void row_expected(const SchemaRow *row, char *buffer, size_t size);

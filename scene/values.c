@@ -15,9 +15,24 @@ void value_wrong(Reader *reader, const Node *node, const SchemaRow *row) {
 
 // ---- numbers
 
-static bool in_range(const SchemaRow *row, double value) {
-    return (row->flags & ROW_OPEN_MIN ? value > row->min : value >= row->min) &&
-           (row->flags & ROW_OPEN_MAX ? value < row->max : value <= row->max);
+static bool between(const SchemaRow *row, double value, double low, double high) {
+    return (row->flags & ROW_OPEN_MIN ? value > low : value >= low) &&
+           (row->flags & ROW_OPEN_MAX ? value < high : value <= high);
+}
+
+static bool in_range(const SchemaRow *row, double value) { return between(row, value, row->min, row->max); }
+
+/// The bounds are floats as the value is, so that the bound itself, as it is printed, is inside.
+static bool float_in_range(const SchemaRow *row, float value) {
+    return between(row, (double)value, (double)(float)row->min, (double)(float)row->max);
+}
+
+static void out_of_range(Reader *reader, const SchemaRow *row, const Node *node) {
+    char range[80], seen[80];
+    const char *unit = quantity_unit(row->dimension);
+    row_range(row, range, sizeof range);
+    message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s%s%s",
+                node_describe(node, seen, sizeof seen), row->key, range, unit[0] ? " " : "", unit);
 }
 
 bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *result) {
@@ -48,12 +63,8 @@ bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *
         return false;
     }
     float narrow = (float)value;
-    if (!isfinite(narrow) || !in_range(row, narrow)) {
-        char range[80], seen[80];
-        row_range(row, range, sizeof range);
-        message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s %s",
-                    node_describe(node, seen, sizeof seen), row->key, range[0] ? range : "smaller",
-                    quantity_unit(row->dimension));
+    if (!isfinite(narrow) || !float_in_range(row, narrow)) {
+        out_of_range(reader, row, node);
         return false;
     }
     *result = narrow;
@@ -79,10 +90,7 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, u
     }
     int64_t number = large ? 0 : minus ? -(int64_t)value : (int64_t)value;
     if (large || (row->max > row->min && !in_range(row, (double)number))) {
-        char range[80], seen[80];
-        row_range(row, range, sizeof range);
-        message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s",
-                    node_describe(node, seen, sizeof seen), row->key, range[0] ? range : "smaller");
+        out_of_range(reader, row, node);
         return false;
     }
     *result = number;
@@ -190,12 +198,15 @@ bool value_is_text(const Node *node) {
     return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];
 }
 
+bool value_names_files(const char *text) {
+    bool good = *text && *text != '.' && strlen(text) <= 100;
+    for (const char *c = text; good && *c; c++)
+        good = (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c);
+    return good;
+}
+
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
-    bool good = value_is_text(node) && strlen(node->text) <= 100;
-    for (const char *c = good ? node->text : ""; *c; c++)
-        good = good && (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c) &&
-               !(c == node->text && *c == '.');
-    if (good)
+    if (value_is_text(node) && value_names_files(node->text))
         *field = node->text;
     else
         value_wrong(reader, node, row);

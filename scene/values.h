@@ -18,6 +18,8 @@ void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *fi
 bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const char *const *names, int *result);
 void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field);
 bool value_is_text(const Node *node);
+/// Whether a name may be part of files' names: the rule of ROW_NAME.
+bool value_names_files(const char *text);
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field);
 /// Also looks whether the file is there, where the reader knows a folder.
 void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field);

@@ -33,10 +33,10 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     const char *what = sim_check_solver(&def->solver);
     if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
-    if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be above 0 and at most 10 s";
+    if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
     if (!in_range(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
     for (int i = 0; i < 3; i++)
-        if (!in_range(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be finite and below 10000 m/s2";
+        if (!in_range(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be between -10000 and 10000 m/s2";
     if (!in_range(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
     if (!in_range(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
     if (!in_range(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";

@@ -6,11 +6,11 @@
 SingeResult wind_check(const SingeWindDef *def, SingeError *error) {
     const char *what = NULL;
     for (int i = 0; i < 3; i++)
-        if (!isfinite(def->velocity[i]) || fabsf(def->velocity[i]) > 1000)
-            what = "velocity must be finite and below 1000 m/s";
+        if (!(fabsf(def->velocity[i]) <= 1000)) what = "velocity must be between -1000 and 1000 m/s";
     if (!(def->gust >= 0 && def->gust <= 1000)) what = "gust must be between 0 and 1000 m/s";
-    if (!(def->gust_time > 0 && isfinite(def->gust_time))) what = "gust_time must be above 0";
-    if (!(def->gust_size > 0 && isfinite(def->gust_size))) what = "gust_size must be above 0";
+    // beyond these the noise's coordinates are not finite
+    if (!(def->gust_time >= 1e-6f && def->gust_time <= 1e6f)) what = "gust_time must be between 1e-6 and 1e6 s";
+    if (!(def->gust_size >= 1e-6f && def->gust_size <= 1e6f)) what = "gust_size must be between 1e-6 and 1e6 m";
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "wind", -1, "%s", what) : SINGE_OK;
 }
 

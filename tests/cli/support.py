@@ -64,6 +64,14 @@ class Case(unittest.TestCase):
     def start(self, *args, **options):
         return subprocess.Popen([SINGE, *args], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **options)
 
+    def fake_ffmpeg(self, script):
+        """An environment whose ffmpeg is a script of ours."""
+        os.makedirs(self.path("bin"), exist_ok=True)
+        with open(self.path("bin", "ffmpeg"), "w") as file:
+            file.write("#!/bin/sh\n" + script + "\n")
+        os.chmod(self.path("bin", "ffmpeg"), 0o755)
+        return {**os.environ, "PATH": self.path("bin") + os.pathsep + os.environ["PATH"]}
+
     def run_scene(self, out, *args, expect=0, preview=False, **options):
         args = list(args) if preview else [*args, "--no-preview"]
         return self.singe("run", self.scene, "-o", self.path(out), *args, expect=expect, **options)

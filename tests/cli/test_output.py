@@ -12,8 +12,9 @@ class Output(Case):
         names = ["tiny.%04d" % i for i in range(1, 7)]
         self.assertEqual(list(self.plys("o")), [n + ".ply" for n in names])
         self.assertIn("frame 6/6", err)
-        top = {"checkpoint.singe", "frames", "ply", "run.json", "stats.csv"}
+        top = {"checkpoint.singe", "ply", "run.json", "stats.csv"}
         if HAS_PREVIEW:
+            top.add("frames")
             self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), [n + ".png" for n in names])
             if HAS_FFMPEG:
                 top.add("preview.mp4")
@@ -78,6 +79,7 @@ class Output(Case):
 
     def test_second_run_replaces_the_first(self):
         self.run_scene("o", preview=True)
+        os.makedirs(self.path("o", "frames"), exist_ok=True)
         for name in "keep.txt", "ply/other.0001.ply", "ply/tiny.1.ply", "frames/tiny.0001.png.bak":
             with open(self.path("o", name), "w") as file:
                 file.write("mine")
@@ -101,6 +103,37 @@ class Output(Case):
         if HAS_FFMPEG:
             self.assertEqual(os.system(command), 0)
             self.assertTrue(os.path.exists(self.path("o", "preview.mp4")))
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_ffmpeg_that_fails(self):
+        """All else is there, the reason is told even to the quiet, and the exit code is 1."""
+        for number, (script, why) in enumerate((
+            ("exit 3", "ffmpeg failed (exit 3)"),
+            ("kill -9 $$", "ffmpeg was stopped (signal 9)"),
+            ("exit 0", "cannot write preview.mp4"),
+        )):
+            out, env = f"o{number}", self.fake_ffmpeg(script)
+            with self.subTest(script):
+                _, err = self.run_scene(out, "--frames", "2", "--quiet", preview=True, expect=1, env=env)
+                self.assertIn("error: no video: " + why, err)
+                self.assertIn("\n  ffmpeg ", err)
+                self.assertEqual(set(os.listdir(self.path(out))),
+                                 {"checkpoint.singe", "frames", "ply", "run.json", "stats.csv"})
+                self.assertEqual((self.record(out)["result"], self.record(out)["video"]), ("complete", False))
+                shown, err = self.singe("render", self.path(out), expect=1, env=env)
+                self.assertIn("error: no video: " + why, err)
+                self.assertNotIn("preview.mp4", shown)
+                self.assertEqual(len(os.listdir(self.path(out, "frames"))), 2)
+
+    def test_no_preview_leaves_no_frames(self):
+        self.run_scene("o", "--frames", "2")
+        self.assertEqual(set(os.listdir(self.path("o"))), {"checkpoint.singe", "ply", "run.json", "stats.csv"})
+        self.run_scene("o", "--frames", "3", "--resume")
+        self.assertFalse(os.path.exists(self.path("o", "frames")))
+        self.run_scene("o", "--frames", "2", preview=True)
+        self.assertEqual(os.path.exists(self.path("o", "frames")), HAS_PREVIEW)
+        self.run_scene("o", "--frames", "2")
+        self.assertFalse(os.path.exists(self.path("o", "frames")))
 
     @unittest.skipUnless(HAS_PREVIEW and HAS_FFMPEG, "needs the preview and ffmpeg")
     def test_odd_folder_and_size(self):

@@ -1,9 +1,10 @@
 """Usage, check, and what is refused before anything is written."""
 
 import os
+import subprocess
 import unittest
 
-from support import SINGE, Case
+from support import HAS_PREVIEW, SINGE, Case
 
 
 class Usage(Case):
@@ -76,12 +77,45 @@ class Usage(Case):
         self.singe("run", bad, expect=2, cwd=self.dir)
         self.singe("check", bad, expect=2, cwd=self.dir)
 
+    def test_one_rule_for_names(self):
+        """A name that the scene gives, and one taken from its file."""
+        for name in "a:b", "100%", "n" * 101, ".dot":
+            with self.subTest(name):
+                given = self.write_scene("given.yaml", extra=f'name: "{name}"\n')
+                self.assertIn("at most 100 characters", self.singe("check", given, expect=2)[1])
+                taken = self.write_scene(name + ".yaml")
+                self.assertIn("give the scene a name", self.singe("check", taken, expect=2)[1])
+                self.singe("check", taken, "--set", "name=good")
+        self.singe("check", self.write_scene("n" * 100 + ".yaml"))
+
     def test_check(self):
         out, _ = self.singe("check", self.scene)
         for word in ("particles     313", "springs       1440", "red         576", "green       264", "blue        312",
                      "yellow      288", "families", "memory", "thickening", "time"):
             self.assertIn(word, out)
         self.assertEqual(sorted(os.listdir(self.dir)), ["tiny.yaml"], "check writes no files")
+
+    def test_check_says_good_last(self):
+        out, _ = self.singe("check", self.scene)
+        self.assertEqual(out.splitlines()[-1], self.scene + ": good")
+        # a scene that is well formed and fails in its first step
+        out, err = self.singe("check", self.scene, "--set", "sheets.0.velocity=[1e6, 0, 0]", "--set", "air_density=0",
+                             expect=1)
+        self.assertNotIn("good", out)
+        self.assertIn("error", err)
+        help = " ".join(self.singe("check", "--help")[0].split())
+        self.assertIn("1 a step of it fails", help)
+
+    def test_standard_output_that_is_full(self):
+        self.singe("run", self.scene, "-o", self.path("o"), "--no-preview", "--quiet")
+        for args in (["--help"], ["--version"], ["run", "--help"], ["check", self.scene], ["scene-doc"],
+                     ["run", self.scene, "-o", self.path("p"), "--no-preview"],
+                     ["render", self.path("o"), "--sheet", "2x1"] if HAS_PREVIEW else ["render", "--help"]):
+            with self.subTest(args), open("/dev/full", "w") as full:
+                done = subprocess.run([SINGE, *args], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("error: cannot write to standard output: No space left on device", done.stderr)
+        self.singe("run", self.scene, "-o", self.path("o"), "--no-preview", "--quiet") # which prints nothing
 
     def test_check_set(self):
         out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[4, 4]", "--frames=3")

@@ -118,6 +118,89 @@ static void test_bad_files(void **state) {
     rmdir(folder);
 }
 
+static void write_text(const char *folder, const char *name, const char *text) {
+    char path[100];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/// Loads and builds; the messages of whichever refuses.
+static SceneMessages refused(const char *text, const char *folder) {
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim = NULL;
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    SingeResult result = scene_load(scene, &assets, &messages);
+    if (!result) {
+        result = scene_build(scene, &assets, &hooks, &sim, &messages);
+        scene_assets_free(&assets);
+    }
+    assert_int_not_equal(result, SINGE_OK);
+    assert_null(sim);
+    scene_free(scene);
+    return messages;
+}
+
+// Meshes that can be read but not burnt: all of them at once, each with its file, line or face, at its name.
+static void test_bad_meshes(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *text, *origin, *fault;
+    } meshes[] = {
+        {"fan.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -1 0\nv 0 -1 0\nv 1 0 1\nv 0 0 1\n# three at an edge\n"
+                    "f 1 2 3 4\nf 2 1 6 5\n\nf 1 2 7 8\n", "t.yaml:2:11",
+         "fan.obj:13: the edge from vertex 0 to 1 has more than two cells, the third of which is cell 2 "
+         "(cells and vertices counted from 0)"},
+        {"flat.ply", "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+                     "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 0 0\n4 0 1 2 3\n4 1 4 5 2\n", "t.yaml:3:11",
+         "flat.ply: face 2: cell 1 has a side without length (cells and vertices counted from 0)"},
+        {"touch.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3 4\nf 3 5 6 7\n",
+         "t.yaml:4:11", "touch.obj:8: the 2 cells at vertex 2 meet only in that point, not in one fan "
+                        "(cells and vertices counted from 0)"},
+    };
+    char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
+    assert_non_null(mkdtemp(folder));
+    for (int i = 0; i < 3; i++)
+        write_text(folder, meshes[i].name, meshes[i].text);
+    write_text(folder, "words.obj", "v 0 0 x\n");
+    for (int reader = 0; reader < 2; reader++) { // without, and with, a mesh that cannot even be read
+        char text[400];
+        snprintf(text, sizeof text,
+                 "sheets:\n  - mesh: fan.obj\n  - mesh: flat.ply\n  - mesh: touch.obj\n"
+                 "  - grid: {size: [1, 1], cells: [2, 2]}\n%s", reader ? "  - mesh: words.obj\n" : "");
+        SceneMessages messages = refused(text, folder);
+        assert_int_equal(messages.count, 3 + reader);
+        for (int i = 0; i < 3; i++) {
+            assert_string_equal(messages.items[i].origin, meshes[i].origin);
+            assert_string_equal(messages.items[i].text, meshes[i].fault);
+        }
+        if (reader)
+            assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
+        scene_messages_free(&messages);
+    }
+    SceneMessages messages = refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: fan.obj\n", folder);
+    assert_int_equal(messages.count, 2);
+    assert_string_equal(messages.items[0].origin, "t.yaml:2:5");
+    assert_non_null(strstr(messages.items[0].text, "the grid cannot be used: cell 0 has"));
+    scene_messages_free(&messages);
+    messages = refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n", folder);
+    assert_int_equal(messages.count, 1);
+    assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
+    scene_messages_free(&messages);
+    static const char *const names[] = {"fan.obj", "flat.ply", "touch.obj", "words.obj"};
+    for (int i = 0; i < 4; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+}
+
 static void test_preview(void **state) {
     (void)state;
     Scene *scene = good_scene(
@@ -230,7 +313,7 @@ static void test_camera_finds_the_sheets(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rotation),  cmocka_unit_test(test_sim),     cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_preview), cmocka_unit_test(test_examples),
+        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_preview), cmocka_unit_test(test_examples),
         cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -46,21 +46,21 @@ static void test_values(void **state) {
     one("fps: inf", "bad.yaml:3:6", "not 'inf'");
     one("fps: 24 24", "bad.yaml:3:6", "");
     one("fps: 0", "bad.yaml:3:6", "out of range: fps must be 0.001 to 100000");
-    one("pace: 0", "bad.yaml:3:7", "pace must be > 0");
-    one("pace: 1e60", "bad.yaml:3:7", "out of range");
+    one("pace: 0", "bad.yaml:3:7", "'0' is out of range: pace must be 1e-6 to 1000000");
+    one("pace: 1e60", "bad.yaml:3:7", "'1e60' is out of range: pace must be 1e-6 to 1000000");
     one("pace: 1e999999", "bad.yaml:3:7", "");
-    one("pace: 1e-60", "bad.yaml:3:7", "pace must be > 0");
+    one("pace: 1e-60", "bad.yaml:3:7", "pace must be 1e-6 to 1000000");
     one("frames: 1e3", "bad.yaml:3:9", "whole number");
     one("frames: 2.0", "bad.yaml:3:9", "whole number");
-    one("frames: 0", "bad.yaml:3:9", "frames must be >= 1");
-    one("frames: -1", "bad.yaml:3:9", "frames must be >= 1");
-    one("frames: 1000001", "bad.yaml:3:9", "out of range");
-    one("frames: 99999999999999999999999", "bad.yaml:3:9", "out of range");
+    one("frames: 0", "bad.yaml:3:9", "frames must be 1 to 1000000");
+    one("frames: -1", "bad.yaml:3:9", "frames must be 1 to 1000000");
+    one("frames: 2000000000", "bad.yaml:3:9", "'2000000000' is out of range: frames must be 1 to 1000000");
+    one("frames: 99999999999999999999999", "bad.yaml:3:9", "frames must be 1 to 1000000");
     one("frames: -99999999999999999999999", "bad.yaml:3:9", "out of range");
-    one("seed: 18446744073709551616", "bad.yaml:3:7", "out of range");
+    one("seed: 18446744073709551616", "bad.yaml:3:7", "seed must be 0 to 18446744073709551615");
     one("seed: -1", "bad.yaml:3:7", "whole number");
     one("ambient_temperature: 20 m", "bad.yaml:3:22", "unknown unit for a temperature; possible are: K, C, F");
-    one("ambient_temperature: -300 C", "bad.yaml:3:22", "> 0 K");
+    one("ambient_temperature: -300 C", "bad.yaml:3:22", "must be 1 to 10000 K");
     one("gravity: [0, 0]", "bad.yaml:3:10", "a list of 3 numbers");
     one("gravity: [0, 0, down]", "bad.yaml:3:17", "not 'down'");
     one("name: a/b", "bad.yaml:3:7", "name must be");
@@ -72,6 +72,79 @@ static void test_values(void **state) {
     one("preview: {camera: {eye: [0, 0, 0], target: [0, 0, 0]}}", "bad.yaml:3:19", "same point");
     one("preview: {camera: {fov: 180}}", "bad.yaml:3:25", "out of range");
     one("preview: {light: {direction: [0, 0, 0]}}", "bad.yaml:3:30", "must not be zero");
+}
+
+/// Whole messages: both bounds, the unit of bare numbers, no blank at the end.
+static void test_range_words(void **state) {
+    (void)state;
+    static const struct {
+        const char *line, *text;
+    } rows[] = {
+        {"fps: 0", "'0' is out of range: fps must be 0.001 to 100000 1/s"},
+        {"heat_tolerance: 2", "'2' is out of range: heat_tolerance must be 1e-9 to 1"},
+        {"steps: 0", "'0' is out of range: steps must be 1 to 100000"},
+        {"wind: {velocity: [1e5, 0, 0]}", "'1e5' is out of range: velocity must be -1000 to 1000 m/s"},
+        {"preview: {camera: {fov: 180}}", "'180' is out of range: fov must be 0.1 to 175 deg"},
+        {"preview: {ground: {height: -1e30}}", "'-1e30' is out of range: height must be -10000 to 10000 m"},
+        {"    material: {drag: 1e30}", "'1e30' is out of range: drag must be 0 to 1e9"},
+        {"    material: {loss_mass_floor: 0}", "'0' is out of range: loss_mass_floor must be > 0 to 1"},
+        {"    material: {mass_min: 1}", "'1' is out of range: mass_min must be 0 to < 1"},
+        {"    material: {temperature: 1e30}", "'1e30' is out of range: temperature must be 1 to 10000 K"},
+        {"    rotate: [0, 0, 1e9]", "'1e9' is out of range: rotate must be -1000000 to 1000000 deg"},
+        {"pins: [{points: [[0, 0, 1e9]]}]", "'1e9' is out of range: points must be -1000000 to 1000000 m"},
+        {"pins: [{vertices: [4294967295]}]", "'4294967295' is out of range: vertices must be 0 to 4294967294"},
+        {"wind: {seed: 4294967296}", "'4294967296' is out of range: seed must be 0 to 4294967295"},
+        {"colliders: [{kind: plane, position: [0, 0, 1e9]}]",
+         "'1e9' is out of range: position must be -1000000 to 1000000 m"},
+        {"sources: [{kind: picture, picture: x.png, strength: 1e9}]",
+         "'1e9' is out of range: strength must be 0 to 1000000"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[400];
+        snprintf(text, sizeof text, "%s%s\n", SHEET, rows[i].line);
+        SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+        assert_int_equal(messages.count, 1);
+        assert_string_equal(messages.items[0].text, rows[i].text);
+        assert_int_equal(messages.items[0].place.line, 3);
+        scene_messages_free(&messages);
+    }
+}
+
+/// What the library alone used to refuse, one at a time and without a place: now all at once.
+static void test_ranges_at_once(void **state) {
+    (void)state;
+    static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
+                                     "heat_tolerance: 1e-30\nsolver: {substeps: 10001, regularisation: {red: 1e9}}\n"
+                                     "wind: {velocity: [1e5, 0, 0]}\nfps: 0.001\n";
+    static const char *const origins[] = {"bad.yaml:3:7",  "bad.yaml:4:17", "bad.yaml:5:22", "bad.yaml:6:14",
+                                          "bad.yaml:7:17", "bad.yaml:8:20", "bad.yaml:8:49", "bad.yaml:9:19",
+                                          "bad.yaml:10:6"};
+    SceneMessages messages = failing(text, sizeof text - 1, NULL, NULL, 0, SINGE_ERROR_FORMAT);
+    assert_int_equal(messages.count, 9);
+    for (uint32_t i = 0; i < 9; i++)
+        expect_message(&messages, i, origins[i], i < 8 ? "is out of range" : "0.02 steps a second");
+    scene_messages_free(&messages);
+}
+
+static void test_step(void **state) {
+    (void)state;
+    static const char words[] = "steps a second, which must be 0.1 to 1e9";
+    one("fps: 0.001", "bad.yaml:3:6", "0.001 frames a second of 20 steps each are 0.02 steps a second");
+    one("steps: 100000\nfps: 1e5", "bad.yaml:4:6", words);
+    one("fps: 0.001\nsteps: 1", "bad.yaml:3:6", words);
+    static const char *const good[] = {"fps: 0.1\nsteps: 1\n", "fps: 1e4\nsteps: 100000\n", "fps: 0.001\nsteps: 100\n"};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        char text[200];
+        Scene *scene;
+        SingeSim *sim;
+        SingeError error;
+        SceneMessages messages = {0};
+        snprintf(text, sizeof text, "%s%s", SHEET, good[i]);
+        assert_int_equal(scene_parse("t", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_OK);
+        assert_int_equal(singe_sim_create(&scene->sim, &sim, &error), SINGE_OK);
+        singe_sim_destroy(sim);
+        scene_free(scene);
+    }
 }
 
 static void test_keys(void **state) {
@@ -102,7 +175,7 @@ static void test_objects(void **state) {
     one("sources: [{kind: picture}]", "bad.yaml:3:11", "needs 'picture'");
     one("sources: [{kind: picture, picture: ''}]", "bad.yaml:3:36", "name of a file");
     one("colliders: [{kind: sphere, half_size: [1, 1, 1]}]", "bad.yaml:3:28", "a sphere has no 'half_size'");
-    one("colliders: [{kind: box, half_size: [1, 0, 1]}]", "bad.yaml:3:40", "half_size must be > 0 m");
+    one("colliders: [{kind: box, half_size: [1, 0, 1]}]", "bad.yaml:3:40", "half_size must be 1e-6 to 1000000 m");
     one("pins: [{}]", "bad.yaml:3:8", "a pin needs 'points' or 'vertices'");
     one("pins: [{points: []}]", "bad.yaml:3:17", "at least one");
     one("pins: [{points: [[0, 0]]}]", "bad.yaml:3:18", "a list of 3");
@@ -125,7 +198,7 @@ static void test_sheets(void **state) {
     one("    material: {mass_rate: {from: 1}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
     one("    material: {mass_rate: {from: 1, to: 2}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
     one("    material: {mass_rate: {from: 1, to: 2, picture: a, attribute: b}}", "bad.yaml:3:27", "one of");
-    one("    material: {mass_rate: {from: 1, to: -2, attribute: b}}", "bad.yaml:3:41", "mass_rate must be >= 0");
+    one("    material: {mass_rate: {from: 1, to: -2, attribute: b}}", "bad.yaml:3:41", "mass_rate must be 0 to 1e9");
     one("    material: {mass_rate: {from: 1, to: 2, attribute: b, atribute: c}}", "bad.yaml:3:58",
         "did you mean 'attribute'?");
     one("    material: {mass_rate: {from: 1, to: 2, noise: {octaves: 9}}}", "bad.yaml:3:61", "octaves must be 1 to 8");
@@ -317,7 +390,8 @@ int main(void) {
         cmocka_unit_test(test_values),    cmocka_unit_test(test_keys),   cmocka_unit_test(test_objects),
         cmocka_unit_test(test_sheets),    cmocka_unit_test(test_syntax), cmocka_unit_test(test_limits),
         cmocka_unit_test(test_all_at_once), cmocka_unit_test(test_print), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_truncated), cmocka_unit_test(test_truncated_block),
+        cmocka_unit_test(test_range_words),
+        cmocka_unit_test(test_ranges_at_once), cmocka_unit_test(test_step), cmocka_unit_test(test_truncated), cmocka_unit_test(test_truncated_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,84 @@
+// What the library refuses about sheets, each sheet by itself, so that all are told in one go. Looked for only when
+// a scene is refused anyway: a good one is built once.
+#include "scene/faults.h"
+
+#include "scene/schema.h"
+
+#include <string.h>
+
+static SingeResult sheet_try(const SingeSheetDef *def, SingeError *error) {
+    SingeSimDef sim_def = singe_default_sim();
+    SingeSim *sim;
+    SingeSheetId id;
+    SingeResult result = singe_sim_create(&sim_def, &sim, error);
+    if (result)
+        return result;
+    result = singe_sim_add_sheet(sim, def, &id);
+    if (!result)
+        result = singe_sim_commit(sim);
+    if (result)
+        *error = *singe_sim_error(sim);
+    singe_sim_destroy(sim);
+    return result;
+}
+
+/// The cell that an error is about, or the first at the vertex that it is about; cell_count where there is none.
+static uint32_t fault_cell(const Mesh *mesh, const SingeError *error) {
+    char cell[40];
+    snprintf(cell, sizeof cell, "cell %lld", (long long)error->element);
+    if (error->element < 0)
+        return mesh->cell_count;
+    if (strstr(error->message, cell))
+        return (uint32_t)error->element;
+    size_t corners = 4 * (size_t)mesh->cell_count, i = 0;
+    while (i < corners && mesh->cells[i] != error->element)
+        i++;
+    return (uint32_t)(i / 4);
+}
+
+static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, const SingeError *error, const char *what,
+                       SceneMessages *messages) {
+    const SceneFile *file = &scene->sheets[index].mesh;
+    uint32_t cell = fault_cell(mesh, error);
+    char face[40] = "";
+    if (!file->name) {
+        message_add(messages, scene->text, scene->sheets[index].place, "the grid cannot be used: %s", what);
+        return;
+    }
+    if (cell < mesh->cell_count && mesh->cell_lines)
+        snprintf(face, sizeof face, ":%u", (unsigned)mesh->cell_lines[cell]);
+    else if (cell < mesh->cell_count)
+        snprintf(face, sizeof face, ": face %u", (unsigned)cell + 1);
+    message_add(messages, scene->text, file->place, "%s%s: %s (cells and vertices counted from 0)", file->name, face,
+                what);
+}
+
+bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scope, SceneMessages *messages) {
+    static const char prefix[] = "sheet 'mesh': "; // the library begins its messages so, by the name it is given
+    bool any = false;
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        SingeSheetDef def;
+        SingeError error = {0};
+        if (!assets->meshes[i].positions)
+            continue;
+        scene_sheet_def(scene, assets, i, &def);
+        def.name = "mesh";
+        for (int p = 0; scope == FAULTS_OF_MESHES && p < SCENE_PARAM_COUNT; p++) {
+            SingeParam *param = material_param(&def.material, p);
+            *param = singe_param(param->value);
+        }
+        SingeResult result = sheet_try(&def, &error);
+        bool mesh = result == SINGE_ERROR_MESH;
+        if (!result || result == SINGE_ERROR_MEMORY || (scope == FAULTS_OF_MESHES && !mesh))
+            continue;
+        const char *what = error.message;
+        if (strncmp(what, prefix, sizeof prefix - 1) == 0)
+            what += sizeof prefix - 1;
+        if (mesh)
+            mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);
+        else
+            message_add(messages, scene->text, scene->sheets[i].place, "%s", what[0] ? what : singe_result_name(result));
+        any = true;
+    }
+    return any;
+}
