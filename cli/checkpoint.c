@@ -64,7 +64,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
         *hash = hash_bytes(hash_start, text, size);
         for (uint32_t i = 0; i < assets->sheet_count; i++) {
             *hash = hash_mesh(*hash, &assets->meshes[i]);
-            for (int k = 0; k < SCENE_PARAM_COUNT; k++) *hash = hash_picture(*hash, &assets->params[i][k]);
+            for (int k = 0; k < SCENE_PARAM_SLOTS; k++) *hash = hash_picture(*hash, &assets->params[i][k]);
         }
         for (uint32_t i = 0; i < assets->source_count; i++) *hash = hash_picture(*hash, &assets->source_pictures[i]);
     }

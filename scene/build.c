@@ -49,8 +49,9 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->attribute_count = mesh->attribute_count;
     def->attributes = mesh->attributes;
     def->material = sheet->material.def;
-    for (int i = 0; i < SCENE_PARAM_COUNT; i++)
-        material_param(&def->material, i)->picture = assets->params[index][i];
+    SceneParam param;
+    for (int i = 0; scene_param(i, &param); i++)
+        scene_param_at(&def->material, &param)->picture = assets->params[index][param.slot];
     for (int c = 0; c < 3; c++)
         def->velocity[c] = sheet->velocity[c];
     def->drop_pieces_below = sheet->drop_pieces_below;

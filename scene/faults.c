@@ -63,8 +63,9 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
             continue;
         scene_sheet_def(scene, assets, i, &def);
         def.name = "mesh";
-        for (int p = 0; scope == FAULTS_OF_MESHES && p < SCENE_PARAM_COUNT; p++) {
-            SingeParam *param = material_param(&def.material, p);
+        SceneParam which;
+        for (int p = 0; scope == FAULTS_OF_MESHES && scene_param(p, &which); p++) {
+            SingeParam *param = scene_param_at(&def.material, &which);
             *param = singe_param(param->value);
         }
         SingeResult result = sheet_try(&def, &error);

@@ -106,16 +106,17 @@ static void load_sheet(Loader *loader, uint32_t index) {
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
     SingeMaterialDef material = sheet->material.def;
-    for (int i = 0; i < SCENE_PARAM_COUNT; i++) {
-        const SingeParam *param = material_param(&material, i);
-        const SceneFile *file = &sheet->material.pictures[i];
+    SceneParam place;
+    for (int i = 0; scene_param(i, &place); i++) {
+        const SingeParam *param = scene_param_at(&material, &place);
+        const SceneFile *file = &sheet->material.pictures[place.slot];
         if (param->field == SINGE_FIELD_PICTURE) {
-            load_luminance(loader, file, &assets->params[index][i]);
+            load_luminance(loader, file, &assets->params[index][place.slot]);
             if (mesh->positions && !mesh->uv)
                 message_add(loader->messages, loader->scene->text, file->place,
-                            "%s follows a picture, but the mesh has no uv", scene_param_keys[i]);
+                            "%s follows a picture, but the mesh has no uv", place.key);
         } else if (param->field == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
-            check_attribute(loader, scene_param_keys[i], param, file, mesh);
+            check_attribute(loader, place.key, param, file, mesh);
         }
     }
 }
@@ -163,7 +164,7 @@ void scene_assets_free(SceneAssets *assets) {
             mesh_free(&assets->meshes[i]);
         if (assets->images)
             image_free(&assets->images[i]);
-        for (int p = 0; p < SCENE_PARAM_COUNT && assets->params; p++)
+        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->params; p++)
             picture_free(&assets->params[i][p]);
     }
     for (uint32_t i = 0; i < assets->source_count && assets->source_pictures; i++)

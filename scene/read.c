@@ -70,9 +70,11 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
             given |= 1u << i;
     }
     const Node *from = node_find(node, "from"), *to = node_find(node, "to");
+    SchemaRow end = *row; // no line leads to infinity
+    end.flags &= ~(unsigned)ROW_INF;
     bool good = from && to;
-    good = (!from || value_float(reader, row, from, &result.value)) && good;
-    good = (!to || value_float(reader, row, to, &result.to)) && good;
+    good = (!from || value_float(reader, &end, from, &result.value)) && good;
+    good = (!to || value_float(reader, &end, to, &result.to)) && good;
     int fields = read_field(reader, row, node, &result, file);
     if (!from || !to || fields != 1)
         message_add(reader->messages, reader->text, node->place,

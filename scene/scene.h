@@ -65,12 +65,14 @@ typedef struct SceneGrid {
     int cells[2];
 } SceneGrid;
 
-/// The parameters of a material that may vary over the sheet, in the order of `scene_param_offsets`.
-enum { SCENE_PARAM_COUNT = 16 };
+/// Places for what belongs to a material's SingeParams. Each has its own: where it lies in the Def, counted in whole
+/// SingeParams, so that no list of them is needed.
+#define SCENE_PARAM_SLOT(member) (offsetof(SingeMaterialDef, member) / sizeof(SingeParam))
+enum { SCENE_PARAM_SLOTS = sizeof(SingeMaterialDef) / sizeof(SingeParam) };
 
 typedef struct SceneMaterial {
     SingeMaterialDef def;                  ///< pictures have no values before scene_load
-    SceneFile pictures[SCENE_PARAM_COUNT]; ///< of parameters that follow a picture
+    SceneFile pictures[SCENE_PARAM_SLOTS]; ///< of parameters that follow a picture
 } SceneMaterial;
 
 typedef struct SceneSheet {
@@ -188,7 +190,7 @@ typedef struct SceneAssets {
     Image *images;                ///< [sheet_count], zeroed where there is none
     const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
     float (*colours)[3];          ///< [sheet_count], for PreviewDef
-    SingePicture (*params)[SCENE_PARAM_COUNT]; ///< [sheet_count]
+    SingePicture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
     SingePicture *source_pictures; ///< [source_count]
 } SceneAssets;
 

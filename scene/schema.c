@@ -15,6 +15,8 @@
 #define KELVIN .min = 1, .max = 1e4
 #define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
 #define FROM(low) .min = (low), .max = MUCH
+#define OVER_OR_INF(low) .flags = ROW_OPEN_MIN | ROW_INF, .min = (low), .max = MUCH
+#define OVER_UP_TO(low, high) .flags = ROW_OPEN_MIN, .min = (low), .max = (high)
 #define WITHIN(low, high) .min = (low), .max = (high)
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
@@ -78,14 +80,15 @@ static const Schema schema_grid = {
     .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows),
     .doc = "A flat rectangle around the origin in the x-y plane, facing up (+z)."};
 
-#define WEIGHT(name, colour, index, text) \
-    {name, ROW_PARAM, DIM_FRACTION, AT(SceneMaterial, def.weight[colour]), EXTRA(SceneMaterial, pictures[index]), \
-     WITHIN(0, 1), .doc = text}
+// A value that may vary over the sheet; its picture's place follows from the member.
+#define PARAM(name, member, dim, range_, text)                                                                         \
+    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, pictures[SCENE_PARAM_SLOT(member)]),    \
+     range_, .doc = text}
 static const SchemaRow weight_rows[] = {
-    WEIGHT("red", SINGE_RED, 12, "centre to corner: thickness"),
-    WEIGHT("green", SINGE_GREEN, 13, "centre to centre: stretch of the back layer"),
-    WEIGHT("blue", SINGE_BLUE, 14, "mesh edges: stretch of the front layer"),
-    WEIGHT("yellow", SINGE_YELLOW, 15, "diagonals: shear"),
+    PARAM("red", weight[SINGE_RED], DIM_FRACTION, WITHIN(0, 1), "centre to corner: thickness"),
+    PARAM("green", weight[SINGE_GREEN], DIM_FRACTION, WITHIN(0, 1), "centre to centre: stretch of the back layer"),
+    PARAM("blue", weight[SINGE_BLUE], DIM_FRACTION, WITHIN(0, 1), "mesh edges: stretch of the front layer"),
+    PARAM("yellow", weight[SINGE_YELLOW], DIM_FRACTION, WITHIN(0, 1), "diagonals: shear"),
 };
 static const Schema schema_weight = {
     .title = "weights", .size = sizeof(SceneMaterial), ROWS(weight_rows),
@@ -98,9 +101,14 @@ static const Schema schema_weight = {
     COLOUR_ROW("green", SINGE_GREEN, "centre to centre", dim, __VA_ARGS__), \
     COLOUR_ROW("blue", SINGE_BLUE, "mesh edges", dim, __VA_ARGS__),         \
     COLOUR_ROW("yellow", SINGE_YELLOW, "diagonals", dim, __VA_ARGS__)
-static const SchemaRow compliance_rows[] = {PER_COLOUR(DIM_COMPLIANCE, FROM(0))};
+static const SchemaRow compliance_rows[] = {
+    PARAM("red", compliance[SINGE_RED], DIM_COMPLIANCE, FROM(0), "centre to corner"),
+    PARAM("green", compliance[SINGE_GREEN], DIM_COMPLIANCE, FROM(0), "centre to centre"),
+    PARAM("blue", compliance[SINGE_BLUE], DIM_COMPLIANCE, FROM(0), "mesh edges"),
+    PARAM("yellow", compliance[SINGE_YELLOW], DIM_COMPLIANCE, FROM(0), "diagonals"),
+};
 static const Schema schema_compliance = {
-    .title = "compliances", .size = 4 * sizeof(float), ROWS(compliance_rows),
+    .title = "compliances", .size = sizeof(SceneMaterial), ROWS(compliance_rows),
     .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding."};
 static const SchemaRow regularisation_rows[] = {PER_COLOUR(DIM_NONE, WITHIN(1e-6, 1e6))};
 static const Schema schema_regularisation = {
@@ -108,53 +116,50 @@ static const Schema schema_regularisation = {
     .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. Larger is "
            "safer and softer."};
 
-#define PARAM(name, member, index, dim, range_, text) \
-    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, pictures[index]), range_, .doc = text}
 #define NUMBER(name, member, dim, range_, text)                                                                        \
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
 static const SchemaRow material_rows[] = {
-    NUMBER("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
-    NUMBER("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, WITHIN(1e-3, MUCH), "heat to warm a kilogram by a kelvin"),
-    PARAM("thickness", thickness, 0, DIM_LENGTH, WITHIN(1e-6, 100),
+    PARAM("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
+    PARAM("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, WITHIN(1e-3, MUCH), "heat to warm a kilogram by a kelvin"),
+    PARAM("thickness", thickness, DIM_LENGTH, WITHIN(1e-6, 100),
           "distance of the model's two layers; it sets the size of the wrinkles, and is larger than the real sheet's"),
     {"heat_operator", ROW_ENUM, DIM_NONE, AT(SceneMaterial, def.heat_operator), .names = operator_names,
      .doc = "`surface`: finite volumes in each layer; `umbrella`: the paper's eq 3"},
-    PARAM("diffusivity", diffusivity, 1, DIM_DIFFUSIVITY, FROM(0), "alpha of eq 2: how fast heat spreads in the sheet"),
-    NUMBER("layer_exchange", layer_exchange, DIM_RATE, FROM(0),
-           "rate at which the two layers' temperatures even out (`surface` only)"),
-    NUMBER("convection", convection, DIM_CONDUCTANCE, FROM(0), "heat lost to still air, a side"),
-    NUMBER("emissivity", emissivity, DIM_FRACTION, WITHIN(0, 1), "share of a black body's radiation"),
-    {"loss_mass_floor", ROW_FLOAT, DIM_FRACTION, AT(SceneMaterial, def.loss_mass_floor), .flags = ROW_OPEN_MIN,
-     WITHIN(0, 1), .doc = "heat losses divide by the mass that is left, but by no less than this share of it"},
+    PARAM("diffusivity", diffusivity, DIM_DIFFUSIVITY, FROM(0), "alpha of eq 2: how fast heat spreads in the sheet"),
+    PARAM("layer_exchange", layer_exchange, DIM_RATE, FROM(0),
+          "rate at which the two layers' temperatures even out (`surface` only)"),
+    PARAM("convection", convection, DIM_CONDUCTANCE, FROM(0), "heat lost to still air, a side"),
+    PARAM("emissivity", emissivity, DIM_FRACTION, WITHIN(0, 1), "share of a black body's radiation"),
+    PARAM("loss_mass_floor", loss_mass_floor, DIM_FRACTION, OVER_UP_TO(0, 1),
+          "heat losses divide by the mass that is left, but by no less than this share of it"),
     NUMBER("thickening", thickening, DIM_NONE, FROM(0),
            "widens the burning front this many times (1 or more) at the same speed, so that cells can hold it; 0: as "
-           "little as the cells need"),
-    PARAM("temperature", temperature, 2, DIM_TEMPERATURE, KELVIN, "at the start"),
-    PARAM("ignition_temperature", ignition_temperature, 3, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
-    PARAM("heating", heating, 4, DIM_TEMPERATURE_DIFFERENCE, FROM(0),
+           "little as the cells need; one number for the whole sheet"),
+    PARAM("temperature", temperature, DIM_TEMPERATURE, KELVIN, "at the start"),
+    PARAM("ignition_temperature", ignition_temperature, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
+    PARAM("heating", heating, DIM_TEMPERATURE_DIFFERENCE, FROM(0),
           "eta of eq 1: warming when all of the mass burns with no losses"),
-    PARAM("mass_rate", mass_rate, 5, DIM_RATE_PER_KELVIN, FROM(0),
+    PARAM("mass_rate", mass_rate, DIM_RATE_PER_KELVIN, FROM(0),
           "mu of eq 4: mass lost per second and kelvin above ignition"),
-    {"rate_ceiling", ROW_FLOAT, DIM_TEMPERATURE_DIFFERENCE, AT(SceneMaterial, def.rate_ceiling), .flags = ROW_INF | ROW_OPEN_MIN, FROM(0),
-     .doc = "kelvins above ignition where the rate of burning stops growing, for want of air; inf is the paper"},
-    PARAM("ash_exponent", ash_exponent, 6, DIM_NONE, FROM(0),
+    PARAM("rate_ceiling", rate_ceiling, DIM_TEMPERATURE_DIFFERENCE, OVER_OR_INF(0),
+          "kelvins above ignition where the rate of burning stops growing, for want of air; inf is the paper"),
+    PARAM("ash_exponent", ash_exponent, DIM_NONE, FROM(0),
           "p: slows eq 4 near the end by ((m - m_min)/(1 - m_min))^p, so that flakes of ash stay; 0 is the paper"),
-    PARAM("mass_min", mass_min, 7, DIM_FRACTION, BELOW(0, 1), "m_min: share that never burns"),
-    PARAM("mass_loss", mass_loss, 8, DIM_FRACTION, BELOW(0, 1),
+    PARAM("mass_min", mass_min, DIM_FRACTION, BELOW(0, 1), "m_min: share that never burns"),
+    PARAM("mass_loss", mass_loss, DIM_FRACTION, BELOW(0, 1),
           "m_loss: below this share the sheet is gone; under mass_min it wrinkles but stays whole"),
-    PARAM("ash_density", ash_density, 9, DIM_FRACTION, OVER(0),
+    PARAM("ash_density", ash_density, DIM_FRACTION, OVER(0),
           "density at mass_min over the density at the start; with mass_min it sets the shrinkage, eq 5"),
-    PARAM("shrink_front", shrink_front, 10, DIM_FRACTION, WITHIN(0, 2),
+    PARAM("shrink_front", shrink_front, DIM_FRACTION, WITHIN(0, 2),
           "share of the shrinkage that the corner layer takes"),
-    PARAM("shrink_back", shrink_back, 11, DIM_FRACTION, WITHIN(0, 2),
+    PARAM("shrink_back", shrink_back, DIM_FRACTION, WITHIN(0, 2),
           "the same for the centre layer; 5 to 10 % of difference curls the sheet"),
     {"ablate", ROW_BOOL, DIM_NONE, AT(SceneMaterial, def.ablate), .doc = "no: nothing is removed (Fig 4 b)"},
     {"weight", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_weight, .doc = "firmness by colour of spring"},
-    {"compliance", ROW_MAP, DIM_NONE, AT(SceneMaterial, def.compliance), .sub = &schema_compliance,
-     .doc = "give by colour of spring"},
-    NUMBER("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
-    NUMBER("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
-    NUMBER("damping", damping, DIM_RATE, FROM(0), "of all motion"),
+    {"compliance", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_compliance, .doc = "give by colour of spring"},
+    PARAM("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
+    PARAM("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
+    PARAM("damping", damping, DIM_RATE, FROM(0), "of all motion"),
 };
 static const Schema schema_material = {
     .title = "a material",
@@ -405,30 +410,24 @@ const Schema schema_scene = {
     .title = "the scene", .size = sizeof(Scene), ROWS(scene_rows), .defaults = default_scene, .finish = finish_scene,
     .doc = "The whole file is one map."};
 
-#define PARAM_AT(member) offsetof(SingeMaterialDef, member)
-const size_t scene_param_offsets[SCENE_PARAM_COUNT] = {
-    PARAM_AT(thickness),
-    PARAM_AT(diffusivity),
-    PARAM_AT(temperature),
-    PARAM_AT(ignition_temperature),
-    PARAM_AT(heating),
-    PARAM_AT(mass_rate),
-    PARAM_AT(ash_exponent),
-    PARAM_AT(mass_min),
-    PARAM_AT(mass_loss),
-    PARAM_AT(ash_density),
-    PARAM_AT(shrink_front),
-    PARAM_AT(shrink_back),
-    PARAM_AT(weight[SINGE_RED]),
-    PARAM_AT(weight[SINGE_GREEN]),
-    PARAM_AT(weight[SINGE_BLUE]),
-    PARAM_AT(weight[SINGE_YELLOW]),
-};
-const char *const scene_param_keys[SCENE_PARAM_COUNT] = {
-    "thickness", "diffusivity", "temperature", "ignition_temperature", "heating", "mass_rate", "ash_exponent",
-    "mass_min", "mass_loss", "ash_density", "shrink_front", "shrink_back", "weight.red", "weight.green", "weight.blue",
-    "weight.yellow",
-};
+static bool param_in(const Schema *schema, const char *prefix, int *index, SceneParam *param) {
+    for (int i = 0; i < schema->row_count; i++) {
+        const SchemaRow *row = &schema->rows[i];
+        char inner[32];
+        snprintf(inner, sizeof inner, "%s.", row->key);
+        if (row->type == ROW_MAP && param_in(row->sub, inner, index, param))
+            return true;
+        if (row->type != ROW_PARAM || (*index)--)
+            continue;
+        snprintf(param->key, sizeof param->key, "%s%s", prefix, row->key);
+        param->offset = row->offset - offsetof(SceneMaterial, def);
+        param->slot = (row->extra - offsetof(SceneMaterial, pictures)) / sizeof(SceneFile);
+        return true;
+    }
+    return false;
+}
+
+bool scene_param(int index, SceneParam *param) { return param_in(&schema_material, "", &index, param); }
 
 unsigned schema_kind(const Schema *schema, const void *object) {
     if (!schema->kind_offset)

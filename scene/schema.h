@@ -88,11 +88,17 @@ void row_range(const SchemaRow *row, char *buffer, size_t size);
 /// What a row's value must be, for messages: "a temperature (K, C, F)".
 void row_expected(const SchemaRow *row, char *buffer, size_t size);
 
-/// Where each parameter of a material lies in its SingeMaterialDef, and the key it is written under.
-extern const size_t scene_param_offsets[SCENE_PARAM_COUNT];
-extern const char *const scene_param_keys[SCENE_PARAM_COUNT];
-static inline SingeParam *material_param(SingeMaterialDef *def, int index) {
-    return (SingeParam *)((char *)def + scene_param_offsets[index]);
+/// A parameter of a material that may vary over the sheet.
+typedef struct SceneParam {
+    char key[40];  ///< "grammage", "weight.red"
+    size_t offset; ///< in SingeMaterialDef
+    size_t slot;   ///< of its picture in SceneMaterial and SceneAssets
+} SceneParam;
+
+/// The index-th of them, in the order of the schema's rows; false behind the last.
+bool scene_param(int index, SceneParam *param);
+static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam *param) {
+    return (SingeParam *)((char *)def + param->offset);
 }
 
 /// Reads a map into an object whose defaults are set.

@@ -85,30 +85,32 @@ typedef enum SingeColour {
     SINGE_COLOUR_COUNT = 4
 } SingeColour;
 
-/// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt.
+/// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt. Every parameter may
+/// vary over the sheet but `thickening`, which is one factor for the whole front, and the choices `heat_operator` and
+/// `ablate`.
 typedef struct SingeMaterialDef {
     size_t struct_size;
 
     // body
-    float grammage;          ///< kg/m2, > 0
-    float specific_heat;     ///< J/(kg K), > 0
-    SingeParam thickness;    ///< m, between the two layers of the model, > 0; sets the wrinkles' size
+    SingeParam grammage;      ///< kg/m2, > 0
+    SingeParam specific_heat; ///< J/(kg K), > 0
+    SingeParam thickness;     ///< m, between the two layers of the model, > 0; sets the wrinkles' size
 
     // heat, eq 1 to 3
     SingeHeatOperator heat_operator;
     SingeParam diffusivity;  ///< m2/s, alpha of eq 2, >= 0
-    float layer_exchange;    ///< 1/s, rate at which the two layers' temperatures even out, >= 0 (surface operator)
-    float convection;        ///< W/(m2 K) a side, >= 0
-    float emissivity;        ///< 0 to 1
-    float loss_mass_floor;   ///< the losses' rate is divided by max(mass, this), > 0 to 1
-    float thickening;        ///< front thickening F >= 1, or 0 for the smallest that the cells need
+    SingeParam layer_exchange; ///< 1/s, rate at which the two layers' temperatures even out, >= 0 (surface operator)
+    SingeParam convection;   ///< W/(m2 K) a side, >= 0
+    SingeParam emissivity;   ///< 0 to 1
+    SingeParam loss_mass_floor; ///< the losses' rate is divided by max(mass, this), > 0 to 1
+    float thickening;        ///< front thickening F >= 1, or 0 for the smallest that the cells need; one for the sheet
     SingeParam temperature;  ///< K, at the start, > 0
 
     // burning, eq 1 and 4 to 6
     SingeParam ignition_temperature; ///< K, > 0
     SingeParam heating;              ///< K per unit of mass fraction burnt, eta of eq 1, >= 0
     SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
-    float rate_ceiling;              ///< K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
+    SingeParam rate_ceiling;         ///< K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
     SingeParam ash_exponent;         ///< p >= 0; eq 4 times ((m - m_min)/(1 - m_min))^p; 0 is the paper
     SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
     SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
@@ -119,10 +121,10 @@ typedef struct SingeMaterialDef {
 
     // mechanics, eq 8 to 19
     SingeParam weight[SINGE_COLOUR_COUNT]; ///< W of eq 19 by colour, 0 to 1
-    float compliance[SINGE_COLOUR_COUNT];  ///< m/N per spring, >= 0
-    float char_weight;                     ///< factor on the weight of what is burnt to m_min, 0 to 1
-    float drag;                            ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
-    float damping;                         ///< 1/s, of all velocities, >= 0
+    SingeParam compliance[SINGE_COLOUR_COUNT]; ///< m/N per spring, >= 0
+    SingeParam char_weight;                ///< factor on the weight of what is burnt to m_min, 0 to 1
+    SingeParam drag;                       ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
+    SingeParam damping;                    ///< 1/s, of all velocities, >= 0
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

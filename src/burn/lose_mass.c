@@ -54,8 +54,7 @@ static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
         burn->burn_rate[i] = 0;
         float excess = temperature[i] - matter->ignition_temperature[i];
         if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
-        float ceiling = job->shell->sheets[matter->sheet[i]].material.rate_ceiling;
-        if (excess > ceiling) excess = ceiling; // NaN stays NaN
+        if (excess > matter->rate_ceiling[i]) excess = matter->rate_ceiling[i]; // NaN stays NaN
         float before = burn->mass[i];
         float after = lower_mass(matter, i, before, excess, job->dt / job->thickening[matter->sheet[i]]);
         burn->mass[i] = after;

@@ -15,7 +15,8 @@ static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
               NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     for (int colour = 0; ok && colour < SINGE_COLOUR_COUNT; colour++)
-        ok = NEW(memory, plan->weight[colour], plan->spring_count[colour]);
+        ok = NEW(memory, plan->weight[colour], plan->spring_count[colour]) &&
+             NEW(memory, plan->compliance[colour], plan->spring_count[colour]);
     return ok;
 }
 
@@ -29,6 +30,17 @@ static void plan_list_cells(DynamicsPlan *plan, const Shell *shell) {
     // the starts have moved on to the next vertex's: move them back
     memmove(plan->vertex_cell_first + 1, plan->vertex_cell_first, shell->vertex_count * sizeof *plan->vertex_cell_first);
     plan->vertex_cell_first[0] = 0;
+}
+
+/// Each spring's compliance: strands read it in their order, which is faster than at both ends.
+static void plan_comply(DynamicsPlan *plan, const Shell *shell) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const float *compliance = shell->matter.compliance[colour];
+        for (uint32_t k = 0; k < plan->spring_count[colour]; k++) {
+            const uint32_t *ends = shell->springs[colour].ends[k];
+            plan->compliance[colour][k] = 0.5f * (compliance[ends[0]] + compliance[ends[1]]);
+        }
+    }
 }
 
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings, DynamicsPlan **out) {
@@ -49,6 +61,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         return SINGE_ERROR_MEMORY;
     }
     plan_list_cells(plan, shell);
+    plan_comply(plan, shell);
     *out = plan;
     return SINGE_OK;
 }
@@ -68,8 +81,10 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
     FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         FREE(memory, plan->weight[colour], plan->spring_count[colour]);
+        FREE(memory, plan->compliance[colour], plan->spring_count[colour]);
+    }
     FREE(memory, plan, 1);
 }
 

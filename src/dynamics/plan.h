@@ -20,6 +20,7 @@ struct DynamicsPlan {
     float (*predicted)[4];   ///< m, x~ of eq 9
     // per spring, refreshed at every step
     float *weight[SINGE_COLOUR_COUNT]; ///< W of eq 19, with char; 0 where the spring is gone
+    float *compliance[SINGE_COLOUR_COUNT]; ///< m/N, mean of the ends; never changes
     // scratch of the strand solves, indexed by spring: strands of a family never share one
     float (*direction)[4];   ///< u, and w: the eliminated right-hand side
     float *upper;            ///< c' of the Thomas algorithm

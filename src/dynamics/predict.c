@@ -23,7 +23,7 @@ static void predict_particles(void *task, int begin, int end) {
             vec_store(plan->predicted[i], vec_load(x));
             continue;
         }
-        float damping = job->shell->sheets[job->shell->matter.sheet[i]].material.damping;
+        float damping = job->shell->matter.damping[i];
         Vec velocity = vec_scale(vec_add(vec_load(v), fall), 1 / (1 + job->h * damping));
         Vec normal = vec_load(plan->normal[i]);
         float slip = vec_dot(vec_sub(velocity, vec_load(plan->air[i])), normal);

@@ -1,7 +1,7 @@
 // What stays the same during a step: masses, weights, normals, drag and wind.
 //
 // Weight of a spring (eq 19): the mean of its ends' material weights, times a factor that goes from 1
-// for fresh material to char_weight at m_min: char is soft.
+// for fresh material to the ends' mean char_weight at m_min: char is soft.
 //
 // Drag of a sheet of area A on its normal velocity v_n: F = 1/2 rho C_d A v_n |v_n|; each layer
 // takes half of it.
@@ -53,9 +53,8 @@ static void prepare_particles(void *task, int begin, int end) {
         float mass = matter->mass[i] * fmaxf(state->burn.mass[i], PREPARE_MASS_MIN);
         plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
         if (!alive) continue;
-        const SingeMaterialDef *material = &job->shell->sheets[matter->sheet[i]].material;
         vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        plan->drag[i] = 0.25f * plan->settings.air_density * material->drag * matter->area[i] / mass;
+        plan->drag[i] = 0.25f * plan->settings.air_density * matter->drag[i] * matter->area[i] / mass;
         vec_store(plan->air[i], wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time));
     }
 }
@@ -65,10 +64,10 @@ static void prepare_springs(void *task, int begin, int end) {
     const Shell *shell = job->shell;
     const SpringSet *set = &shell->springs[job->colour];
     const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
-    const float *material_weight = shell->matter.weight[job->colour];
+    const float *material_weight = shell->matter.weight[job->colour], *char_weight = shell->matter.char_weight;
     for (int k = begin; k < end; k++) {
         uint32_t a = set->ends[k][0], b = set->ends[k][1];
-        float soft = shell->sheets[shell->matter.sheet[a]].material.char_weight;
+        float soft = 0.5f * (char_weight[a] + char_weight[b]);
         float progress = 0.5f * (prepare_progress(shell, job->state, a) + prepare_progress(shell, job->state, b));
         float weight = 0.5f * (material_weight[a] + material_weight[b]) * (1 + (soft - 1) * progress);
         job->plan->weight[job->colour][k] = flags[k] & SINGE_ALIVE ? weight : 0;

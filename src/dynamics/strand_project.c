@@ -22,10 +22,8 @@ typedef struct Project {
     const float *length;   ///< m, targets
     const float *weight;
     float (*position)[4];
-    float compliance;      ///< c/h^2, 1/kg; per colour, of the sheet of the strand's first particle
+    const float *compliance; ///< m/N
     float regularisation;
-    const Shell *shell;
-    SingeColour colour;
     float inverse_h2;
     uint32_t first_strand;
 } Project;
@@ -36,7 +34,7 @@ typedef struct Row {
     float constraint, diagonal;
 } Row;
 
-static inline Row strand_row(const Project *job, uint32_t k, float wa, float wb, float compliance) {
+static inline Row strand_row(const Project *job, uint32_t k, float wa, float wb) {
     const uint32_t *ends = job->set->ends[k];
     if (job->weight[k] <= 0) return (Row){{0, 0, 0}, 0, 1};
     Vec d = vec_sub(vec_load(job->position[ends[1]]), vec_load(job->position[ends[0]]));
@@ -44,7 +42,7 @@ static inline Row strand_row(const Project *job, uint32_t k, float wa, float wb,
     // a spring crushed below half its length has hardly a direction: limit what its row asks for
     float inverse = 1 / fmaxf(distance, 1e-12f), divisor = 2 * fmaxf(distance, 0.5f * l);
     return (Row){vec_scale(d, inverse), job->weight[k] * (square - l * l) / divisor,
-                 (wa + wb) * (1 + 0.5f * job->regularisation) + compliance};
+                 (wa + wb) * (1 + 0.5f * job->regularisation) + job->compliance[k] * job->inverse_h2};
 }
 
 static inline void strand_move(float *x, Vec push, float w) {
@@ -54,7 +52,7 @@ static inline void strand_move(float *x, Vec push, float w) {
 /// Smallest pivot: both ends pinned gives an empty row.
 static inline float strand_pivot(float pivot) { return pivot > 1e-20f ? pivot : 1; }
 
-static void strand_solve_chain(const Project *job, uint32_t first, uint32_t last, float compliance) {
+static void strand_solve_chain(const Project *job, uint32_t first, uint32_t last) {
     DynamicsPlan *plan = job->plan;
     const float *w = plan->inverse_mass;
     // forward: eliminate row after row
@@ -63,7 +61,7 @@ static void strand_solve_chain(const Project *job, uint32_t first, uint32_t last
     for (uint32_t k = first; k < last; k++) {
         const uint32_t *ends = job->set->ends[k];
         float wa = w[ends[0]], wb = w[ends[1]];
-        Row row = strand_row(job, k, wa, wb, compliance);
+        Row row = strand_row(job, k, wa, wb);
         float lower = -wa * vec_dot(u_before, row.u);
         float factor = lower * inverse_before;
         float pivot = strand_pivot(row.diagonal - factor * lower);
@@ -89,17 +87,17 @@ static void strand_solve_chain(const Project *job, uint32_t first, uint32_t last
     strand_move(job->position[start], push_after, w[start]);
 }
 
-static void strand_solve_ring(const Project *job, uint32_t first, uint32_t last, float compliance) {
+static void strand_solve_ring(const Project *job, uint32_t first, uint32_t last) {
     DynamicsPlan *plan = job->plan;
     const float *w = plan->inverse_mass;
     const uint32_t(*ends)[2] = (const uint32_t(*)[2])job->set->ends;
     uint32_t end = last - 1;
     // the corner entry couples the last spring with the first at the closing node
-    Row row_first = strand_row(job, first, w[ends[first][0]], w[ends[first][1]], compliance);
-    Row row_end = strand_row(job, end, w[ends[end][0]], w[ends[end][1]], compliance);
+    Row row_first = strand_row(job, first, w[ends[first][0]], w[ends[first][1]]);
+    Row row_end = strand_row(job, end, w[ends[end][0]], w[ends[end][1]]);
     float corner = -w[ends[first][0]] * vec_dot(row_first.u, row_end.u);
     if (corner == 0) { // the closing node is pinned, or a spring beside it is gone: no ring any more
-        strand_solve_chain(job, first, last, compliance);
+        strand_solve_chain(job, first, last);
         return;
     }
     // A = T + p q^T with p = (g, 0.., corner), q = (1, 0.., corner/g) and g = -diagonal of the first row
@@ -108,7 +106,7 @@ static void strand_solve_ring(const Project *job, uint32_t first, uint32_t last,
     float inverse_before = 0, right_before = 0, cyclic_before = 0;
     for (uint32_t k = first; k < last; k++) {
         float wa = w[ends[k][0]], wb = w[ends[k][1]];
-        Row row = strand_row(job, k, wa, wb, compliance);
+        Row row = strand_row(job, k, wa, wb);
         if (k == first) row.diagonal -= g;
         if (k == end) row.diagonal -= corner * corner / g;
         float lower = k == first ? 0 : -wa * vec_dot(u_before, row.u);
@@ -146,20 +144,18 @@ static void strand_range(void *task, int begin, int end) {
     for (int i = begin; i < end; i++) {
         uint32_t s = job->first_strand + (uint32_t)i;
         uint32_t first = job->set->strand_first[s], last = job->set->strand_first[s + 1];
-        const Sheet *sheet = &job->shell->sheets[job->shell->matter.sheet[job->set->ends[first][0]]];
-        float compliance = sheet->material.compliance[job->colour] * job->inverse_h2;
         if (job->set->strand_ring[s])
-            strand_solve_ring(job, first, last, compliance);
+            strand_solve_ring(job, first, last);
         else
-            strand_solve_chain(job, first, last, compliance);
+            strand_solve_chain(job, first, last);
     }
 }
 
 uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState *burn, SingeColour colour, Pool *pool, float h,
                         DynamicsState *dynamics) {
     const SpringSet *set = &shell->springs[colour];
-    Project job = {plan, set, burn->spring_length[colour], plan->weight[colour], dynamics->position, 0,
-                   plan->settings.solver.regularisation[colour], shell, colour, 1 / (h * h), 0};
+    Project job = {plan, set, burn->spring_length[colour], plan->weight[colour], dynamics->position,
+                   plan->compliance[colour], plan->settings.solver.regularisation[colour], 1 / (h * h), 0};
     for (uint32_t f = 0; f < set->family_count; f++) {
         job.first_strand = set->family_first[f];
         uint32_t strands = set->family_first[f + 1] - job.first_strand;

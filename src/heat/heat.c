@@ -35,12 +35,10 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     HeatPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     uint32_t sheet = matter->sheet[i];
-    const SingeMaterialDef *material = &pass->shell->sheets[sheet].material;
     const float *temperature = pass->state->heat.temperature, *mass = pass->state->burn.mass;
     const float *burn_rate = pass->state->burn.burn_rate;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
-    float radiation = material->emissivity * STEFAN_BOLTZMANN, convection = material->convection;
-    float floor_mass = material->loss_mass_floor, slower = 1 / plan->thickening[sheet];
+    float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
         float T = temperature[i];
         if (!plan->alive[i]) {
@@ -53,8 +51,9 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
         float T2 = T1 + warmth * flux;
-        float burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
-        float exchange = convection + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
+        float floor_mass = matter->loss_mass_floor[i], burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
+        float radiation = matter->emissivity[i] * STEFAN_BOLTZMANN;
+        float exchange = matter->convection[i] + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
         float rate = warmth * exchange / burnt * slower; // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;

@@ -42,9 +42,14 @@ void heat_plan_free(Memory *memory, HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).
 float heat_thickening(const HeatPlan *plan, uint32_t sheet);
-/// That factor from a material's numbers at its mean parameters and the cell size.
-float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, float mass_rate, float heating,
-                          float ignition_temperature, float ambient_temperature, float cell_size);
+
+/// What decides how thick a front is: means of these parameters over a sheet.
+typedef struct FrontMatter {
+    float diffusivity, mass_rate, heating, ignition_temperature, rate_ceiling;
+} FrontMatter;
+
+/// That factor for a material's `thickening`, its front and the cell size.
+float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size);
 
 typedef struct HeatCounters {
     uint64_t iterations;  ///< of the diffusion's solver

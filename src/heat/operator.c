@@ -5,9 +5,11 @@
 // T   K      temperature
 // D   capacity of the operator: area (m2) for `surface`, length (m) for `umbrella`
 // c   D per second, symmetric, so that sum D_i T_i is constant and a uniform T stays uniform
-// a   m2/s   diffusivity alpha of eq 2: the mean of the spring's ends, times the front thickening F
+// a   m2/s   diffusivity alpha of eq 2 times r: the mean of the spring's ends, times the front thickening F
+// r          capacity per area over its mean in the sheet; 1 for the umbrella, and wherever grammage and specific heat
+//            do not vary. What is conducted is heat, k grad T with k = alpha C'', so D holds r too: sum D T is the heat
 //
-// `surface`: finite volumes in each layer, lumped (D = area of the particle in its own layer).
+// `surface`: finite volumes in each layer, lumped (D = r times the area of the particle in its own layer).
 //   Corner layer: linear finite elements on triangles, averaged over both ways to split each quad; on an
 //   edge, c = a (cot A + cot B)/2 with the angles opposite to it (MacNeal 1949; Pinkall & Polthier 1993).
 //   Exact for linear T on flat meshes; on rectangles the diagonals drop out and the five-point Laplacian
@@ -15,9 +17,9 @@
 //   Centre layer: two-point fluxes through the edge e that two cells share, their centres d apart,
 //   c = a |e x d|/|d|^2. On rectangles |e|/|d|, exact. On skewed cells the trace of the diffusion tensor is
 //   right, but what one sees of the skew is lost: the error is a factor 1 -+ cos(skew) along the diagonals.
-//   Through the thickness: each red spring carries c = X S/2, X = layer_exchange/F, S the share of the cell's area
-//   that its corner has. The shares at a centre sum to its area, those at a corner to its own, so two layers
-//   of uniform T1 and T2 each change at the rate X/2 towards the other: T1 - T2 decays as exp(-X t).
+//   Through the thickness: each red spring carries c = X S/2, X = r layer_exchange/F, the mean of the spring's ends, S
+//   the share of the cell's area that its corner has. The shares at a centre sum to its area, those at a corner to its
+//   own, so two layers of uniform T1 and T2 each change at the rate X/2 towards the other: T1 - T2 decays as exp(-X t).
 //   Red springs lean: what goes through the thickness also moves half a cell sideways and back, which diffuses along
 //   a side of length dx like a further X dx^2/16. So much is taken from blue (X S/32 for each cell beside the
 //   spring) and green (X/32 times the areas of both cells), which makes the sum exact on parallelograms; at most
@@ -71,12 +73,24 @@ static void operator_cotangents(const Vec x[4], double side[4], double diagonal[
     }
 }
 
-/// Diffusivity of a spring, m2/s.
+/// Diffusivity of a spring with F and r, m2/s.
 static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring) {
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const Matter *matter = &shell->matter;
-    float mean = 0.5f * (matter->diffusivity[ends[0]] + matter->diffusivity[ends[1]]);
-    return mean * plan->thickening[matter->sheet[ends[0]]];
+    uint32_t sheet = matter->sheet[ends[0]];
+    bool surface = shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE;
+    float end[2];
+    for (int k = 0; k < 2; k++)
+        end[k] = matter->diffusivity[ends[k]] * (surface ? matter->capacity_ratio[ends[k]] : 1);
+    return 0.5f * (end[0] + end[1]) * plan->thickening[sheet];
+}
+
+/// Exchange between the layers, as it is at both particles in the mean, 1/s.
+static float operator_rate(const HeatPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
+    const Matter *matter = &shell->matter;
+    float mean = 0.5f * (matter->layer_exchange[a] * matter->capacity_ratio[a] +
+                         matter->layer_exchange[b] * matter->capacity_ratio[b]);
+    return mean / plan->thickening[matter->sheet[a]];
 }
 
 /// A weight less what the red springs carry beside it, `leak` in m2/s.
@@ -96,8 +110,8 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     Vec x[4], y[4];
     operator_corners(shell, cell, x);
     double side[4] = {0}, diagonal[2] = {0}, largest = 0;
-    uint32_t centre = shell_centre(shell, cell), sheet = shell->matter.sheet[centre];
-    double lean = (double)(shell->sheets[sheet].material.layer_exchange / plan->thickening[sheet]) / 32;
+    uint32_t centre = shell_centre(shell, cell);
+    double lean = (double)operator_rate(plan, shell, centre, centre) / 32;
     double area = (double)shell->matter.area[centre];
     operator_cotangents(x, side, diagonal);
     for (int k = 0; k < 4; k++) {
@@ -117,7 +131,9 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
         Vec d = vec_sub(vec_scale(vec_add(vec_add(y[0], y[1]), vec_add(y[2], y[3])), 0.25f), middle);
         float square = vec_dot(d, d);
         float face = vec_length(vec_cross(vec_sub(x[(k + 1) % 4], x[k]), d));
-        double leak = lean * (area + (double)shell->matter.area[shell_centre(shell, other)]);
+        uint32_t beyond = shell_centre(shell, other);
+        double both = (double)operator_rate(plan, shell, centre, beyond) / 32;
+        double leak = both * (area + (double)shell->matter.area[beyond]);
         float diffusivity = operator_spring(plan, shell, SINGE_GREEN, springs->green[k]);
         conductance[first[SINGE_GREEN] + springs->green[k]] =
             square > 0 ? (float)operator_less((double)(face / square), leak, diffusivity) : 0;
@@ -127,8 +143,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
 /// The red springs of a cell: nothing of the diffusivity. A corner's share is half of the two triangles at it
 /// that meet in the cell's middle, or a quarter where a corner is turned inwards.
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
-    uint32_t centre = shell_centre(shell, cell), sheet = shell->matter.sheet[centre];
-    float rate = shell->sheets[sheet].material.layer_exchange / plan->thickening[sheet];
+    uint32_t centre = shell_centre(shell, cell);
     float area = shell->matter.area[centre];
     Vec x[4];
     operator_corners(shell, cell, x);
@@ -140,6 +155,7 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
+        float rate = operator_rate(plan, shell, centre, shell->cells[cell][k]);
         plan->conductance[plan->spring_first[SINGE_RED] + shell->cell_springs[cell].red[k]] = (float)(rate * share / 2);
     }
 }
@@ -175,7 +191,7 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
             continue;
         }
         for (uint32_t i = 0; i < shell->particle_count; i++)
-            if (shell->matter.sheet[i] == s) plan->measure[i] = shell->matter.area[i];
+            if (shell->matter.sheet[i] == s) plan->measure[i] = shell->matter.area[i] * shell->matter.capacity_ratio[i];
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             operator_cell(plan, shell, c);
             operator_exchange(plan, shell, c);

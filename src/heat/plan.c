@@ -8,19 +8,20 @@ static const float PLAN_THICKENING_MAX = 1e6f;
 static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     const Sheet *sheet = &shell->sheets[s];
     const Matter *matter = &shell->matter;
-    double diffusivity = 0, rate = 0, heating = 0, ignition = 0, count = 0;
+    double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, count = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
         diffusivity += matter->diffusivity[i];
         rate += matter->mass_rate[i];
         heating += matter->heating[i];
         ignition += matter->ignition_temperature[i];
+        ceiling += matter->rate_ceiling[i];
         count++;
     }
     if (count == 0) return 1;
-    return heat_thickening_for(&sheet->material, (float)(diffusivity / count), (float)(rate / count),
-                               (float)(heating / count),
-                               (float)(ignition / count), ambient, sheet->cell_size);
+    FrontMatter front = {(float)(diffusivity / count), (float)(rate / count), (float)(heating / count),
+                         (float)(ignition / count), (float)(ceiling / count)};
+    return heat_thickening_for(sheet->material.thickening, &front, ambient, sheet->cell_size);
 }
 
 static bool plan_allocate(Memory *memory, HeatPlan *plan) {

@@ -14,19 +14,20 @@
 // s      m          cell size
 // c      1          cells as large as c delta: measured on strips of cells from 0.5 to 4 mm, c = 0.8 holds the speed
 //                   within 5 % (tests/heat/test_front.c)
+//
+// One F holds for a whole sheet; parameters that vary over it come in by their means.
 #include <math.h>
 
 #include "heat/plan.h"
 
 static const float THICKEN_CELLS = 0.8f;
 
-float heat_thickening_for(const SingeMaterialDef *material, float diffusivity, float mass_rate, float heating,
-                          float ignition_temperature, float ambient_temperature, float cell_size) {
-    if (material->thickening > 0) return material->thickening > 1 ? material->thickening : 1;
-    float rise = heating - (ignition_temperature - ambient_temperature);
+float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size) {
+    if (thickening > 0) return thickening > 1 ? thickening : 1;
+    float rise = front->heating - (front->ignition_temperature - ambient_temperature);
     // what cannot burn, or diffuses nothing, has no front
-    if (!(rise > 0) || !(mass_rate > 0) || !(diffusivity > 0)) return 1;
-    rise = fminf(rise, material->rate_ceiling);
-    float needed = cell_size / (THICKEN_CELLS * sqrtf(diffusivity / (mass_rate * rise)));
+    if (!(rise > 0) || !(front->mass_rate > 0) || !(front->diffusivity > 0)) return 1;
+    rise = fminf(rise, front->rate_ceiling);
+    float needed = cell_size / (THICKEN_CELLS * sqrtf(front->diffusivity / (front->mass_rate * rise)));
     return needed > 1 ? needed : 1;
 }

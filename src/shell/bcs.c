@@ -33,20 +33,40 @@ static SingeResult shell_count(const SheetSource *sources, uint32_t source_count
     return SINGE_OK;
 }
 
-/// The per-particle float arrays of Matter.
-enum { MATTER_FLOATS = 3 + PARAM_COUNT };
+/// The per-particle float arrays of Matter: one a parameter, and two more. Mass and capacity hold grammage and specific
+/// heat until measure_particles has the areas.
+enum { MATTER_FLOATS = PARAM_COUNT + 2 };
 
 static void matter_fields(Matter *matter, float **fields[MATTER_FLOATS]) {
     float **list[MATTER_FLOATS] = {
-        [PARAM_THICKNESS] = &matter->thickness,     [PARAM_DIFFUSIVITY] = &matter->diffusivity,
-        [PARAM_TEMPERATURE] = &matter->temperature, [PARAM_IGNITION] = &matter->ignition_temperature,
-        [PARAM_HEATING] = &matter->heating,         [PARAM_MASS_RATE] = &matter->mass_rate,
-        [PARAM_ASH_EXPONENT] = &matter->ash_exponent, [PARAM_MASS_MIN] = &matter->mass_min,
-        [PARAM_MASS_LOSS] = &matter->mass_loss,     [PARAM_ASH_DENSITY] = &matter->ash_density,
-        [PARAM_SHRINK] = &matter->shrink,           [PARAM_COUNT] = &matter->area,
-        [PARAM_COUNT + 1] = &matter->mass,          [PARAM_COUNT + 2] = &matter->capacity,
+        [PARAM_THICKNESS] = &matter->thickness,
+        [PARAM_DIFFUSIVITY] = &matter->diffusivity,
+        [PARAM_TEMPERATURE] = &matter->temperature,
+        [PARAM_IGNITION] = &matter->ignition_temperature,
+        [PARAM_HEATING] = &matter->heating,
+        [PARAM_MASS_RATE] = &matter->mass_rate,
+        [PARAM_ASH_EXPONENT] = &matter->ash_exponent,
+        [PARAM_MASS_MIN] = &matter->mass_min,
+        [PARAM_MASS_LOSS] = &matter->mass_loss,
+        [PARAM_ASH_DENSITY] = &matter->ash_density,
+        [PARAM_SHRINK] = &matter->shrink,
+        [PARAM_GRAMMAGE] = &matter->mass,
+        [PARAM_SPECIFIC_HEAT] = &matter->capacity,
+        [PARAM_LAYER_EXCHANGE] = &matter->layer_exchange,
+        [PARAM_CONVECTION] = &matter->convection,
+        [PARAM_EMISSIVITY] = &matter->emissivity,
+        [PARAM_LOSS_MASS_FLOOR] = &matter->loss_mass_floor,
+        [PARAM_RATE_CEILING] = &matter->rate_ceiling,
+        [PARAM_CHAR_WEIGHT] = &matter->char_weight,
+        [PARAM_DRAG] = &matter->drag,
+        [PARAM_DAMPING] = &matter->damping,
+        [PARAM_COUNT] = &matter->area,
+        [PARAM_COUNT + 1] = &matter->capacity_ratio,
     };
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) list[PARAM_WEIGHT + colour] = &matter->weight[colour];
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        list[PARAM_WEIGHT + colour] = &matter->weight[colour];
+        list[PARAM_COMPLIANCE + colour] = &matter->compliance[colour];
+    }
     memcpy(fields, list, sizeof list);
 }
 

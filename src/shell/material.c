@@ -27,18 +27,27 @@ typedef struct ParamRule {
 #define FIELD(member) #member, offsetof(SingeMaterialDef, member)
 #define POSITIVE POSITIVE_RANGE, "above 0"
 #define POSITIVE_RANGE 0, INFINITY, true, true
+#define POSITIVE_OR_INFINITE 0, INFINITY, true, false, "above 0"
 #define NOT_NEGATIVE 0, INFINITY, false, true, "0 or more"
 #define BELOW_ONE 0, 1, false, true, "from 0 to below 1"
 #define UP_TO_TWO 0, 2, false, false, "from 0 to 2"
 #define UP_TO_ONE 0, 1, false, false, "from 0 to 1"
+#define SHARE_ABOVE_ZERO 0, 1, true, false, "above 0, to 1"
 
 static const ParamRule param_rules[] = {
+    {FIELD(grammage), PARAM_GRAMMAGE, AT_BOTH, POSITIVE},
+    {FIELD(specific_heat), PARAM_SPECIFIC_HEAT, AT_BOTH, POSITIVE},
     {FIELD(thickness), PARAM_THICKNESS, AT_BOTH, POSITIVE},
     {FIELD(diffusivity), PARAM_DIFFUSIVITY, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(layer_exchange), PARAM_LAYER_EXCHANGE, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(convection), PARAM_CONVECTION, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(emissivity), PARAM_EMISSIVITY, AT_BOTH, UP_TO_ONE},
+    {FIELD(loss_mass_floor), PARAM_LOSS_MASS_FLOOR, AT_BOTH, SHARE_ABOVE_ZERO},
     {FIELD(temperature), PARAM_TEMPERATURE, AT_BOTH, POSITIVE},
     {FIELD(ignition_temperature), PARAM_IGNITION, AT_BOTH, POSITIVE},
     {FIELD(heating), PARAM_HEATING, AT_BOTH, NOT_NEGATIVE},
     {FIELD(mass_rate), PARAM_MASS_RATE, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(rate_ceiling), PARAM_RATE_CEILING, AT_BOTH, POSITIVE_OR_INFINITE},
     {FIELD(ash_exponent), PARAM_ASH_EXPONENT, AT_BOTH, NOT_NEGATIVE},
     {FIELD(mass_min), PARAM_MASS_MIN, AT_BOTH, BELOW_ONE},
     {FIELD(mass_loss), PARAM_MASS_LOSS, AT_BOTH, BELOW_ONE},
@@ -49,50 +58,22 @@ static const ParamRule param_rules[] = {
     {FIELD(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, AT_BOTH, UP_TO_ONE},
     {FIELD(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, AT_BOTH, UP_TO_ONE},
     {FIELD(weight[SINGE_YELLOW]), PARAM_WEIGHT + SINGE_YELLOW, AT_BOTH, UP_TO_ONE},
+    {FIELD(compliance[SINGE_RED]), PARAM_COMPLIANCE + SINGE_RED, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_GREEN]), PARAM_COMPLIANCE + SINGE_GREEN, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_BLUE]), PARAM_COMPLIANCE + SINGE_BLUE, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(compliance[SINGE_YELLOW]), PARAM_COMPLIANCE + SINGE_YELLOW, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(char_weight), PARAM_CHAR_WEIGHT, AT_BOTH, UP_TO_ONE},
+    {FIELD(drag), PARAM_DRAG, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(damping), PARAM_DAMPING, AT_BOTH, NOT_NEGATIVE},
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 
-/// A number of the material that is the same over the sheet.
-typedef struct ScalarRule {
-    const char *name;
-    size_t offset;
-    float low, high;
-    bool low_open, high_open;
-    const char *range;
-} ScalarRule;
-
-static const ScalarRule scalar_rules[] = {
-    {FIELD(grammage), POSITIVE},
-    {FIELD(specific_heat), POSITIVE},
-    {FIELD(layer_exchange), NOT_NEGATIVE},
-    {FIELD(convection), NOT_NEGATIVE},
-    {FIELD(emissivity), UP_TO_ONE},
-    {FIELD(loss_mass_floor), 0, 1, true, false, "above 0, to 1"},
-    {FIELD(compliance[SINGE_RED]), NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_GREEN]), NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_BLUE]), NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_YELLOW]), NOT_NEGATIVE},
-    {FIELD(char_weight), UP_TO_ONE},
-    {FIELD(drag), NOT_NEGATIVE},
-    {FIELD(damping), NOT_NEGATIVE},
-};
-
-/// NaN is outside every range, and so are infinities.
+/// NaN is outside every range, and so are infinities but where the range ends at one and is closed.
 static bool inside(float x, float low, float high, bool low_open, bool high_open) {
-    return isfinite(x) && (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
 }
 
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error) {
-    for (size_t i = 0; i < sizeof scalar_rules / sizeof scalar_rules[0]; i++) {
-        const ScalarRule *rule = &scalar_rules[i];
-        float value;
-        memcpy(&value, (const char *)material + rule->offset, sizeof value);
-        if (!inside(value, rule->low, rule->high, rule->low_open, rule->high_open))
-            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s must be %s", sheet,
-                             rule->name, rule->range);
-    }
-    if (!(material->rate_ceiling > 0)) // infinity is allowed
-        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': rate_ceiling must be above 0", sheet);
     if (material->thickening != 0 && !(isfinite(material->thickening) && material->thickening >= 1))
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
                          sheet);
@@ -145,8 +126,10 @@ static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *ru
 
 static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, Field *field, SingeError *error) {
     const SingeParam *param = field->param;
+    if (param->field == SINGE_FIELD_NONE) return SINGE_OK;
+    if (!isfinite(param->value) || !isfinite(param->to)) // no line leads there
+        return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
     switch ((int)param->field) {
-    case SINGE_FIELD_NONE: return SINGE_OK;
     case SINGE_FIELD_PICTURE:
         if (!def->uv) return field_fail(field->source, rule, "is a picture but the sheet has no uv", error);
         if (param->picture.width < 1 || param->picture.height < 1 || !param->picture.values)
@@ -165,6 +148,8 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, F
 
 /// The parameter at the mean of `count` vertices (1, or a cell's 4).
 static float field_value(const Field *field, const uint32_t *vertices, int count) {
+    const SingeParam *param = field->param;
+    if (param->field == SINGE_FIELD_NONE) return param->value;
     double uv[2] = {0}, place[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
@@ -172,8 +157,6 @@ static float field_value(const Field *field, const uint32_t *vertices, int count
         for (int k = 0; k < 3; k++) place[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }
-    const SingeParam *param = field->param;
-    if (param->field == SINGE_FIELD_NONE) return param->value;
     if (param->field == SINGE_FIELD_PICTURE)
         f = (double)shell_sample_picture(&param->picture, (float)uv[0], (float)uv[1]);
     if (param->field == SINGE_FIELD_NOISE)
@@ -210,9 +193,13 @@ SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, Sin
     return SINGE_OK;
 }
 
+SingeParam *material_param(SingeMaterialDef *material, int index) {
+    return index < RULE_COUNT ? (void *)((char *)material + param_rules[index].offset) : NULL;
+}
+
 void material_forget_fields(SingeMaterialDef *material) {
-    for (int r = 0; r < RULE_COUNT; r++) {
-        SingeParam *param = (void *)((char *)material + param_rules[r].offset);
+    SingeParam *param;
+    for (int r = 0; (param = material_param(material, r)); r++) {
         param->picture = (SingePicture){0};
         param->attribute = NULL;
     }

@@ -69,6 +69,28 @@ CellShape cell_shape(const float *const corners[4]) {
     return shape;
 }
 
+/// Masses and capacities of the particles [first, last), which hold grammage and specific heat until now (bcs.c).
+static void weigh_range(Matter *matter, uint32_t first, uint32_t last, double mean) {
+    for (uint32_t p = first; p < last; p++) {
+        float grammage = matter->mass[p], specific_heat = matter->capacity[p];
+        matter->capacity_ratio[p] = (float)((double)grammage * (double)specific_heat / mean);
+        matter->mass[p] = grammage / 2 * matter->area[p];
+        matter->capacity[p] = matter->mass[p] * specific_heat;
+    }
+}
+
+static void weigh_sheet(const Shell *shell, const Sheet *sheet, Matter *matter) {
+    const uint32_t range[2][2] = {{sheet->vertex_first, sheet->vertex_first + sheet->vertex_count},
+                                  {shell_centre(shell, sheet->cell_first),
+                                   shell_centre(shell, sheet->cell_first + sheet->cell_count)}};
+    double sum = 0;
+    for (int layer = 0; layer < 2; layer++)
+        for (uint32_t p = range[layer][0]; p < range[layer][1]; p++)
+            sum += (double)matter->mass[p] * (double)matter->capacity[p];
+    for (int layer = 0; layer < 2; layer++)
+        weigh_range(matter, range[layer][0], range[layer][1], sum / (sheet->vertex_count + sheet->cell_count));
+}
+
 void measure_particles(Shell *shell) {
     Matter *matter = &shell->matter;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -82,11 +104,7 @@ void measure_particles(Shell *shell) {
         matter->area[centre] = (float)shape.area;
         for (int i = 0; i < 4; i++) matter->area[shell->cells[c][i]] += (float)shape.corner_area[i];
     }
-    for (uint32_t p = 0; p < shell->particle_count; p++) {
-        const SingeMaterialDef *material = &shell->sheets[matter->sheet[p]].material;
-        matter->mass[p] = material->grammage / 2 * matter->area[p];
-        matter->capacity[p] = matter->mass[p] * material->specific_heat;
-    }
+    for (uint32_t i = 0; i < shell->sheet_count; i++) weigh_sheet(shell, &shell->sheets[i], matter);
 }
 
 /// The k-th smallest of the sides of a sheet's cells, digit by digit: positive floats are in the order

@@ -96,9 +96,7 @@ static const char *shape_fault(const SingeSheetDef *def, const uint32_t *corners
     CellShape shape = cell_shape(p);
     if (!(shape.shortest > thin * shape.longest)) return "has a side without length";
     if (!(shape.vector_area > thin * shape.longest * shape.longest)) return "has no area";
-    double mass = shape.area * (double)def->material.grammage;
-    if (!in_float(shape.area) || !in_float(mass) || !in_float(mass * (double)def->material.specific_heat))
-        return "has an area, mass or heat capacity outside 1e-30 to 1e30";
+    if (!in_float(shape.area)) return "has an area outside 1e-30 to 1e30";
     return NULL;
 }
 
@@ -117,6 +115,31 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
         const char *fault = shape_fault(def, corners);
         if (fault) return element_fail(name, "cell", c, fault, error);
     }
+    return SINGE_OK;
+}
+
+/// The cell's particle and those of its corners weigh about as much as the cell would with their grammage.
+static bool mass_fits(const SheetSource *source, uint32_t cell) {
+    const uint32_t *corners = source->cells[cell], vertices = source->sheet.vertex_count;
+    size_t total = (size_t)vertices + source->sheet.cell_count;
+    const float *grammage = source->params + PARAM_GRAMMAGE * total;
+    const float *heat = source->params + PARAM_SPECIFIC_HEAT * total;
+    const float *p[4];
+    for (int i = 0; i < 4; i++) p[i] = source->position[corners[i]];
+    double area = cell_shape(p).area;
+    for (int i = 0; i < 5; i++) {
+        uint32_t particle = i < 4 ? corners[i] : vertices + cell;
+        double mass = area * (double)grammage[particle];
+        if (!in_float(mass) || !in_float(mass * (double)heat[particle])) return false;
+    }
+    return true;
+}
+
+static SingeResult check_masses(const SheetSource *source, SingeError *error) {
+    for (uint32_t c = 0; c < source->sheet.cell_count; c++)
+        if (!mass_fits(source, c))
+            return element_fail(source->sheet.name, "cell", c, "has a mass or heat capacity outside 1e-30 to 1e30",
+                                error);
     return SINGE_OK;
 }
 
@@ -155,6 +178,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     memcpy(source->cells, def.cells, sizeof *source->cells * def.cell_count);
     if (def.uv) memcpy(source->uv, def.uv, sizeof *source->uv * def.vertex_count);
     SingeResult result = material_evaluate(&def, source, error);
+    if (result == SINGE_OK) result = check_masses(source, error);
     if (result != SINGE_OK) sheet_source_free(memory, source);
     return result;
 }

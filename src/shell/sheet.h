@@ -4,12 +4,15 @@
 
 #include "shell/shell.h"
 
-/// Checks the numbers that are the same over the sheet.
+/// Checks the numbers and choices that are one for the sheet.
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error);
 
 /// Evaluates every parameter at every particle into source->params and checks its range; the source's
 /// mesh, uv and sheet are in place.
 SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, SingeError *error);
+
+/// The parameters of a material that may vary over the sheet, one after the other; NULL behind the last.
+SingeParam *material_param(SingeMaterialDef *material, int index);
 
 /// Clears the caller's pointers from a copied material.
 void material_forget_fields(SingeMaterialDef *material);

@@ -43,17 +43,27 @@ typedef struct Matter {
     float *area;               ///< m2 at rest
     float *mass;               ///< kg, initial
     float *capacity;           ///< J/K, of the unburnt particle
+    float *capacity_ratio;     ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
     float *thickness;          ///< m
     float *diffusivity;        ///< m2/s
+    float *layer_exchange;     ///< 1/s
+    float *convection;         ///< W/(m2 K)
+    float *emissivity;
+    float *loss_mass_floor;
     float *ignition_temperature; ///< K
     float *heating;            ///< K per mass fraction
     float *mass_rate;          ///< 1/(K s)
+    float *rate_ceiling;       ///< K, may be infinite
     float *ash_exponent;
     float *mass_min;
     float *mass_loss;
     float *ash_density;
     float *shrink;             ///< of its own layer
     float *weight[SINGE_COLOUR_COUNT];
+    float *compliance[SINGE_COLOUR_COUNT]; ///< m/N
+    float *char_weight;
+    float *drag;
+    float *damping;            ///< 1/s
     float *temperature;        ///< K, initial
     uint16_t *sheet;
 } Matter;
@@ -63,7 +73,7 @@ typedef struct Sheet {
     char name[64];
     uint32_t vertex_first, vertex_count, cell_first, cell_count;
     float cell_size;           ///< m, median edge
-    SingeMaterialDef material; ///< for its scalars; its pictures and attributes are gone
+    SingeMaterialDef material; ///< for what is one for the sheet; its pictures and attributes are gone
     float velocity[3];
     float drop_pieces_below;   ///< m2
 } Sheet;
@@ -97,8 +107,11 @@ typedef struct SheetSource {
 typedef enum ShellParam {
     PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEATING, PARAM_MASS_RATE,
     PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY, PARAM_SHRINK,
+    PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE, PARAM_CONVECTION, PARAM_EMISSIVITY,
+    PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_WEIGHT, // four, by colour
-    PARAM_COUNT = PARAM_WEIGHT + SINGE_COLOUR_COUNT
+    PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
+    PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT
 } ShellParam;
 
 /// Checks a sheet's Def, copies its mesh (sheet.c) and evaluates its material (material.c). Errors name the

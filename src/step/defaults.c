@@ -11,21 +11,21 @@ SingeParam singe_param(float value) {
 static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
-        .grammage = 0.080f,
-        .specific_heat = 1400,
+        .grammage = singe_param(0.080f),
+        .specific_heat = singe_param(1400),
         .thickness = singe_param(1e-3f),
         .heat_operator = SINGE_HEAT_SURFACE,
         .diffusivity = singe_param(3.4e-6f),
-        .layer_exchange = 36,
-        .convection = 14,
-        .emissivity = 0.9f,
-        .loss_mass_floor = 0.15f,
+        .layer_exchange = singe_param(36),
+        .convection = singe_param(14),
+        .emissivity = singe_param(0.9f),
+        .loss_mass_floor = singe_param(0.15f),
         .thickening = 0,
         .temperature = singe_param(293.15f),
         .ignition_temperature = singe_param(513.15f),
         .heating = singe_param(2250),
         .mass_rate = singe_param(9e-3f),
-        .rate_ceiling = 260,
+        .rate_ceiling = singe_param(260),
         .ash_exponent = singe_param(0.5f),
         .mass_min = singe_param(0.15f),
         .mass_loss = singe_param(0.25f),
@@ -33,12 +33,14 @@ static SingeMaterialDef standard_material(void) {
         .shrink_front = singe_param(0.5f),
         .shrink_back = singe_param(0.5f),
         .ablate = true,
-        .compliance = {0, 0, 0, 0},
-        .char_weight = 0.4f,
-        .drag = 1.3f,
-        .damping = 0.5f,
+        .char_weight = singe_param(0.4f),
+        .drag = singe_param(1.3f),
+        .damping = singe_param(0.5f),
     };
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) def.weight[colour] = singe_param(1);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        def.weight[colour] = singe_param(1);
+        def.compliance[colour] = singe_param(0);
+    }
     return def;
 }
 

@@ -1,6 +1,8 @@
 // A field that is added to a Def is added here; a test counts the bytes that are not.
 #include "step/snapshot_def.h"
 
+#include "shell/sheet.h"
+
 static void def_bool(Stream *stream, bool *value) {
     uint8_t byte = *value;
     STREAM(stream, byte);
@@ -50,28 +52,12 @@ static void def_param(Stream *stream, SingeParam *param) {
 }
 
 static void def_material(Stream *stream, SingeMaterialDef *material) {
-    SingeParam *const params[] = {
-        &material->thickness,     &material->diffusivity, &material->temperature,  &material->ignition_temperature,
-        &material->heating,       &material->mass_rate,   &material->ash_exponent, &material->mass_min,
-        &material->mass_loss,     &material->ash_density, &material->shrink_front, &material->shrink_back,
-        &material->weight[0],     &material->weight[1],   &material->weight[2],    &material->weight[3],
-    };
+    SingeParam *param;
     material->struct_size = sizeof *material;
-    for (size_t i = 0; i < sizeof params / sizeof *params; i++) def_param(stream, params[i]);
-    STREAM(stream, material->grammage);
-    STREAM(stream, material->specific_heat);
+    for (int i = 0; (param = material_param(material, i)); i++) def_param(stream, param);
     STREAM(stream, material->heat_operator);
-    STREAM(stream, material->layer_exchange);
-    STREAM(stream, material->convection);
-    STREAM(stream, material->emissivity);
-    STREAM(stream, material->loss_mass_floor);
     STREAM(stream, material->thickening);
     def_bool(stream, &material->ablate);
-    STREAM(stream, material->compliance);
-    STREAM(stream, material->char_weight);
-    STREAM(stream, material->drag);
-    STREAM(stream, material->damping);
-    STREAM(stream, material->rate_ceiling);
 }
 
 void snapshot_sheet_def(Stream *stream, Sheet *sheet) {

@@ -30,7 +30,7 @@ static inline SingeMaterialDef plain_material(void) {
     material.mass_loss = singe_param(0.25f);
     material.ash_exponent = singe_param(0);
     material.mass_rate = singe_param(1e-3f);
-    material.rate_ceiling = INFINITY;
+    material.rate_ceiling = singe_param(INFINITY);
     material.ignition_temperature = singe_param(500);
     material.temperature = singe_param(300);
     material.ash_density = singe_param(1);

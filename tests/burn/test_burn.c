@@ -49,13 +49,29 @@ static void no_exponent_is_a_straight_line(void **unused) {
 static void rate_stops_growing_at_its_ceiling(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
-    material.rate_ceiling = 50;
+    material.rate_ceiling = singe_param(50);
     BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
     const float temperatures[] = {540, 550, 560, 5000};
     for (int i = 0; i < 4; i++) b->state.heat.temperature[i] = temperatures[i];
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
     assert_float_equal(b->state.burn.mass[0], 1 - 1e-3 * 40, 1e-6);
     for (int i = 1; i < 4; i++) assert_float_equal(b->state.burn.mass[i], 1 - 1e-3 * 50, 1e-6);
+    burning_sheet_free(b);
+}
+
+static void ceilings_may_vary(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1};
+    SingeMaterialDef material = plain_material();
+    material.rate_ceiling =
+        (SingeParam){.value = 50, .to = 200, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+    BurningSheet *b = burning_sheet(8, 2, 0.01f, &material);
+    heat_all(b, 5000);
+    assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        float u = b->shell.uv[i][0], f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
+        assert_float_equal(b->state.burn.mass[i], 1 - 1e-3f * (50 + 150 * f), 1e-6);
+    }
     burning_sheet_free(b);
 }
 
@@ -296,6 +312,7 @@ int main(void) {
         cmocka_unit_test(volume_ratio_follows_eq_5),
         cmocka_unit_test(no_exponent_is_a_straight_line),
         cmocka_unit_test(rate_stops_growing_at_its_ceiling),
+        cmocka_unit_test(ceilings_may_vary),
         cmocka_unit_test(exponents_follow_their_solutions),
         cmocka_unit_test(no_step_passes_the_least_mass),
         cmocka_unit_test(ignites_once_and_in_order),

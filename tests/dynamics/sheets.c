@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <stdarg.h>
 #include <setjmp.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
@@ -41,12 +42,25 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
     def.vertex_count = quads.vertex_count, def.positions = quads.positions;
     def.cell_count = quads.cell_count, def.cells = quads.cells;
     if (material) def.material = *material;
+    float *uv = malloc(2 * quads.vertex_count * sizeof *uv), *along = malloc(quads.vertex_count * sizeof *along);
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < 2 * quads.vertex_count; i++) {
+        float x = quads.positions[3 * (i / 2) + i % 2];
+        low[i % 2] = fminf(low[i % 2], x), high[i % 2] = fmaxf(high[i % 2], x);
+    }
+    for (uint32_t i = 0; i < 2 * quads.vertex_count; i++) {
+        uv[i] = (quads.positions[3 * (i / 2) + i % 2] - low[i % 2]) / fmaxf(high[i % 2] - low[i % 2], 1e-6f);
+        if (i % 2 == 0) along[i / 2] = uv[i];
+    }
+    SingeAttribute attribute = {"along", along};
+    def.uv = uv, def.attribute_count = 1, def.attributes = &attribute;
     assert_int_equal(sheet_source_create(&bench->memory, &def, &bench->source, &bench->error), SINGE_OK);
     assert_int_equal(shell_create(&bench->memory, &bench->source, 1, &bench->shell, &bench->error), SINGE_OK);
     assert_int_equal(state_create(&bench->memory, &bench->shell, &bench->state), SINGE_OK);
     assert_int_equal(dynamics_plan_create(&bench->memory, &bench->shell, &bench->settings, &bench->plan), SINGE_OK);
     assert_int_equal(pool_create(&bench->memory, (SingeTasks){0}, threads, &bench->pool), SINGE_OK);
     quads_free(&quads);
+    free(uv), free(along);
 }
 
 void bench_close(Bench *bench) {

@@ -31,7 +31,8 @@ typedef struct Quads {
 Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x);
 void quads_free(Quads *quads);
 
-/// Builds everything; frees the quads. Asserts success.
+/// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
+/// "along" along x.
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads);
 void bench_close(Bench *bench);
 /// One step of h seconds; asserts success.

@@ -14,8 +14,8 @@ static const float pi = 3.14159265f;
 
 static SingeMaterialDef plain(void) {
     SingeMaterialDef material = singe_default_material();
-    material.drag = 0;
-    material.damping = 0;
+    material.drag = singe_param(0);
+    material.damping = singe_param(0);
     return material;
 }
 
@@ -144,7 +144,7 @@ static void test_weights(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
-    material.weight[SINGE_BLUE].value = 0.8f, material.char_weight = 0.4f, material.mass_min.value = 0.2f;
+    material.weight[SINGE_BLUE].value = 0.8f, material.char_weight.value = 0.4f, material.mass_min.value = 0.2f;
     bench_open(&bench, quads_grid(3, 3, 0.005f, 0.005f, false), &material, 1);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     bench.state.burn.mass[blue->ends[0][0]] = 0.2f; // ash
@@ -164,8 +164,8 @@ static void test_compliance_is_physical(void **unused) {
     for (int run = 0; run < 2; run++) {
         Bench bench;
         SingeMaterialDef material = plain();
-        material.damping = 6;
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = 5;
+        material.damping = singe_param(6);
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(5);
         bench_open(&bench, quads_grid(1, 10, 0.01f, 0.01f, false), &material, 1);
         bench.plan->settings.solver.substeps = run ? 12 : 3;
         bench.plan->settings.solver.height_min = 0;
@@ -182,6 +182,85 @@ static void test_compliance_is_physical(void **unused) {
     assert_true(stretch[0] > 1e-4 && fabs(stretch[0] / stretch[1] - 1) < 0.02);
 }
 
+/// What is burnt to ash keeps its place's share of its weight: here from 0.2 at the left to 0.8 at the right.
+static void test_char_weight_by_attribute(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    material.char_weight =
+        (SingeParam){.value = 0.2f, .to = 0.8f, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "along"};
+    bench_open(&bench, quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        bench.state.burn.mass[i] = bench.shell.matter.mass_min[i];
+    prepare(&bench);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t k = 0; k < bench.shell.springs[colour].count; k++) {
+            const uint32_t *ends = bench.shell.springs[colour].ends[k];
+            float x = 0.5f * (bench.shell.rest_position[ends[0]][0] + bench.shell.rest_position[ends[1]][0]);
+            assert_true(fabsf(bench.plan->weight[colour][k] - (0.2f + 6 * x)) < 1e-5f);
+        }
+    bench_close(&bench);
+}
+
+/// Damping and drag slow each particle by its own; without weight no spring makes them equal.
+static void test_damping_and_drag_by_picture(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1};
+    for (int drag = 0; drag < 2; drag++) {
+        Bench bench;
+        SingeMaterialDef material = plain();
+        SingeParam param = {.value = 0, .to = 4, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+        if (drag) material.drag = param;
+        else material.damping = param;
+        bench_open(&bench, quads_grid(8, 2, 0.01f, 0.01f, false), &material, 1);
+        for (int k = 0; k < 3; k++) bench.plan->settings.gravity[k] = 0;
+        float h = 0.01f;
+        for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = 2;
+        prepare(&bench);
+        dynamics_predict(bench.plan, &bench.shell, bench.pool, h, &bench.state.dynamics);
+        for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+            float f = fminf(fmaxf(2 * bench.shell.rest_position[i][0] / 0.08f - 0.5f, 0), 1);
+            // a layer of 40 g/m2 in air of 1.2 kg/m3 takes half of the drag
+            float slower = drag ? h * 0.25f * 1.2f * 4 * f / 0.04f * 2 : h * 4 * f;
+            assert_true(fabsf(bench.state.dynamics.velocity[i][2] - 2 / (1 + slower)) < 1e-5f);
+        }
+        bench_close(&bench);
+    }
+}
+
+/// A ribbon whose lower half gives and whose upper half does not: the stretch of its two ends as it hangs.
+static void hang(SingeParam compliance, double stretch[2]) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    material.damping = singe_param(6);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = compliance;
+    bench_open(&bench, quads_grid(1, 20, 0.01f, 0.01f, false), &material, 1);
+    bench.plan->settings.solver.substeps = 6;
+    bench.plan->settings.solver.height_min = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) bench.plan->settings.solver.regularisation[c] = 1e-6f;
+    bench.plan->settings.gravity[1] = -9.81f, bench.plan->settings.gravity[2] = 0;
+    for (uint32_t i = 0; i < bench.shell.vertex_count; i++)
+        if (bench.shell.rest_position[i][1] > 0.1999f) bench.state.dynamics.pinned[i] = 1;
+    for (int s = 0; s < 960; s++) bench_step(&bench, 1.0f / 480);
+    for (uint32_t end = 0; end < 2; end++) {
+        uint32_t row = end ? 15 : 0; // rows 0 to 5 and 15 to 20: where the picture is one colour
+        const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
+        stretch[end] = (double)(x[2 * (row + 5)][1] - x[2 * row][1]) - 0.05;
+    }
+    bench_close(&bench);
+}
+
+static void test_compliance_by_picture(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1}; // white at the bottom
+    double all[2], half[2];
+    hang(singe_param(5), all);
+    hang((SingeParam){.value = 0, .to = 5, .field = SINGE_FIELD_PICTURE, .picture = {1, 2, halves}}, half);
+    assert_true(all[0] > 1e-5 && all[1] > 3 * all[0]); // the upper end bears more
+    assert_true(fabs(half[0] / all[0] - 1) < 0.05);
+    assert_true(fabs(half[1]) < 0.02 * all[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_waves_decay),
@@ -190,6 +269,9 @@ int main(void) {
         cmocka_unit_test(test_inverted_cells_are_mended),
         cmocka_unit_test(test_weights),
         cmocka_unit_test(test_compliance_is_physical),
+        cmocka_unit_test(test_char_weight_by_attribute),
+        cmocka_unit_test(test_damping_and_drag_by_picture),
+        cmocka_unit_test(test_compliance_by_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,8 +14,8 @@
 
 static SingeMaterialDef plain(void) {
     SingeMaterialDef material = singe_default_material();
-    material.drag = 0;
-    material.damping = 0;
+    material.drag = singe_param(0);
+    material.damping = singe_param(0);
     return material;
 }
 
@@ -70,7 +70,7 @@ static void test_terminal_speed(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
-    material.drag = 1.3f;
+    material.drag = singe_param(1.3f);
     bench_open(&bench, quads_grid(6, 6, 0.02f, 0.02f, false), &material, 1);
     for (int step = 0; step < 960; step++) bench_step(&bench, 1.0f / 480);
     double expected = sqrt(2 * 0.080 * 9.81 / (1.2 * 1.3)), speed = 0;
@@ -108,7 +108,7 @@ static void test_damping_law(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = plain();
-    material.damping = 2;
+    material.damping = singe_param(2);
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.gravity[2] = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
@@ -312,7 +312,7 @@ static void test_hangs_still(void **unused) {
     (void)unused;
     Bench bench;
     SingeMaterialDef material = singe_default_material();
-    material.damping = 2; // else it swings for seconds: centres lie to one side of the held edge
+    material.damping = singe_param(2); // else it swings for seconds: centres lie to one side of the held edge
     Quads quads = quads_grid(30, 40, 0.005f, 0.005f, false);
     for (uint32_t v = 0; v < quads.vertex_count; v++) { // stand it up
         float *p = quads.positions + 3 * v;

@@ -8,8 +8,8 @@
 RigDef rig_default(int nx, int ny, float dx, float dy) {
     RigDef def = {.nx = nx, .ny = ny, .dx = dx, .dy = dy, .material = singe_default_material()};
     def.material.diffusivity = singe_param(1e-4f);
-    def.material.convection = 0;
-    def.material.emissivity = 0;
+    def.material.convection = singe_param(0);
+    def.material.emissivity = singe_param(0);
     def.material.thickening = 1;
     def.settings = (HeatSettings){.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1, .up = {0, 0, 1}};
     return def;

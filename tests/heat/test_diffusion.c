@@ -25,7 +25,7 @@ static double mode_error(int n, float aspect, bool centres, float exchange) {
     double length = 0.08, decay = 1e-4 * PI * PI / (length * length), seconds = 4;
     float dx = (float)length / (float)n;
     RigDef def = rig_default(n, 3, dx, dx * aspect);
-    def.material.layer_exchange = exchange;
+    def.material.layer_exchange = singe_param(exchange);
     Rig rig;
     rig_open(&rig, &def);
     int steps = 2 * n * n;
@@ -135,7 +135,7 @@ static void surface_on_skewed_cells(void **unused) {
     (void)unused;
     RigDef def = rig_default(70, 60, 0.002f, 0.002f);
     def.shape = shear;
-    def.material.layer_exchange = 0;
+    def.material.layer_exchange = singe_param(0);
     // corners: cotangents are exact, negative diagonals and all
     Moments m = gaussian(&def, 0, 0.008);
     CHECK_NEAR(m.x, 1e-4, 3e-7);
@@ -239,7 +239,7 @@ static void linear_temperature_is_steady_on_skewed_quads(void **unused) {
     (void)unused;
     RigDef def = rig_default(16, 16, 0.002f, 0.002f);
     def.shape = jitter;
-    def.material.layer_exchange = 0;
+    def.material.layer_exchange = singe_param(0);
     Rig rig;
     rig_open(&rig, &def);
     rig.h = 2e-4f; // alpha dt/s^2 = 0.005: the border is not felt four cells away
@@ -331,6 +331,58 @@ static void what_is_gone_conducts_nothing(void **unused) {
     rig_close(&rig);
 }
 
+/// Conduction moves heat, not temperature: where the sheet is heavier or of more specific heat, as much heat warms it
+/// less. The total is kept on the way, and the end is the mean by capacity.
+static void heat_is_kept_where_capacity_varies(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1};
+    RigDef def = rig_default(12, 3, 0.002f, 0.003f);
+    def.material.grammage =
+        (SingeParam){.value = 0.04f, .to = 0.4f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+    def.material.specific_heat =
+        (SingeParam){.value = 900, .to = 1800, .field = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}};
+    Rig rig;
+    rig_open(&rig, &def);
+    double sum = 0, capacity = 0;
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
+        rig.state.heat.temperature[i] = rig_place(&rig, i)[0] < 0.012f ? 900 : 300;
+        sum += (double)rig.shell.matter.capacity[i] * (double)rig.state.heat.temperature[i];
+        capacity += (double)rig.shell.matter.capacity[i];
+    }
+    double before = rig_content(&rig, 1);
+    for (int k = 0; k < 6000; k++) {
+        rig_step(&rig);
+        if (k % 100 == 0) CHECK_NEAR(rig_content(&rig, 1), before, 1e-5 * before);
+    }
+    assert_true(sum / capacity < 450); // the light half's heat goes into the heavy one
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+        CHECK_NEAR(rig.state.heat.temperature[i], sum / capacity, 0.05);
+    rig_close(&rig);
+}
+
+/// Where the exchange varies, the layers even out at the rate of their place, and no heat is lost.
+static void layers_even_out_at_their_own_rates(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1};
+    RigDef def = rig_default(40, 2, 0.002f, 0.002f);
+    def.material.diffusivity = singe_param(0);
+    def.material.layer_exchange =
+        (SingeParam){.value = 10, .to = 40, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+    Rig rig;
+    rig_open(&rig, &def);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+        rig.state.heat.temperature[i] = i < rig.shell.vertex_count ? 500 : 300;
+    double before = rig_content(&rig, 1);
+    for (int k = 0; k < 25; k++) rig_step(&rig); // 0.05 s
+    const float *T = rig.state.heat.temperature;
+    double left = (double)(T[rig_vertex(&rig, 0, 1)] - T[rig_centre(&rig, 0, 0)]);
+    double right = (double)(T[rig_vertex(&rig, 40, 1)] - T[rig_centre(&rig, 39, 0)]);
+    CHECK_NEAR(left / 200, pow(1 + 10 * 0.002, -25), 1e-3); // exp(-X t) by implicit steps
+    CHECK_NEAR(right / 200, pow(1 + 40 * 0.002, -25), 1e-3);
+    CHECK_NEAR(rig_content(&rig, 1), before, 1e-6 * before);
+    rig_close(&rig);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slab_mode_decays_with_second_order),
@@ -344,6 +396,8 @@ int main(void) {
         cmocka_unit_test(linear_temperature_is_steady_on_skewed_quads),
         cmocka_unit_test(iterations_have_an_end),
         cmocka_unit_test(layers_even_out_at_their_rate),
+        cmocka_unit_test(layers_even_out_at_their_own_rates),
+        cmocka_unit_test(heat_is_kept_where_capacity_varies),
         cmocka_unit_test(what_is_gone_conducts_nothing),
     };
     return cmocka_run_group_tests_name("heat_diffusion", tests, NULL, NULL);

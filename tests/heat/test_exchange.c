@@ -12,8 +12,8 @@ static void fill(Rig *rig, float temperature) {
 
 static RigDef lossy(void) {
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-    def.material.convection = 14;
-    def.material.emissivity = 0.9f;
+    def.material.convection = singe_param(14);
+    def.material.emissivity = singe_param(0.9f);
     return def;
 }
 
@@ -140,6 +140,73 @@ static void the_peak_is_the_hottest_so_far(void **unused) {
     rig_close(&rig);
 }
 
+// --- parameters that vary over the sheet ----------------------------------------------------------------
+
+static const float halves[] = {0, 1};
+
+/// `value` in the left quarter of the sheet, `to` in the right one, a straight line between.
+static SingeParam from_left(float value, float to) {
+    return (SingeParam){.value = value, .to = to, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+}
+
+static void even_flux(void *context, const struct SingeView *view, float *flux, float *conductance, float *temperature) {
+    (void)conductance, (void)temperature;
+    for (uint32_t i = 0; i < view->particle_count; i++) flux[i] += *(float *)context;
+}
+
+/// Under the same flux, what is heavier or of more specific heat warms less, to the formula of eq 1.
+static void heavier_halves_heat_slower(void **unused) {
+    (void)unused;
+    for (int which = 0; which < 2; which++) {
+        RigDef def = rig_default(8, 2, 0.002f, 0.002f);
+        def.material.diffusivity = def.material.layer_exchange = singe_param(0);
+        if (which) def.material.specific_heat = from_left(1000, 3000);
+        else def.material.grammage = from_left(0.05f, 0.15f);
+        Rig rig;
+        rig_open(&rig, &def);
+        fill(&rig, 300);
+        float flux = 2e4f;
+        SingeSourceDef source = singe_default_source();
+        source.kind = SINGE_SOURCE_CALLBACK, source.callback = even_flux, source.callback_context = &flux;
+        rig_source(&rig, &source);
+        for (int k = 0; k < 10; k++) rig_step(&rig);
+        double left = which ? 0.04 * 1000 : 0.025 * 1400, right = 3 * left; // J/(m2 K)
+        const float *T = rig.state.heat.temperature;
+        CHECK_NEAR(T[rig_vertex(&rig, 0, 1)], 300 + 2e4 * 0.02 / left, 1e-3);
+        CHECK_NEAR(T[rig_centre(&rig, 1, 0)], 300 + 2e4 * 0.02 / left, 1e-3);
+        CHECK_NEAR(T[rig_vertex(&rig, 8, 1)], 300 + 2e4 * 0.02 / right, 1e-3);
+        CHECK_NEAR(T[rig_centre(&rig, 7, 0)], 300 + 2e4 * 0.02 / right, 1e-3);
+        double stored = 0; // above 300 K
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+            stored += (double)rig.shell.matter.capacity[i] * ((double)T[i] - 300);
+        CHECK_NEAR(rig.state.heat.heat_in, stored, 1e-5 * stored);
+        rig_close(&rig);
+    }
+}
+
+/// The losses of each particle are those of a sheet that is all of its material.
+static void losses_are_each_particles_own(void **unused) {
+    (void)unused;
+    float T[3][2]; // varying, all left, all right
+    for (int run = 0; run < 3; run++) {
+        RigDef def = rig_default(8, 2, 0.002f, 0.002f);
+        def.material.diffusivity = def.material.layer_exchange = singe_param(0);
+        SingeParam *params[] = {&def.material.convection, &def.material.emissivity, &def.material.loss_mass_floor};
+        const float ends[3][2] = {{5, 50}, {0.9f, 0.1f}, {0.3f, 0.9f}};
+        for (int k = 0; k < 3; k++) *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
+        Rig rig;
+        rig_open(&rig, &def);
+        fill(&rig, 900);
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.2f;
+        for (int k = 0; k < 20; k++) rig_step(&rig);
+        T[run][0] = rig.state.heat.temperature[rig_vertex(&rig, 0, 1)];
+        T[run][1] = rig.state.heat.temperature[rig_centre(&rig, 7, 1)];
+        rig_close(&rig);
+    }
+    assert_true(T[0][0] == T[1][0] && T[0][1] == T[2][1]);
+    assert_true(fabsf(T[0][0] - T[0][1]) > 5);
+}
+
 // --- failures -------------------------------------------------------------------------------------------
 
 static void poison(void *context, const struct SingeView *view, float *flux, float *conductance, float *temperature) {
@@ -153,7 +220,7 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         def.material.diffusivity = singe_param(0);
-        def.material.layer_exchange = 0;
+        def.material.layer_exchange = singe_param(0);
         Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 300);
@@ -226,6 +293,8 @@ int main(void) {
         cmocka_unit_test(combustion_is_eta_times_burnt_mass),
         cmocka_unit_test(the_peak_is_the_hottest_so_far),
         cmocka_unit_test(pace_is_fire_time),
+        cmocka_unit_test(heavier_halves_heat_slower),
+        cmocka_unit_test(losses_are_each_particles_own),
         cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
         cmocka_unit_test(running_out_of_memory_is_clean),
     };

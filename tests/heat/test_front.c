@@ -77,7 +77,7 @@ static void front_speed_does_not_depend_on_cells(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.diffusivity = singe_param(2.7e-6f), material.mass_rate = singe_param(8e-3f);
-    material.heating = singe_param(2400), material.rate_ceiling = INFINITY;
+    material.heating = singe_param(2400), material.rate_ceiling = singe_param(INFINITY);
     material.ash_exponent = singe_param(1), material.mass_loss = singe_param(0.22f);
     compare(&material, 4e-3, 7e-3);
 }
@@ -91,17 +91,40 @@ static void calibrated_paper_burns_at_its_real_pace(void **unused) {
 
 static void thickening_by_hand_and_its_limits(void **unused) {
     (void)unused;
-    SingeMaterialDef material = singe_default_material();
-    material.thickening = 3.5f;
-    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.01f) == 3.5f);
-    material.thickening = 0;
-    float a = heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.01f);
-    CHECK_NEAR(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 0.02f), 2 * (double)a, 1e-3);
-    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 2400, 513, 293, 1e-5f) == 1);
-    assert_true(heat_thickening_for(&material, 0, 9e-3f, 2400, 513, 293, 0.01f) == 1);
-    assert_true(heat_thickening_for(&material, 1e-5f, 0, 2400, 513, 293, 0.01f) == 1);
-    assert_true(heat_thickening_for(&material, 1e-5f, 9e-3f, 100, 513, 293, 0.01f) == 1);
-    assert_true(heat_thickening_for(&material, 1e-20f, 1e10f, 2400, 513, 293, 0.01f) > 1e6f); // the plan refuses it
+    FrontMatter front = {1e-5f, 9e-3f, 2400, 513, 260};
+    assert_true(heat_thickening_for(3.5f, &front, 293, 0.01f) == 3.5f);
+    float a = heat_thickening_for(0, &front, 293, 0.01f);
+    CHECK_NEAR(heat_thickening_for(0, &front, 293, 0.02f), 2 * (double)a, 1e-3);
+    assert_true(heat_thickening_for(0, &front, 293, 1e-5f) == 1);
+    front.rate_ceiling = 4 * 260;
+    CHECK_NEAR(heat_thickening_for(0, &front, 293, 0.01f), 2 * (double)a, 1e-3);
+    FrontMatter still = front, unburnt = front, cold = front;
+    still.diffusivity = 0, unburnt.mass_rate = 0, cold.heating = 100;
+    assert_true(heat_thickening_for(0, &still, 293, 0.01f) == 1);
+    assert_true(heat_thickening_for(0, &unburnt, 293, 0.01f) == 1);
+    assert_true(heat_thickening_for(0, &cold, 293, 0.01f) == 1);
+    FrontMatter thin = front;
+    thin.diffusivity = 1e-20f, thin.mass_rate = 1e10f;
+    assert_true(heat_thickening_for(0, &thin, 293, 0.01f) > 1e6f); // the plan refuses it
+}
+
+/// One F for a sheet whose parameters vary: that of their means.
+static void thickening_goes_by_the_means(void **unused) {
+    (void)unused;
+    static const float halves[] = {0, 1};
+    RigDef def = rig_default(16, 4, 0.01f, 0.01f);
+    SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
+    for (int k = 0; k < 2; k++)
+        *params[k] = (SingeParam){.value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_PICTURE,
+                                  .picture = {2, 1, halves}};
+    def.material.thickening = 0;
+    Rig rig;
+    rig_open(&rig, &def);
+    FrontMatter front = {1e-4f, 10e-3f, def.material.heating.value, def.material.ignition_temperature.value, 200};
+    double expected = (double)heat_thickening_for(0, &front, 293, 0.01f);
+    assert_true(expected > 1.5);
+    CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);
+    rig_close(&rig);
 }
 
 int main(void) {
@@ -109,6 +132,7 @@ int main(void) {
         cmocka_unit_test(front_speed_does_not_depend_on_cells),
         cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
         cmocka_unit_test(thickening_by_hand_and_its_limits),
+        cmocka_unit_test(thickening_goes_by_the_means),
     };
     return cmocka_run_group_tests_name("heat_front", tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@ static const double PER_AREA = 0.04 * 1400; // J/(m2 K), of a layer
 static RigDef inert(int nx, int ny) {
     RigDef def = rig_default(nx, ny, 0.002f, 0.002f);
     def.material.diffusivity = singe_param(0);
-    def.material.layer_exchange = 0;
+    def.material.layer_exchange = singe_param(0);
     def.material.temperature = singe_param(300);
     return def;
 }

@@ -192,6 +192,7 @@ static void test_sheets(void **state) {
     one("  - {grid: {size: [1, 1], cells: [0, 1]}}", "bad.yaml:3:35", "cells must be 1 to 20000");
     one("  - {grid: {size: [1, 1], cells: [20000, 20000]}}", "bad.yaml:3:12", "100 million");
     one("  - {grid: {size: [1, 1]}}", "bad.yaml:3:12", "needs 'cells'");
+    one("    material: {rate_ceiling: {from: inf, to: 9, noise: {}}}", "bad.yaml:3:37", "not 'inf'");
     one("    material: {grammage: 80 mm}", "bad.yaml:3:26", "possible are: kg/m2, g/m2");
     one("    material: {thickening: 0.5}", "bad.yaml:3:28", "0 (as little as the cells need) or 1 and more");
     one("    material: {ablate: maybe}", "bad.yaml:3:24", "true or false");

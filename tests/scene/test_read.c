@@ -1,6 +1,9 @@
 // Good scenes: values arrive, defaults stand, dumps read back, --set and JSON do what the file does.
 #include "parsing.h"
 
+#include "scene/schema.h"
+#include "shell/sheet.h"
+
 #include <math.h>
 
 static const char full[] =
@@ -15,6 +18,7 @@ static const char full[] =
     "7}}\n"
     "      mass_loss: {from: 0.1, to: 0.3, attribute: density}\n      ablate: off\n      thickening: 2.5\n"
     "      weight: {red: 0.5, blue: {from: 0, to: 1, picture: w.png}}\n      compliance: {yellow: 1e-4}\n"
+    "      drag: {from: 1, to: 2, picture: d.png}\n      rate_ceiling: inf\n"
     "  - grid: {size: [20 cm, 300 mm], cells: [4, 6]}\n"
     "sources:\n"
     "  - {kind: ball, temperature: 1300, path: [{time: 0, position: [0, 0, 1]}, {time: 2, position: [1, 0, 1]}]}\n"
@@ -47,15 +51,17 @@ static void check_full(const Scene *scene) {
     assert_true(sheet->scale == 0.001f && sheet->translate[1] == 0.01f && sheet->drop_pieces_below == 4e-6f);
     assert_true(fabsf(sheet->rotate[0] - 1.5707964f) < 1e-7f);
     const SingeMaterialDef *material = &sheet->material.def;
-    assert_true(material->grammage == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA && !material->ablate);
+    assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA && !material->ablate);
     assert_true(material->thickness.field == SINGE_FIELD_PICTURE && material->thickness.to == 0.002f);
-    assert_string_equal(sheet->material.pictures[0].name, "t.png");
-    assert_string_equal(sheet->material.pictures[14].name, "w.png");
+    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(thickness)].name, "t.png");
+    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].name, "w.png");
     assert_true(material->mass_rate.field == SINGE_FIELD_NOISE && material->mass_rate.value == 0.01f &&
                 material->mass_rate.to == 0.02f && material->mass_rate.noise.seed == 7);
     assert_string_equal(material->mass_loss.attribute, "density");
     assert_true(material->weight[SINGE_RED].value == 0.5f && material->weight[SINGE_BLUE].field == SINGE_FIELD_PICTURE);
-    assert_true(material->compliance[SINGE_YELLOW] == 1e-4f);
+    assert_true(material->compliance[SINGE_YELLOW].value == 1e-4f);
+    assert_true(material->drag.field == SINGE_FIELD_PICTURE && isinf(material->rate_ceiling.value));
+    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(drag)].name, "d.png");
     assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.cells[1] == 6);
     assert_string_equal(scene->sheets[1].name, "sheet2");
 }
@@ -86,6 +92,51 @@ static void test_values(void **state) {
     check_full(scene);
     check_objects(scene);
     scene_free(scene);
+}
+
+/// Each parameter of a material that may vary is written under its key, fills its own place and no other, keeps its
+/// picture in a place of its own, and reads back from a dump.
+static void test_all_vary(void **state) {
+    (void)state;
+    static const char *const fields[] = {"picture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
+    SingeMaterialDef standard = singe_default_material();
+    SceneParam place;
+    int count = 0;
+    uint64_t slots = 0;
+    for (; scene_param(count, &place); count++) {
+        assert_true(place.slot < SCENE_PARAM_SLOTS && !(slots & 1ull << place.slot));
+        slots |= 1ull << place.slot;
+        for (int f = 0; f < 3; f++) {
+            char set[128];
+            const char *sets[] = {set};
+            float from = strcmp(place.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g, to: %g, %s}", place.key, (double)from, (double)to,
+                     fields[f]);
+            Scene *scene = good_scene(SHEET, sets, 1);
+            const SceneMaterial *material = &scene->sheets[0].material;
+            SingeMaterialDef def = material->def;
+            SingeParam *param = scene_param_at(&def, &place);
+            assert_true(param->value == from && param->to == to);
+            assert_int_equal(param->field, SINGE_FIELD_PICTURE + f);
+            for (size_t slot = 0; slot < SCENE_PARAM_SLOTS; slot++)
+                assert_true((material->pictures[slot].name != NULL) == (f == 0 && slot == place.slot));
+            *param = *scene_param_at(&standard, &place);
+            SceneParam other;
+            for (int i = 0; scene_param(i, &other); i++)
+                assert_memory_equal(scene_param_at(&def, &other), scene_param_at(&standard, &other), sizeof *param);
+            char *dump = dump_text(scene, SCENE_YAML);
+            Scene *again = good_scene(dump, NULL, 0);
+            def = again->sheets[0].material.def;
+            assert_true(scene_param_at(&def, &place)->to == to);
+            free(dump);
+            scene_free(again);
+            scene_free(scene);
+        }
+    }
+    int known = 0;
+    while (material_param(&standard, known)) known++;
+    assert_int_equal(count, known); // all that the library has
+    assert_false(scene_param(count, &place));
 }
 
 static void test_defaults(void **state) {
@@ -199,7 +250,7 @@ static void test_set(void **state) {
         "sheets.0.material.mass_rate.to=5",
     };
     Scene *scene = good_scene(SHEET "sources: [{kind: spot, position: [1, 2, 3]}]\nframes: 2\n", sets, 12);
-    assert_true(scene->sheets[0].material.def.grammage == 0.06f);
+    assert_true(scene->sheets[0].material.def.grammage.value == 0.06f);
     assert_true(scene->sheets[0].material.def.weight[SINGE_RED].value == 0.25f);
     assert_int_equal(scene->frames, 4); // the last one counts
     assert_true(scene->sources[0].def.start == 2);
@@ -216,7 +267,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
         cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_set),
+        cmocka_unit_test(test_set),       cmocka_unit_test(test_all_vary),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "meshes.h"
+#include "shell/sheet.h"
 
 /// A unit square of n x n cells with uv = (x, y).
 typedef struct Square {
@@ -52,9 +53,66 @@ static void refuse(const SingeSheetDef *def, int64_t element, const char *says) 
 
 #define AT(member) offsetof(SingeMaterialDef, member)
 
+enum { ABOVE_0, FROM_0, TO_1, BELOW_1, TO_2, OVER_0_TO_1, ABOVE_0_OR_INFINITE };
+enum { CORNERS = 1, CENTRES = 2, BOTH = 3 };
+
+/// Every parameter that may vary, where it is evaluated and what it may be.
+static const struct {
+    size_t offset;
+    int param, places, range;
+} varying[] = {
+    {AT(grammage), PARAM_GRAMMAGE, BOTH, ABOVE_0},
+    {AT(specific_heat), PARAM_SPECIFIC_HEAT, BOTH, ABOVE_0},
+    {AT(thickness), PARAM_THICKNESS, BOTH, ABOVE_0},
+    {AT(diffusivity), PARAM_DIFFUSIVITY, BOTH, FROM_0},
+    {AT(layer_exchange), PARAM_LAYER_EXCHANGE, BOTH, FROM_0},
+    {AT(convection), PARAM_CONVECTION, BOTH, FROM_0},
+    {AT(emissivity), PARAM_EMISSIVITY, BOTH, TO_1},
+    {AT(loss_mass_floor), PARAM_LOSS_MASS_FLOOR, BOTH, OVER_0_TO_1},
+    {AT(temperature), PARAM_TEMPERATURE, BOTH, ABOVE_0},
+    {AT(ignition_temperature), PARAM_IGNITION, BOTH, ABOVE_0},
+    {AT(heating), PARAM_HEATING, BOTH, FROM_0},
+    {AT(mass_rate), PARAM_MASS_RATE, BOTH, FROM_0},
+    {AT(rate_ceiling), PARAM_RATE_CEILING, BOTH, ABOVE_0_OR_INFINITE},
+    {AT(ash_exponent), PARAM_ASH_EXPONENT, BOTH, FROM_0},
+    {AT(mass_min), PARAM_MASS_MIN, BOTH, BELOW_1},
+    {AT(mass_loss), PARAM_MASS_LOSS, BOTH, BELOW_1},
+    {AT(ash_density), PARAM_ASH_DENSITY, BOTH, ABOVE_0},
+    {AT(shrink_front), PARAM_SHRINK, CORNERS, TO_2},
+    {AT(shrink_back), PARAM_SHRINK, CENTRES, TO_2},
+    {AT(weight[SINGE_RED]), PARAM_WEIGHT + SINGE_RED, BOTH, TO_1},
+    {AT(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, BOTH, TO_1},
+    {AT(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, BOTH, TO_1},
+    {AT(weight[SINGE_YELLOW]), PARAM_WEIGHT + SINGE_YELLOW, BOTH, TO_1},
+    {AT(compliance[SINGE_RED]), PARAM_COMPLIANCE + SINGE_RED, BOTH, FROM_0},
+    {AT(compliance[SINGE_GREEN]), PARAM_COMPLIANCE + SINGE_GREEN, BOTH, FROM_0},
+    {AT(compliance[SINGE_BLUE]), PARAM_COMPLIANCE + SINGE_BLUE, BOTH, FROM_0},
+    {AT(compliance[SINGE_YELLOW]), PARAM_COMPLIANCE + SINGE_YELLOW, BOTH, FROM_0},
+    {AT(char_weight), PARAM_CHAR_WEIGHT, BOTH, TO_1},
+    {AT(drag), PARAM_DRAG, BOTH, FROM_0},
+    {AT(damping), PARAM_DAMPING, BOTH, FROM_0},
+};
+enum { VARYING = sizeof varying / sizeof varying[0] };
+
 /// Particle i of parameter p: vertices, then cells.
 static float param_at(const SheetSource *source, int p, uint32_t i) {
     return source->params[(size_t)p * (source->sheet.vertex_count + source->sheet.cell_count) + i];
+}
+
+/// The list above is whole: the material knows no other parameter, and every array of the shell's is one of them.
+static void test_all_are_listed(void **state) {
+    (void)state;
+    SingeMaterialDef material = singe_default_material();
+    bool filled[PARAM_COUNT] = {false};
+    for (int k = 0; k < VARYING; k++) {
+        bool known = false;
+        for (int i = 0; i < VARYING; i++)
+            known |= (char *)material_param(&material, i) == (char *)&material + varying[k].offset;
+        assert_true(known);
+        filled[varying[k].param] = true;
+    }
+    assert_null(material_param(&material, VARYING));
+    for (int p = 0; p < PARAM_COUNT; p++) assert_true(filled[p]);
 }
 
 static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) {
@@ -76,10 +134,16 @@ static void test_numbers(void **state) {
     for (int k = 0; k < 10; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
+    SingeParam *more[] = {&m->layer_exchange, &m->convection, &m->emissivity, &m->loss_mass_floor, &m->rate_ceiling,
+                          &m->char_weight, &m->drag, &m->damping};
+    for (int k = 0; k < 8; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
+    for (int k = 0; k < 4; k++) m->compliance[k] = singe_param(0.3f + 0.1f * (float)k);
     SheetSource source = evaluate(&memory, &square.def);
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     const Matter *matter = &shell.matter;
+    const float *others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
+                             matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping};
     const float *fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
                              matter->heating, matter->mass_rate, matter->ash_exponent, matter->mass_min,
                              matter->mass_loss, matter->ash_density};
@@ -87,6 +151,8 @@ static void test_numbers(void **state) {
         for (int k = 0; k < 10; k++) assert_true(fields[k][p] == 0.01f * (float)(k + 1));
         assert_true(matter->shrink[p] == (p < 9 ? 1.25f : 0.75f));
         for (int k = 0; k < 4; k++) assert_true(matter->weight[k][p] == 0.5f + 0.1f * (float)k);
+        for (int k = 0; k < 8; k++) assert_true(others[k][p] == 0.2f + 0.01f * (float)k);
+        for (int k = 0; k < 4; k++) assert_true(matter->compliance[k][p] == 0.3f + 0.1f * (float)k);
     }
     for (int k = 0; k < 10; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
     shell_free(&memory, &shell);
@@ -204,74 +270,129 @@ static void test_noise(void **state) {
     square_free(&square);
 }
 
+/// Every parameter follows a picture, an attribute and noise, each in its own place: the same field gives every one
+/// the values that it gives the thickness, and leaves the others alone.
+static void test_all_vary(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(6);
+    static const float pixels[] = {0.25f, 1, 0, 0.5f};
+    float values[49];
+    for (int v = 0; v < 49; v++) values[v] = (float)((v * 5) % 49) / 48;
+    SingeAttribute attribute = {"field", values};
+    square.def.attribute_count = 1, square.def.attributes = &attribute;
+    SheetSource plain = evaluate(&memory, &square.def);
+    const uint32_t total = 49 + 36;
+    for (int kind = SINGE_FIELD_PICTURE; kind <= SINGE_FIELD_NOISE; kind++) {
+        SingeParam param = {.value = 0.5f, .to = 0.9f, .field = (SingeFieldKind)kind, .picture = {2, 2, pixels},
+                            .attribute = "field", .noise = {0.3f, 2, 3}};
+        SingeSheetDef def = square.def;
+        def.material.thickness = param;
+        SheetSource known = evaluate(&memory, &def);
+        for (int k = 0; k < VARYING; k++) {
+            def = square.def;
+            memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
+            SheetSource source = evaluate(&memory, &def);
+            float low = 1, high = 0;
+            for (uint32_t i = 0; i < total; i++) {
+                bool here = varying[k].places & (i < 49 ? CORNERS : CENTRES);
+                for (int p = 0; p < PARAM_COUNT; p++) {
+                    float expected = here && p == varying[k].param ? param_at(&known, PARAM_THICKNESS, i)
+                                                                   : param_at(&plain, p, i);
+                    assert_true(param_at(&source, p, i) == expected);
+                }
+                if (!here) continue;
+                low = fminf(low, param_at(&source, varying[k].param, i));
+                high = fmaxf(high, param_at(&source, varying[k].param, i));
+            }
+            assert_true(low >= 0.5f && high <= 0.9f && high - low > 0.1f);
+            sheet_source_free(&memory, &source);
+
+            param.to = INFINITY; // no line leads there, not even for a ceiling that may be infinite
+            memcpy((char *)&def.material + varying[k].offset, &param, sizeof param);
+            refuse(&def, -1, "not both finite");
+            param.to = 0.9f;
+        }
+        sheet_source_free(&memory, &known);
+    }
+    sheet_source_free(&memory, &plain);
+    square_free(&square);
+}
+
+/// Mass and capacity where both factors vary, and where their product leaves what a float can hold.
+static void test_mass_varies(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(4);
+    static const float pixels[] = {0, 1};
+    square.def.material.grammage =
+        (SingeParam){.value = 0.05f, .to = 0.2f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
+    square.def.material.specific_heat =
+        (SingeParam){.value = 1000, .to = 3000, .field = SINGE_FIELD_NOISE, .noise = {0.3f, 2, 3}};
+    SheetSource source = evaluate(&memory, &square.def);
+    Shell shell;
+    assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+    double ratio = 0;
+    for (uint32_t p = 0; p < shell.particle_count; p++) {
+        float mass = param_at(&source, PARAM_GRAMMAGE, p) / 2 * shell.matter.area[p];
+        assert_true(shell.matter.mass[p] == mass);
+        assert_true(shell.matter.capacity[p] == mass * param_at(&source, PARAM_SPECIFIC_HEAT, p));
+        ratio += (double)shell.matter.capacity_ratio[p] / shell.particle_count;
+        double per_area = (double)(shell.matter.capacity[p] / shell.matter.area[p]);
+        assert_float_equal(per_area / (double)(shell.matter.capacity[0] / shell.matter.area[0]),
+                           shell.matter.capacity_ratio[p] / shell.matter.capacity_ratio[0], 1e-5);
+    }
+    assert_float_equal(ratio, 1, 1e-6);
+    assert_true(shell.matter.mass[4] > 3.9f * shell.matter.mass[0]);
+    shell_free(&memory, &shell);
+    sheet_source_free(&memory, &source);
+
+    float tiny[25];
+    for (int v = 0; v < 25; v++) tiny[v] = v == 18 ? 0 : 1;
+    SingeAttribute attribute = {"thin", tiny};
+    square.def.attribute_count = 1, square.def.attributes = &attribute;
+    square.def.material.grammage =
+        (SingeParam){.value = 1e-30f, .to = 0.1f, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "thin"};
+    SingeError error = {0};
+    assert_int_equal(sheet_source_create(&memory, &square.def, &source, &error), SINGE_ERROR_MESH);
+    assert_int_equal(error.element, 10); // the first cell at vertex 18
+    assert_non_null(strstr(error.message, "mass or heat capacity"));
+    assert_int_equal(memory.held, 0);
+    square_free(&square);
+}
+
 // The ends of every range: the last number that is allowed and the first that is not.
 static void test_ranges(void **state) {
     (void)state;
-    enum { ABOVE_0, FROM_0, TO_1, BELOW_1, TO_2 };
-    static const float good[][2] = {{1e-6f, 1e6f}, {0, 1e6f}, {0, 1}, {0, 0.999f}, {0, 2}};
-    static const float bad[][2] = {{0, -1}, {-1e-6f, -INFINITY}, {-1e-6f, 1.0001f}, {-1e-6f, 1}, {-1e-6f, 2.0001f}};
-    static const struct { size_t offset; int range; } params[] = {
-        {AT(thickness), ABOVE_0},
-        {AT(diffusivity), FROM_0},
-        {AT(temperature), ABOVE_0},
-        {AT(ignition_temperature), ABOVE_0},
-        {AT(heating), FROM_0},
-        {AT(mass_rate), FROM_0},
-        {AT(ash_exponent), FROM_0},
-        {AT(mass_min), BELOW_1},
-        {AT(mass_loss), BELOW_1},
-        {AT(ash_density), ABOVE_0},
-        {AT(shrink_front), TO_2},
-        {AT(shrink_back), TO_2},
-        {AT(weight[SINGE_RED]), TO_1},
-        {AT(weight[SINGE_GREEN]), TO_1},
-        {AT(weight[SINGE_BLUE]), TO_1},
-        {AT(weight[SINGE_YELLOW]), TO_1},
-    };
-    static const struct { size_t offset; int range; } scalars[] = {
-        {AT(grammage), ABOVE_0},
-        {AT(specific_heat), ABOVE_0},
-        {AT(layer_exchange), FROM_0},
-        {AT(convection), FROM_0},
-        {AT(emissivity), TO_1},
-        {AT(compliance[0]), FROM_0},
-        {AT(compliance[3]), FROM_0},
-        {AT(char_weight), TO_1},
-        {AT(drag), FROM_0},
-        {AT(damping), FROM_0},
-    };
+    static const float good[][2] = {[ABOVE_0] = {1e-6f, 1e6f}, [FROM_0] = {0, 1e6f}, [TO_1] = {0, 1},
+                                    [BELOW_1] = {0, 0.999f}, [TO_2] = {0, 2}, [OVER_0_TO_1] = {1e-6f, 1},
+                                    [ABOVE_0_OR_INFINITE] = {1e-6f, INFINITY}};
+    static const float bad[][2] = {[ABOVE_0] = {0, -1}, [FROM_0] = {-1e-6f, -INFINITY}, [TO_1] = {-1e-6f, 1.0001f},
+                                   [BELOW_1] = {-1e-6f, 1}, [TO_2] = {-1e-6f, 2.0001f}, [OVER_0_TO_1] = {0, 1.01f},
+                                   [ABOVE_0_OR_INFINITE] = {0, -INFINITY}};
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
-    size_t param_count = sizeof params / sizeof params[0], scalar_count = sizeof scalars / sizeof scalars[0];
-    for (size_t i = 0; i < param_count + scalar_count; i++) {
-        bool param = i < param_count;
-        int range = param ? params[i].range : scalars[i - param_count].range;
-        size_t offset = param ? params[i].offset : scalars[i - param_count].offset;
+    for (int i = 0; i < VARYING; i++) {
+        int range = varying[i].range;
         for (int k = 0; k < 6; k++) {
             SingeSheetDef def = square.def;
+            if (k == 5 && range == ABOVE_0_OR_INFINITE) continue;
             float value = k < 2 ? good[range][k] : k < 4 ? bad[range][k - 2] : k == 4 ? NAN : INFINITY;
             SingeParam filled = singe_param(value);
-            memcpy((char *)&def.material + offset, param ? (const void *)&filled : (const void *)&value,
-                   param ? sizeof filled : sizeof value);
+            memcpy((char *)&def.material + varying[i].offset, &filled, sizeof filled);
             if (k < 2) {
                 SheetSource source = evaluate(&memory, &def);
                 sheet_source_free(&memory, &source);
             } else {
-                // a parameter fails at the first particle it is for: vertex 0 or, for the back, cell 0
-                refuse(&def, param ? 0 : -1, "must be");
+                refuse(&def, 0, "must be"); // at the first particle it is for: vertex 0 or, for the back, cell 0
             }
         }
     }
-    static const float thickening[] = {0.5f, -1, NAN, INFINITY}, floors[] = {0, 1.01f, -1};
+    static const float thickening[] = {0.5f, -1, NAN, INFINITY};
     for (int k = 0; k < 4; k++) {
         SingeSheetDef def = square.def;
         def.material.thickening = thickening[k];
         refuse(&def, -1, "thickening");
-    }
-    for (int k = 0; k < 3; k++) {
-        SingeSheetDef def = square.def;
-        def.material.loss_mass_floor = floors[k];
-        refuse(&def, -1, "loss_mass_floor");
     }
     SingeSheetDef def = square.def;
     def.material.heat_operator = (SingeHeatOperator)2;
@@ -285,8 +406,8 @@ static void test_old_def(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
-    square.def.material.grammage = 0.2f;
-    square.def.material.damping = 77; // beyond the older material
+    square.def.material.grammage = singe_param(0.2f);
+    square.def.material.damping = singe_param(77); // beyond the older material
     square.def.velocity[0] = 3;
     const size_t head = offsetof(SingeSheetDef, material), inner = offsetof(SingeMaterialDef, damping);
     const size_t cut = inner & ~(sizeof(void *) - 1), tail = sizeof(float[3]);
@@ -297,8 +418,8 @@ static void test_old_def(void **state) {
     memcpy(old, &square.def, head + cut);
     memcpy(old + head + cut, square.def.velocity, tail);
     SheetSource source = evaluate(&memory, (const SingeSheetDef *)(const void *)old);
-    assert_true(source.sheet.material.grammage == 0.2f);
-    assert_true(source.sheet.material.damping == singe_default_material().damping);
+    assert_true(source.sheet.material.grammage.value == 0.2f);
+    assert_true(source.sheet.material.damping.value == singe_default_material().damping.value);
     assert_true(source.sheet.velocity[0] == 3);
     assert_true(source.sheet.drop_pieces_below == singe_default_sheet().drop_pieces_below);
     assert_true(source.sheet.material.struct_size == sizeof(SingeMaterialDef));
@@ -309,7 +430,7 @@ static void test_old_def(void **state) {
     assert_non_null(old);
     memcpy(old, &head, sizeof head);
     source = evaluate(&memory, (const SingeSheetDef *)(const void *)old);
-    assert_true(source.sheet.material.grammage == singe_default_material().grammage);
+    assert_true(source.sheet.material.grammage.value == singe_default_material().grammage.value);
     sheet_source_free(&memory, &source);
 
     // and one that claims more than there is
@@ -343,7 +464,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers),   cmocka_unit_test(test_sample), cmocka_unit_test(test_picture),
         cmocka_unit_test(test_attribute), cmocka_unit_test(test_noise),  cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_old_def),   cmocka_unit_test(test_name),
+        cmocka_unit_test(test_old_def),   cmocka_unit_test(test_name),   cmocka_unit_test(test_all_are_listed),
+        cmocka_unit_test(test_all_vary),  cmocka_unit_test(test_mass_varies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -272,7 +272,7 @@ static void older_material(void **state) {
     TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
     SingeSheetDef def = test_sheet(&mesh);
     def.velocity[1] = 3;
-    def.material.damping = NAN; // not known to the old header
+    def.material.damping.value = NAN; // not known to the old header
     size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
     size_t inner = offsetof(SingeMaterialDef, damping) / 8 * 8;
     def.material.struct_size = inner;

@@ -232,7 +232,7 @@ static void warns_once_of_conduction_cut_short(void **state) {
     SingeSimDef def = singe_default_sim();
     def.log = (SingeLog){count_warnings, &warnings};
     SingeMaterialDef material = singe_default_material();
-    material.convection = material.emissivity = 0;
+    material.convection = material.emissivity = singe_param(0);
     SingeSim *sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
     test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
     test_steps(sim, 2);

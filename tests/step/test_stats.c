@@ -35,7 +35,7 @@ static void combustion_is_eta_times_mass(void **state) {
     test_spot(sim, 0.04f, 0.04f, 0, 0.02f, 1500, 1000);
     test_steps(sim, 100);
     SingeStats stats = singe_sim_stats(sim);
-    double expected = stats.mass_burnt * (double)material.specific_heat * 1500;
+    double expected = stats.mass_burnt * (double)material.specific_heat.value * 1500;
     // the mass of a step becomes heat in the next one
     assert_true(stats.heat_of_combustion > 0.9 * expected && stats.heat_of_combustion < 1.0001 * expected);
     singe_sim_destroy(sim);
