@@ -3,19 +3,6 @@
 
 #include <string.h>
 
-/// The cells around every vertex, by counting.
-static void fill_fans(AblatePlan *plan, const Shell *shell) {
-    uint32_t *first = plan->fan_first;
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) first[shell->cells[c][i] + 1]++;
-    for (uint32_t v = 0; v < shell->vertex_count; v++) first[v + 1] += first[v];
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) plan->fan[first[shell->cells[c][i]]++] = c;
-    // filling has moved every start to the next one
-    memmove(first + 1, first, shell->vertex_count * sizeof *first);
-    first[0] = 0;
-}
-
 static void mark_rim(AblatePlan *plan, const Shell *shell) {
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++)
@@ -36,17 +23,14 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
     size_t particles = plan->particle_count = shell->particle_count;
     size_t vertices = plan->vertex_count = shell->vertex_count;
-    size_t cells = plan->cell_count = shell->cell_count;
     plan->keys = number_keys(shell);
     if (!NEW(memory, plan->level, particles) || !NEW(memory, plan->rim, vertices)
-        || !NEW(memory, plan->fan_first, vertices + 1) || !NEW(memory, plan->fan, 4 * cells)
         || !NEW(memory, plan->root, particles) || !NEW(memory, plan->size, particles)
         || !NEW(memory, plan->area, particles) || !NEW(memory, plan->mark, particles)
         || !NEW(memory, plan->heir, particles) || !NEW(memory, plan->output, plan->keys.count)) {
         ablate_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
-    fill_fans(plan, shell);
     mark_rim(plan, shell);
     *plan_out = plan;
     return SINGE_OK;
@@ -54,11 +38,9 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
 
 void ablate_plan_free(Memory *memory, AblatePlan *plan) {
     if (!plan) return;
-    size_t particles = plan->particle_count, vertices = plan->vertex_count, cells = plan->cell_count;
+    size_t particles = plan->particle_count, vertices = plan->vertex_count;
     FREE(memory, plan->level, particles);
     FREE(memory, plan->rim, vertices);
-    FREE(memory, plan->fan_first, vertices + 1);
-    FREE(memory, plan->fan, 4 * cells);
     FREE(memory, plan->root, particles);
     FREE(memory, plan->size, particles);
     FREE(memory, plan->area, particles);

@@ -12,11 +12,9 @@ typedef struct SurfaceKeys {
 } SurfaceKeys;
 
 struct AblatePlan {
-    uint32_t particle_count, vertex_count, cell_count;
+    uint32_t particle_count, vertex_count;
     float *level;            ///< [particles] m' of eq 7 at the present masses
     uint8_t *rim;            ///< [vertices] 1 at the mesh's boundary
-    uint32_t *fan_first;     ///< [vertices + 1] cells around vertex v: fan[fan_first[v]] up to fan_first[v + 1]
-    uint32_t *fan;           ///< [4 cells]
     uint32_t *root;          ///< [particles] of the disjoint sets; the smallest particle of its set
     uint32_t *size;          ///< [particles] at a root: particles of the piece
     double *area;            ///< [particles] at a root: m2 at rest of its corner layer

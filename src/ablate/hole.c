@@ -32,10 +32,10 @@ static bool cell_open_before(const HoleSearch *search, uint32_t cell, uint32_t p
 }
 
 static bool corner_opens(const HoleSearch *search, uint32_t vertex) {
-    const AblatePlan *plan = search->plan;
-    if (plan->rim[vertex]) return false;
-    for (uint32_t k = plan->fan_first[vertex]; k < plan->fan_first[vertex + 1]; k++)
-        if (cell_open_before(search, plan->fan[k], vertex)) return false;
+    const Shell *shell = search->shell;
+    if (search->plan->rim[vertex]) return false;
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
+        if (cell_open_before(search, shell->fan[k], vertex)) return false;
     return true;
 }
 

@@ -11,25 +11,12 @@ static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->direction, plan->spring_most) &&
               NEW(memory, plan->upper, plan->spring_most) && NEW(memory, plan->cyclic, plan->spring_most) &&
-              NEW(memory, plan->vertex_cell_first, plan->vertex_count + 1) && NEW(memory, plan->vertex_cells, plan->vertex_cell_count) &&
               NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     for (int colour = 0; ok && colour < SINGE_COLOUR_COUNT; colour++)
         ok = NEW(memory, plan->weight[colour], plan->spring_count[colour]) &&
              NEW(memory, plan->compliance[colour], plan->spring_count[colour]);
     return ok;
-}
-
-/// Cells around each vertex, in order of cell.
-static void plan_list_cells(DynamicsPlan *plan, const Shell *shell) {
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) plan->vertex_cell_first[shell->cells[c][i] + 1]++;
-    for (uint32_t v = 0; v < shell->vertex_count; v++) plan->vertex_cell_first[v + 1] += plan->vertex_cell_first[v];
-    for (uint32_t c = 0; c < shell->cell_count; c++)
-        for (int i = 0; i < 4; i++) plan->vertex_cells[plan->vertex_cell_first[shell->cells[c][i]]++] = c;
-    // the starts have moved on to the next vertex's: move them back
-    memmove(plan->vertex_cell_first + 1, plan->vertex_cell_first, shell->vertex_count * sizeof *plan->vertex_cell_first);
-    plan->vertex_cell_first[0] = 0;
 }
 
 /// Each spring's compliance: strands read it in their order, which is faster than at both ends.
@@ -49,9 +36,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     if (!plan) return SINGE_ERROR_MEMORY;
     plan->settings = *settings;
     plan->particle_count = shell->particle_count;
-    plan->vertex_count = shell->vertex_count;
     plan->cell_count = shell->cell_count;
-    plan->vertex_cell_count = 4 * shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         plan->spring_count[colour] = shell->springs[colour].count;
         if (plan->spring_most < plan->spring_count[colour]) plan->spring_most = plan->spring_count[colour];
@@ -60,7 +45,6 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         dynamics_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
-    plan_list_cells(plan, shell);
     plan_comply(plan, shell);
     *out = plan;
     return SINGE_OK;
@@ -76,8 +60,6 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
     FREE(memory, plan->direction, plan->spring_most);
     FREE(memory, plan->upper, plan->spring_most);
     FREE(memory, plan->cyclic, plan->spring_most);
-    FREE(memory, plan->vertex_cell_first, plan->vertex_count + 1);
-    FREE(memory, plan->vertex_cells, plan->vertex_cell_count);
     FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));

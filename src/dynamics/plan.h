@@ -25,14 +25,11 @@ struct DynamicsPlan {
     float (*direction)[4];   ///< u, and w: the eliminated right-hand side
     float *upper;            ///< c' of the Thomas algorithm
     float *cyclic;           ///< second right-hand side of rings
-    // cells around each vertex
-    uint32_t *vertex_cell_first;
-    uint32_t *vertex_cells;
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
     double *partial;         ///< [pool_blocks(particles)]
-    uint32_t particle_count, cell_count, vertex_count, vertex_cell_count, spring_count[SINGE_COLOUR_COUNT], spring_most;
+    uint32_t particle_count, cell_count, spring_count[SINGE_COLOUR_COUNT], spring_most;
 };
 
 /// Inverse masses, weights, normals, drag and wind for this step (prepare.c).

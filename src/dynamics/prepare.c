@@ -36,8 +36,8 @@ static void prepare_cells(void *task, int begin, int end) {
 static Vec prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags, uint32_t particle) {
     if (particle >= shell->vertex_count) return vec_unit(vec_load(plan->cell_normal[particle - shell->vertex_count]));
     Vec sum = {0, 0, 0};
-    for (uint32_t k = plan->vertex_cell_first[particle]; k < plan->vertex_cell_first[particle + 1]; k++) {
-        uint32_t cell = plan->vertex_cells[k];
+    for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++) {
+        uint32_t cell = shell->fan[k];
         if (cell_flags[cell] & SINGE_ALIVE) sum = vec_add(sum, vec_load(plan->cell_normal[cell]));
     }
     return vec_unit(sum);

@@ -77,7 +77,9 @@ static bool shell_alloc(Memory *memory, Shell *shell) {
                 NEW(memory, shell->rest_position, shell->particle_count) &&
                 NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
                 NEW(memory, shell->matter.sheet, shell->particle_count) &&
-                NEW(memory, shell->cell_order, shell->cell_count);
+                NEW(memory, shell->cell_order, shell->cell_count) &&
+                NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
+                NEW(memory, shell->fan, (size_t)4 * shell->cell_count);
     for (int f = 0; f < MATTER_FLOATS && done; f++) done = NEW(memory, *fields[f], shell->particle_count);
     return done;
 }
@@ -94,6 +96,8 @@ void shell_free(Memory *memory, Shell *shell) {
     FREE(memory, shell->sheets, shell->sheet_count);
     FREE(memory, shell->matter.sheet, shell->particle_count);
     FREE(memory, shell->cell_order, shell->cell_count);
+    FREE(memory, shell->fan_first, (size_t)shell->vertex_count + 1);
+    FREE(memory, shell->fan, (size_t)4 * shell->cell_count);
     FREE(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
     *shell = (Shell){0};
 }
@@ -265,6 +269,19 @@ static SingeResult build_springs(Memory *memory, Shell *shell, SingeError *error
     return result;
 }
 
+/// The cells around every vertex, by counting.
+static void list_fans(Shell *shell) {
+    uint32_t *first = shell->fan_first;
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4; i++) first[shell->cells[c][i] + 1]++;
+    for (uint32_t v = 0; v < shell->vertex_count; v++) first[v + 1] += first[v];
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4; i++) shell->fan[first[shell->cells[c][i]]++] = c;
+    // filling has moved every start to the next one
+    memmove(first + 1, first, shell->vertex_count * sizeof *first);
+    first[0] = 0;
+}
+
 /// Families of cells without a common corner.
 static bool colour_cells(Memory *memory, Shell *shell) {
     uint32_t count = shell->cell_count, *family = NULL, families = 0;
@@ -286,7 +303,7 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     *shell = (Shell){0};
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
-    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), !colour_cells(memory, shell)))
+    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);
     if (result == SINGE_OK) result = build_springs(memory, shell, error);

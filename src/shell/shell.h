@@ -90,6 +90,8 @@ typedef struct Shell {
     uint32_t cell_family_count;    ///< cells coloured so that cells of one family share no corner
     uint32_t *cell_family_first;
     uint32_t *cell_order;          ///< [cell_count] cells, family by family
+    uint32_t *fan_first;           ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
+    uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
 } Shell;
 
 /// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
