@@ -83,7 +83,7 @@ typedef struct SingeView {
     const uint8_t *spring_flags[SINGE_COLOUR_COUNT];  ///< [spring_count[c]]
 } SingeView;
 
-/// The view of a committed simulation.
+/// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL.
 SINGE_API SingeView singe_sim_view(const SingeSim *sim);
 
 typedef enum SingeEventKind {
@@ -99,7 +99,7 @@ typedef struct SingeEvent {
     float position[3]; ///< m
 } SingeEvent;
 
-/// What happened in the last step. Valid until the next step.
+/// What happened in the last step. Valid until the next step; none after a load or in a clone: events are not saved.
 SINGE_API const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count);
 
 typedef enum SingeStage {

@@ -37,5 +37,7 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
 void bench_close(Bench *bench);
 /// One step of h seconds; asserts success.
 void bench_step(Bench *bench, float h);
+/// m, of a cell's centre over its corners; negative where the cell is inverted.
+double bench_height(const Bench *bench, uint32_t cell);
 
 #endif

@@ -106,16 +106,6 @@ static void test_friction_stops_at_cuts(void **unused) {
     bench_close(&bench);
 }
 
-static double height_of(const Bench *bench, uint32_t cell) {
-    Vec mean = {0, 0, 0}, p[4];
-    for (int i = 0; i < 4; i++) {
-        p[i] = vec_load(bench->state.dynamics.position[bench->shell.cells[cell][i]]);
-        mean = vec_mad(mean, p[i], 0.25f);
-    }
-    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
-    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean), normal);
-}
-
 static void test_inverted_cells_are_mended(void **unused) {
     (void)unused;
     Bench bench;
@@ -128,13 +118,13 @@ static void test_inverted_cells_are_mended(void **unused) {
     double before = 0, after = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         before += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
-    assert_true(height_of(&bench, 9) < 0);
+    assert_true(bench_height(&bench, 9) < 0);
     for (int pass = 0; pass < 30; pass++)
         height_project(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, &bench.state.dynamics);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         after += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
     for (uint32_t c = 0; c < bench.shell.cell_count; c++)
-        assert_true(height_of(&bench, c) > 0.99 * (double)bench.settings.solver.height_min * thickness);
+        assert_true(bench_height(&bench, c) > 0.99 * (double)bench.settings.solver.height_min * thickness);
     assert_true(fabs(after - before) < 1e-6 * thickness); // a sheet of 3.2 g: the centre of mass stays
     bench_close(&bench);
 }

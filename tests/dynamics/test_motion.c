@@ -328,6 +328,7 @@ static void test_hangs_still(void **unused) {
     }
     assert_true(sqrt(square / bench.shell.particle_count) < 1e-3);
     assert_true(blue_strain(&bench) < 2e-3);
+    for (uint32_t c = 0; c < bench.shell.cell_count; c++) assert_true(bench_height(&bench, c) > 0);
     bench_close(&bench);
 }
 
