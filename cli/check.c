@@ -15,8 +15,12 @@ static const ArgOption check_options[OPT_COUNT] = {
 };
 
 static const ArgCommand check_command = {
-    "check", "SCENE", "Reads a scene with its meshes and pictures, builds it, and says what it consists of and costs.",
-    check_options, OPT_COUNT, "Exit codes: 0 the scene is good; 1 a step of it fails, there is no memory, or standard output cannot be written;\n"
+    "check",
+    "SCENE",
+    "Reads a scene with its meshes and pictures, builds it, and says what it consists of and costs.",
+    check_options,
+    OPT_COUNT,
+    "Exit codes: 0 the scene is good; 1 a step of it fails, there is no memory, or standard output cannot be written;\n"
     "2 bad input."};
 
 /// Real steps are timed until there are this many or this much time has gone.

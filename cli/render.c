@@ -83,7 +83,8 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
             break;
         case OPT_SHEET:
             good = pair(value, 'x', false, &o->columns, &o->rows) && o->columns <= 64 && o->rows <= 64;
-            if (!good) args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'", value);
+            if (!good)
+                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'", value);
             break;
         case OPT_ONLY_SHEET: o->only_sheet = true; break;
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
@@ -117,7 +118,8 @@ static ExitCode open_scene(Render *render) {
         text_json_member(json, bytes.size, "scene_folder", &folder, &folder_size)) {
         char *base = text_json_unquote(folder, folder_size);
         const RenderOptions *o = render->options;
-        if (base) code = job_parse(&render->job, render->console, record, scene, scene_size, base, &o->sets, o->threads);
+        if (base)
+            code = job_parse(&render->job, render->console, record, scene, scene_size, base, &o->sets, o->threads);
         else console_error(render->console, "%s: bad \"scene_folder\"", record);
         free(base);
     } else {

@@ -14,7 +14,8 @@
 static const char stats_header[] =
     "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
     "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
-    "ms_ablate,ms_dynamics,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,front_speed\n";
+    "ms_ablate,ms_dynamics,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,front_"
+    "speed\n";
 
 static SingeResult append(StatsFile *file, const char *text, size_t size, SingeError *error) {
     for (size_t done = 0; done < size;) {

@@ -78,7 +78,8 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
         if (mesh)
             mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);
         else
-            message_add(messages, scene->text, scene->sheets[i].place, "%s", what[0] ? what : singe_result_name(result));
+            message_add(messages, scene->text, scene->sheets[i].place, "%s",
+                        what[0] ? what : singe_result_name(result));
         any = true;
     }
     return any;

@@ -81,7 +81,8 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
     if (result)
         loader_fail(loader, &file, result, error.message);
     else if (!transform(sheet, mesh))
-        message_add(loader->messages, loader->scene->text, file.place, "the sheet reaches beyond 10 km from the origin");
+        message_add(loader->messages, loader->scene->text, file.place,
+                    "the sheet reaches beyond 10 km from the origin");
 }
 
 static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,

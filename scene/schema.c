@@ -325,10 +325,14 @@ static const Schema schema_solver = {.title = "the solver",
                                      .doc = "How springs are kept at their lengths."};
 
 static const SchemaRow camera_rows[] = {
-    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4), .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
-    {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, WITHIN(-1e4, 1e4), .doc = "what it looks at"},
-    {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, WITHIN(-1e4, 1e4), .doc = "which way is up in the picture"},
-    {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), WITHIN(0.1 * DEGREE, 175 * DEGREE), .doc = "angle of view from bottom to top"},
+    {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4),
+     .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
+    {"target", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, target), .length = 3, WITHIN(-1e4, 1e4),
+     .doc = "what it looks at"},
+    {"up", ROW_VECTOR, DIM_NONE, AT(PreviewCamera, up), .length = 3, WITHIN(-1e4, 1e4),
+     .doc = "which way is up in the picture"},
+    {"fov", ROW_FLOAT, DIM_ANGLE, AT(PreviewCamera, fov), WITHIN(0.1 * DEGREE, 175 * DEGREE),
+     .doc = "angle of view from bottom to top"},
 };
 static const Schema schema_camera = {.title = "the camera",
                                      .size = sizeof(PreviewCamera),

@@ -33,15 +33,20 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_commit(SingeSim *sim);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *def, SingeSourceId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id);
 /// Sets the callback of a callback source, as is needed after a load.
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id, SingeFluxFn *callback, void *context);
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *def, SingeColliderId *id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id,
+                                                                    SingeFluxFn *callback, void *context);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *def,
+                                                             SingeColliderId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *def, SingePinId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id);
 /// Replaces the path of a source, collider or pin. Times are the simulation's own.
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t path_count, const SingePoseKey *path);
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t path_count, const SingePoseKey *path);
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count, const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t path_count,
+                                                            const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t path_count,
+                                                              const SingePoseKey *path);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count,
+                                                         const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *def);
 
 /// One step of length time_step: heat, burn, ablate, dynamics. Allocates nothing. On failure the
@@ -135,11 +140,13 @@ typedef struct SingeStats {
     double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations.md
     double ledger_error;           ///< |in + combustion - lost - stored| over the largest of them
     double mass_ledger_error;      ///< |initial - left - burnt - removed| / initial
-    double strain_mean, strain_p99, strain_max; ///< |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part
+    /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part.
+    double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre has crossed to the other side of its corners
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
-    double front_speed;            ///< m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly
+    /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
+    double front_speed;
 } SingeStats;
 
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
@@ -190,7 +197,8 @@ SINGE_API void singe_sim_free_bytes(SingeSim *sim, uint8_t *bytes, size_t size);
 
 /// Makes a simulation from saved bytes; it then steps bitwise as the saved one would have. Hooks and
 /// thread count come from `hooks`, all else from the bytes. Handles keep their values.
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size, SingeSim **sim, SingeError *error);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size,
+                                                     SingeSim **sim, SingeError *error);
 
 /// A second simulation in the same state, with the same hooks.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_clone(SingeSim *sim, SingeSim **copy);

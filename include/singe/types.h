@@ -110,7 +110,8 @@ typedef struct SingeMaterialDef {
     SingeParam ignition_temperature; ///< K, > 0
     SingeParam heating;              ///< K per unit of mass fraction burnt, eta of eq 1, >= 0
     SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
-    SingeParam rate_ceiling;         ///< K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
+    /// K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
+    SingeParam rate_ceiling;
     SingeParam ash_exponent;         ///< p >= 0; eq 4 times ((m - m_min)/(1 - m_min))^p; 0 is the paper
     SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
     SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
@@ -194,7 +195,7 @@ typedef struct SingeSourceDef {
     float flux;                ///< W/m2 into each layer where the picture is white
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength;
-    float plume_share;         ///< power of the plume over that of combustion, 0 to 1; comes on top of it, counted in heat_in
+    float plume_share; ///< power of the plume over that of combustion, 0 to 1; comes on top of it, counted in heat_in
     float plume_height;        ///< m, over which the plume's heat falls to 1/e, > 0
     float plume_conductance;   ///< W/(m2 K) from gas to sheet, >= 0
     SingeFluxFn *callback;     ///< not saved: set it again after a load
@@ -286,9 +287,9 @@ typedef struct SingeSolverDef {
     int substeps;                              ///< per step, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
-    float smoothing;                           ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
-    float smoothing_length;                    ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
-    float height_min;                          ///< smallest height of a centre over its corners, in thicknesses; 0 is off
+    float smoothing;        ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
+    float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
+    float height_min;       ///< smallest height of a centre over its corners, in thicknesses; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
 } SingeSolverDef;
 
@@ -307,13 +308,14 @@ typedef struct SingeSimDef {
     SingeLog log;
     SingeTasks tasks;
     int thread_count;           ///< of the simulation's own pool, 1 to 64
-    uint64_t seed;              ///< not used by the simulation, saved with it: for a renderer; noise and wind have their own
+    uint64_t seed; ///< not used by the simulation, saved with it: for a renderer; noise and wind have their own
     float time_step;            ///< s, h of the paper, > 0
     float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
     float gravity[3];           ///< m/s2
     float ambient_temperature;  ///< K, > 0
     float air_density;          ///< kg/m3, >= 0
-    float heat_tolerance;       ///< relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
+    /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
+    float heat_tolerance;
     SingeWindDef wind;
     SingeSolverDef solver;
 } SingeSimDef;

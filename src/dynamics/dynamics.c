@@ -11,7 +11,8 @@ static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->direction, plan->spring_most) &&
               NEW(memory, plan->upper, plan->spring_most) && NEW(memory, plan->cyclic, plan->spring_most) &&
-              NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->colliders, plan->collider_capacity) &&
+              NEW(memory, plan->cell_normal, plan->cell_count) &&
+              NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     for (int colour = 0; ok && colour < SINGE_COLOUR_COUNT; colour++)
         ok = NEW(memory, plan->weight[colour], plan->spring_count[colour]) &&
@@ -30,7 +31,8 @@ static void plan_comply(DynamicsPlan *plan, const Shell *shell) {
     }
 }
 
-SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings, DynamicsPlan **out) {
+SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
+                                 DynamicsPlan **out) {
     *out = NULL;
     DynamicsPlan *plan = memory_new(memory, 1, sizeof *plan);
     if (!plan) return SINGE_ERROR_MEMORY;
@@ -72,7 +74,8 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {
     if (collider_capacity <= plan->collider_capacity) return true;
-    if (!memory_grow(memory, &plan->colliders, plan->collider_capacity, collider_capacity, sizeof *plan->colliders)) return false;
+    if (!memory_grow(memory, &plan->colliders, plan->collider_capacity, collider_capacity, sizeof *plan->colliders))
+        return false;
     plan->collider_capacity = collider_capacity;
     return true;
 }
@@ -83,7 +86,8 @@ static uint32_t dynamics_place_colliders(DynamicsPlan *plan, const ColliderList 
     for (uint32_t i = 0; i < list->count; i++) {
         const Collider *collider = &list->items[i];
         if (collider->generation == 0) continue;
-        plan->colliders[count++] = (MovingCollider){&collider->def, path_pose(&collider->path, before), path_pose(&collider->path, after)};
+        plan->colliders[count++] =
+            (MovingCollider){&collider->def, path_pose(&collider->path, before), path_pose(&collider->path, after)};
     }
     return count;
 }
@@ -119,12 +123,13 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
     int i = 0;
     while (dynamics_count_lost(dynamics, i, i + 1) == 0) i++;
     return error_set(error, SINGE_ERROR_DIVERGED, "dynamics", i,
-                     "particle %d has no finite position within 10 km; a smaller time_step or more substeps may help", i);
+                     "particle %d has no finite position within 10 km; a smaller time_step or more substeps may help",
+                     i);
 }
 
-SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins, const ColliderList *colliders,
-                          const SingeWindDef *wind, Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters,
-                          SingeError *error) {
+SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
+                          const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
+                          DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
     const SingeSolverDef *solver = &plan->settings.solver;
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool);

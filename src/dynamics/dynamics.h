@@ -16,7 +16,8 @@ typedef struct DynamicsSettings {
 
 /// Scratch of the stage, built once.
 typedef struct DynamicsPlan DynamicsPlan;
-SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings, DynamicsPlan **plan);
+SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
+                                 DynamicsPlan **plan);
 void dynamics_plan_free(Memory *memory, DynamicsPlan *plan);
 
 /// Makes room for that many colliders before they are added; false when out of memory.
@@ -28,7 +29,8 @@ typedef struct DynamicsCounters {
 
 /// One step of length h in settings.solver.substeps substeps. Reads `state`, writes `dynamics` (which is
 /// &state->dynamics).
-SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins, const ColliderList *colliders,
-                          const SingeWindDef *wind, Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error);
+SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
+                          const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
+                          DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error);
 
 #endif

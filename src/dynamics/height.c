@@ -46,7 +46,8 @@ static void height_range(void *task, int begin, int end) {
         if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) height_cell(job, job->cells[k]);
 }
 
-void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, DynamicsState *dynamics) {
+void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics) {
     if (plan->settings.solver.height_min <= 0) return;
     Height job = {plan, shell, ablate, dynamics->position, NULL};
     for (uint32_t f = 0; f < shell->cell_family_count; f++) {

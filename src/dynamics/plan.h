@@ -39,14 +39,16 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state
 void dynamics_predict(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics);
 
 /// Puts pinned particles on their paths (predict.c).
-void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h, DynamicsState *dynamics);
+void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+                         DynamicsState *dynamics);
 
 /// One projection of one colour, family after family (strand_project.c). Returns the number of strands.
-uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState *burn, SingeColour colour, Pool *pool, float h,
-                        DynamicsState *dynamics);
+uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState *burn, SingeColour colour, Pool *pool,
+                        float h, DynamicsState *dynamics);
 
 /// Keeps every centre over its cell's corners (height.c).
-void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, DynamicsState *dynamics);
+void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics);
 
 /// Internal friction of both layers over a step of h seconds (smooth.c).
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics);

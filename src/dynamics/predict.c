@@ -40,7 +40,8 @@ void dynamics_predict(DynamicsPlan *plan, const Shell *shell, Pool *pool, float 
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, predict_particles, &job);
 }
 
-void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h, DynamicsState *dynamics) {
+void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+                         DynamicsState *dynamics) {
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];
         if (pin->generation == 0) continue;

@@ -74,7 +74,8 @@ static void prepare_springs(void *task, int begin, int end) {
     }
 }
 
-void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool) {
+void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind,
+                      Pool *pool) {
     Prepare job = {plan, shell, state, wind, SINGE_RED};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);

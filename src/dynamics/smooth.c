@@ -71,7 +71,12 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[layers[layer]];
-        Smooth job = {plan, set, plan->weight[layers[layer]], dynamics->velocity, 0, 1 - expf(-plan->settings.solver.smoothing * h)};
+        Smooth job = {plan,
+                      set,
+                      plan->weight[layers[layer]],
+                      dynamics->velocity,
+                      0,
+                      1 - expf(-plan->settings.solver.smoothing * h)};
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
             uint32_t strands = set->family_first[f + 1] - job.first_strand;

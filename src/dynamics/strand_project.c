@@ -151,8 +151,8 @@ static void strand_range(void *task, int begin, int end) {
     }
 }
 
-uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState *burn, SingeColour colour, Pool *pool, float h,
-                        DynamicsState *dynamics) {
+uint64_t strand_project(DynamicsPlan *plan, const Shell *shell, const BurnState *burn, SingeColour colour, Pool *pool,
+                        float h, DynamicsState *dynamics) {
     const SpringSet *set = &shell->springs[colour];
     Project job = {plan, set, burn->spring_length[colour], plan->weight[colour], dynamics->position,
                    plan->compliance[colour], plan->settings.solver.regularisation[colour], 1 / (h * h), 0};

@@ -22,7 +22,8 @@ typedef struct SourceList {
 } SourceList;
 
 /// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell.
-SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source, SingeError *error);
+SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+                          SingeError *error);
 void source_free(Memory *memory, const Shell *shell, Source *source);
 
 /// What the stage needs and does not change while it runs.
@@ -59,7 +60,8 @@ typedef struct HeatCounters {
 /// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is
 /// &state->heat). `view` is handed to callback sources. Returns SINGE_ERROR_DIVERGED with the
 /// particle when a temperature is not finite. Adds to *counters.
-SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources, const ColliderList *colliders,
-                      const SingeView *view, Pool *pool, float h, HeatState *heat, HeatCounters *counters, SingeError *error);
+SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
+                      const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
+                      HeatCounters *counters, SingeError *error);
 
 #endif

@@ -26,7 +26,9 @@ static inline uint32_t half_edge_next(uint32_t half) { return (half & ~3u) | ((h
 static inline uint32_t half_edge_previous(uint32_t half) { return (half & ~3u) | ((half + 3) & 3); }
 
 /// The half-edge that leaves the same vertex one cell further counter-clockwise, or SHELL_NONE.
-static inline uint32_t half_edge_turn(const HalfEdges *mesh, uint32_t half) { return mesh->twin[half_edge_previous(half)]; }
+static inline uint32_t half_edge_turn(const HalfEdges *mesh, uint32_t half) {
+    return mesh->twin[half_edge_previous(half)];
+}
 
 /// True where the cells around the vertex close into a circle.
 static inline bool half_edge_is_inside(const HalfEdges *mesh, uint32_t vertex) {

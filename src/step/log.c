@@ -44,7 +44,8 @@ void sim_log_commit(const SingeSim *sim) {
 void sim_log_unconverged(SingeSim *sim) {
     if (sim->heat_warned) return;
     sim->heat_warned = true;
-    sim_log(sim, SINGE_LOG_WARNING,
-            "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller time_step or pace, or a "
-            "larger tolerance, helps (said once)");
+    sim_log(
+        sim, SINGE_LOG_WARNING,
+        "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller time_step or pace, or a "
+        "larger tolerance, helps (said once)");
 }

@@ -73,8 +73,9 @@ void bench_close(Bench *bench) {
 }
 
 void bench_step(Bench *bench, float h) {
-    SingeResult result = dynamics_step(bench->plan, &bench->shell, &bench->state, &bench->pins, &bench->colliders, &bench->wind,
-                                       bench->pool, h, &bench->state.dynamics, &bench->counters, &bench->error);
+    SingeResult result =
+        dynamics_step(bench->plan, &bench->shell, &bench->state, &bench->pins, &bench->colliders, &bench->wind,
+                      bench->pool, h, &bench->state.dynamics, &bench->counters, &bench->error);
     assert_int_equal(result, SINGE_OK);
     bench->state.time += (double)h;
     bench->state.step++;
@@ -87,5 +88,6 @@ double bench_height(const Bench *bench, uint32_t cell) {
         mean = vec_mad(mean, p[i], 0.25f);
     }
     Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
-    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean), normal);
+    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
+                           normal);
 }

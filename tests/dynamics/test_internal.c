@@ -40,7 +40,8 @@ static double wave_left(float cell, float wavelength, int steps) {
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         v[i][2] = sinf(2 * pi * bench.shell.rest_position[i][0] / wavelength);
-    for (int s = 0; s < steps; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    for (int s = 0; s < steps; s++)
+        dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
     double dot = 0, square = 0;
     for (uint32_t i = 0; i < bench.shell.vertex_count; i++) {
         float x = bench.shell.rest_position[i][0];
@@ -68,20 +69,23 @@ static void test_friction_keeps_momentum(void **unused) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(20, 16, 0.004f, 0.004f, false), &material, 1);
-    for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        bench.state.burn.mass[i] = 0.3f + 0.7f * (float)(i % 7) / 6;
     prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         for (int k = 0; k < 3; k++) v[i][k] = 0.1f * (float)k + sinf((float)(i * (uint32_t)(k + 1)));
     double before[3], after[3];
     momentum(&bench, before);
-    for (int s = 0; s < 50; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    for (int s = 0; s < 50; s++)
+        dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
     momentum(&bench, after);
     for (int k = 0; k < 3; k++) assert_true(fabs(after[k] - before[k]) < 1e-5 * fabs(before[2]));
     // a body that moves as one is not held back
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) v[i][0] = 1, v[i][1] = -2, v[i][2] = 3;
     dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
-    for (uint32_t i = 0; i < bench.shell.particle_count; i++) assert_true(v[i][0] == 1 && v[i][1] == -2 && v[i][2] == 3);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        assert_true(v[i][0] == 1 && v[i][1] == -2 && v[i][2] == 3);
     bench_close(&bench);
 }
 
@@ -99,8 +103,10 @@ static void test_friction_stops_at_cuts(void **unused) {
         }
     prepare(&bench);
     float(*v)[4] = bench.state.dynamics.velocity;
-    for (uint32_t i = 0; i < bench.shell.particle_count; i++) v[i][2] = bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1;
-    for (int s = 0; s < 20; s++) dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        v[i][2] = bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1;
+    for (int s = 0; s < 20; s++)
+        dynamics_smooth(bench.plan, &bench.shell, bench.pool, 1.0f / 480, &bench.state.dynamics);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         assert_true(v[i][2] == (bench.shell.rest_position[i][0] < 0.1001f ? 0 : 1));
     bench_close(&bench);
@@ -165,7 +171,8 @@ static void test_compliance_is_physical(void **unused) {
             if (bench.shell.rest_position[i][1] > 0.0999f) bench.state.dynamics.pinned[i] = 1;
         for (int s = 0; s < 960; s++) bench_step(&bench, 1.0f / 480);
         double low = 1;
-        for (uint32_t i = 0; i < bench.shell.vertex_count; i++) low = fmin(low, (double)bench.state.dynamics.position[i][1]);
+        for (uint32_t i = 0; i < bench.shell.vertex_count; i++)
+            low = fmin(low, (double)bench.state.dynamics.position[i][1]);
         stretch[run] = -low;
         bench_close(&bench);
     }

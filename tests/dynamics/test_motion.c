@@ -33,7 +33,8 @@ static double blue_strain(const Bench *bench) {
     const SpringSet *blue = &bench->shell.springs[SINGE_BLUE];
     double worst = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
-        Vec d = vec_sub(vec_load(bench->state.dynamics.position[blue->ends[k][1]]), vec_load(bench->state.dynamics.position[blue->ends[k][0]]));
+        Vec d = vec_sub(vec_load(bench->state.dynamics.position[blue->ends[k][1]]),
+                        vec_load(bench->state.dynamics.position[blue->ends[k][0]]));
         worst = fmax(worst, fabs((double)vec_length(d) / (double)blue->rest[k] - 1));
     }
     return worst;
@@ -43,7 +44,8 @@ static void add_collider(Bench *bench, SingeColliderDef def, uint32_t count, con
     bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
     bench->colliders.items[0].generation = 1;
     bench->colliders.items[0].def = def;
-    assert_int_equal(path_set(&bench->colliders.items[0].path, &bench->memory, count, keys, "collider", &bench->error), SINGE_OK);
+    assert_int_equal(path_set(&bench->colliders.items[0].path, &bench->memory, count, keys, "collider", &bench->error),
+                     SINGE_OK);
     assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
 }
 
@@ -123,7 +125,8 @@ static void test_damping_law(void **unused) {
         assert_true(fabs((double)bench.state.dynamics.velocity[i][0] / (0.3 * left) - 1) < 0.01);
     }
     double mean = momentum / mass;
-    print_message("damping: %.2g from its steps, %.2g from exp(-d t)\n", mean / (0.3 * left) - 1, mean / (0.3 * exp(-2)) - 1);
+    print_message("damping: %.2g from its steps, %.2g from exp(-d t)\n", mean / (0.3 * left) - 1,
+                  mean / (0.3 * exp(-2)) - 1);
     assert_true(fabs(mean / (0.3 * left) - 1) < 2e-3);
     assert_true(fabs(mean / (0.3 * exp(-2)) - 1) < 4e-3);
     bench_close(&bench);
@@ -137,7 +140,8 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
         for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
             double m = (double)bench->shell.matter.mass[i], r[3], v[3];
             for (int k = 0; k < 3; k++) {
-                r[k] = (double)bench->state.dynamics.position[i][k], v[k] = (double)bench->state.dynamics.velocity[i][k];
+                r[k] = (double)bench->state.dynamics.position[i][k],
+                v[k] = (double)bench->state.dynamics.velocity[i][k];
                 if (pass == 0) centre[k] += m * r[k], drift[k] += m * v[k];
                 else r[k] -= centre[k] / mass, v[k] -= drift[k] / mass;
             }
@@ -181,8 +185,9 @@ static void test_spin(void **unused) {
     for (int bent = 0; bent < 2; bent++)
         for (int axis = 0; axis < 3; axis += 2) {
             double with = spin_left(axis, smoothing, bent), without = spin_left(axis, 0, bent);
-            print_message("%s sheet, a turn a second about %s: %.4f of its spin left after 1 s, %.4f without smoothing\n",
-                          bent ? "bent" : "flat", axis ? "z" : "x", with, without);
+            print_message(
+                "%s sheet, a turn a second about %s: %.4f of its spin left after 1 s, %.4f without smoothing\n",
+                bent ? "bent" : "flat", axis ? "z" : "x", with, without);
             assert_true(fabs(without - expected) < 0.006);
             if (bent && axis == 0) assert_true(with > 0.8 && with < 0.9);
             else assert_true(fabs(with - without) < 1e-3);
@@ -258,7 +263,8 @@ static void test_carried_by_moving_plane(void **unused) {
     add_collider(&bench, plane, 2, keys);
     float start = centre_of_mass(&bench).x;
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
-    assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) < 0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
+    assert_true(fabsf(centre_of_mass(&bench).x - start - 0.2f) <
+                0.006f); // slips while it gathers speed: v^2/(2 mu g) = 2.5 mm
     drop_collider(&bench);
     bench_close(&bench);
 }
@@ -278,7 +284,8 @@ static void test_never_inside_a_collider(void **unused) {
         Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
             Vec normal;
-            assert_true(collider_distance(&def, pose_unapply(&pose, vec_load(bench.state.dynamics.position[i])), &normal) > def.offset - 1e-5f);
+            assert_true(collider_distance(&def, pose_unapply(&pose, vec_load(bench.state.dynamics.position[i])),
+                                          &normal) > def.offset - 1e-5f);
         }
         drop_collider(&bench);
         bench_close(&bench);

@@ -80,7 +80,8 @@ static void shake(Bench *bench, float amount) {
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
         for (uint32_t k = 0; k < 3; k++)
             bench->state.dynamics.position[i][k] += amount * (random_unit(random_hash(i, k, 7, 1)) - 0.5f);
-    for (uint32_t i = 0; i < bench->shell.particle_count; i++) bench->state.burn.mass[i] = 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        bench->state.burn.mass[i] = 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
 }
 
 static void compare(Quads quads, bool pin_some) {
@@ -95,8 +96,10 @@ static void compare(Quads quads, bool pin_some) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             for (int k = 0; k < 3; k++) x[i][k] = (double)bench.state.dynamics.position[i][k];
         // strands are stored family by family, and strands of a family do not touch: one after another is the same
-        for (uint32_t s = 0; s < bench.shell.springs[colour].strand_count; s++) dense_strand(&bench, (SingeColour)colour, s, x);
-        strand_project(bench.plan, &bench.shell, &bench.state.burn, (SingeColour)colour, NULL, 1e-3f, &bench.state.dynamics);
+        for (uint32_t s = 0; s < bench.shell.springs[colour].strand_count; s++)
+            dense_strand(&bench, (SingeColour)colour, s, x);
+        strand_project(bench.plan, &bench.shell, &bench.state.burn, (SingeColour)colour, NULL, 1e-3f,
+                       &bench.state.dynamics);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             for (int k = 0; k < 3; k++) assert_true(fabs(x[i][k] - (double)bench.state.dynamics.position[i][k]) < 2e-6);
     }

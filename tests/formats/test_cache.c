@@ -11,7 +11,8 @@ enum { VERTICES = 5, TRIANGLES = 3 };
 // A surface of odd values: subnormals, negative zero, the largest float.
 typedef struct Sample {
     float position[VERTICES][3], normal[VERTICES][3], uv[VERTICES][2], velocity[VERTICES][3], rest[VERTICES][3];
-    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], burn[VERTICES], time_ignited[VERTICES];
+    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], burn[VERTICES],
+        time_ignited[VERTICES];
     int32_t piece[VERTICES], source_vertex[VERTICES], sheet[VERTICES];
     uint32_t triangles[TRIANGLES][3];
     SingeSurface surface;
@@ -28,8 +29,8 @@ static void fill(void *values, size_t count, uint32_t seed) {
 
 static void make_sample(Sample *s) {
     memset(s, 0, sizeof *s);
-    float *floats[] = {s->position[0], s->normal[0], s->uv[0], s->velocity[0], s->rest[0], s->temperature, s->peak, s->mass,
-                       s->burn_rate, s->burn, s->time_ignited};
+    float *floats[] = {s->position[0], s->normal[0], s->uv[0],     s->velocity[0], s->rest[0],     s->temperature,
+                       s->peak,        s->mass,      s->burn_rate, s->burn,        s->time_ignited};
     size_t widths[] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1};
     for (uint32_t i = 0; i < 11; i++) fill(floats[i], VERTICES * widths[i], i + 1);
     for (int i = 0; i < VERTICES; i++)

@@ -149,7 +149,8 @@ static SingeParam from_left(float value, float to) {
     return (SingeParam){.value = value, .to = to, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
 }
 
-static void even_flux(void *context, const struct SingeView *view, float *flux, float *conductance, float *temperature) {
+static void even_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
+                      float *temperature) {
     (void)conductance, (void)temperature;
     for (uint32_t i = 0; i < view->particle_count; i++) flux[i] += *(float *)context;
 }
@@ -193,7 +194,8 @@ static void losses_are_each_particles_own(void **unused) {
         def.material.diffusivity = def.material.layer_exchange = singe_param(0);
         SingeParam *params[] = {&def.material.convection, &def.material.emissivity, &def.material.loss_mass_floor};
         const float ends[3][2] = {{5, 50}, {0.9f, 0.1f}, {0.3f, 0.9f}};
-        for (int k = 0; k < 3; k++) *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
+        for (int k = 0; k < 3; k++)
+            *params[k] = run ? singe_param(ends[k][run - 1]) : from_left(ends[k][0], ends[k][1]);
         Rig rig;
         rig_open(&rig, &def);
         fill(&rig, 900);

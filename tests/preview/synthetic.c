@@ -86,7 +86,8 @@ static void add_vertex(SyntheticKind kind, float radius, SingeSurface *s, const 
 static Corner between(const Corner *a, const Corner *b, float t) {
     Corner c = *a;
     for (int k = 0; k < 3; k++) c.rest[k] += t * (b->rest[k] - a->rest[k]);
-    c.temperature += t * (b->temperature - a->temperature), c.peak += t * (b->peak - a->peak), c.mass += t * (b->mass - a->mass);
+    c.temperature += t * (b->temperature - a->temperature), c.peak += t * (b->peak - a->peak),
+        c.mass += t * (b->mass - a->mass);
     c.rate += t * (b->rate - a->rate);
     return c;
 }
@@ -120,8 +121,9 @@ static bool reserve(SingeSurface *s, size_t vertices, size_t triangles) {
     s->time_ignited = malloc(vertices * sizeof(float)), s->piece = malloc(vertices * sizeof(int32_t));
     s->source_vertex = malloc(vertices * sizeof(int32_t)), s->sheet = malloc(vertices * sizeof(int32_t));
     s->triangles = malloc(triangles * sizeof *s->triangles);
-    return s->position && s->normal && s->uv && s->velocity && s->rest_position && s->temperature && s->temperature_peak && s->mass &&
-           s->burn_rate && s->burn && s->time_ignited && s->piece && s->source_vertex && s->sheet && s->triangles;
+    return s->position && s->normal && s->uv && s->velocity && s->rest_position && s->temperature &&
+           s->temperature_peak && s->mass && s->burn_rate && s->burn && s->time_ignited && s->piece &&
+           s->source_vertex && s->sheet && s->triangles;
 }
 
 bool synthetic_make(SyntheticKind kind, int cells_x, float radius, SingeSurface *surface) {
@@ -149,7 +151,8 @@ bool synthetic_make(SyntheticKind kind, int cells_x, float radius, SingeSurface 
 
 void synthetic_free(SingeSurface *s) {
     free(s->position), free(s->normal), free(s->uv), free(s->velocity), free(s->rest_position), free(s->temperature);
-    free(s->temperature_peak), free(s->mass), free(s->burn_rate), free(s->burn), free(s->time_ignited), free(s->piece), free(s->source_vertex);
+    free(s->temperature_peak), free(s->mass), free(s->burn_rate), free(s->burn), free(s->time_ignited), free(s->piece),
+        free(s->source_vertex);
     free(s->sheet), free(s->triangles);
     memset(s, 0, sizeof *s);
 }

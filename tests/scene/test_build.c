@@ -184,12 +184,14 @@ static void test_bad_meshes(void **state) {
             assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
         scene_messages_free(&messages);
     }
-    SceneMessages messages = refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: fan.obj\n", folder);
+    SceneMessages messages =
+        refused("sheets:\n  - grid: {size: [1e-6, 1e4], cells: [2, 2]}\n  - mesh: fan.obj\n", folder);
     assert_int_equal(messages.count, 2);
     assert_string_equal(messages.items[0].origin, "t.yaml:2:5");
     assert_non_null(strstr(messages.items[0].text, "the grid cannot be used: cell 0 has"));
     scene_messages_free(&messages);
-    messages = refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n", folder);
+    messages =
+        refused("sheets:\n  - {grid: {size: [1, 1], cells: [2, 2]}, scale: 1e4, translate: [6000, 0, 0]}\n", folder);
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
     scene_messages_free(&messages);
@@ -291,8 +293,10 @@ static void test_camera_finds_the_sheets(void **state) {
     static const char *const scenes[] = {
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}}]",
         "sheets: [{grid: {size: [0.2, 0.3], cells: [4, 6]}, rotate: [90, 0, 0], translate: [3, 0, 1]}]",
-        "sheets: [{grid: {size: [20, 1], cells: [40, 2]}}, {grid: {size: [1, 1], cells: [2, 2]}, translate: [0, 0, 9]}]",
-        "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], preview: {size: [90, 200], camera: {up: [0, 1, 0], fov: 60}}}",
+        "sheets: [{grid: {size: [20, 1], cells: [40, 2]}}, {grid: {size: [1, 1], cells: [2, 2]}, translate: [0, 0, "
+        "9]}]",
+        "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], preview: {size: [90, 200], camera: {up: [0, 1, 0], fov: "
+        "60}}}",
     };
     for (size_t i = 0; i <= sizeof scenes / sizeof *scenes; i++) {
         bool given = i == sizeof scenes / sizeof *scenes;
@@ -312,9 +316,10 @@ static void test_camera_finds_the_sheets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotation),  cmocka_unit_test(test_sim),     cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_bad_files), cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_preview), cmocka_unit_test(test_examples),
-        cmocka_unit_test(test_camera_finds_the_sheets),
+        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_sim),
+        cmocka_unit_test(test_refused),    cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_examples),   cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

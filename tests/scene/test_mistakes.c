@@ -388,11 +388,13 @@ static void test_truncated_block(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),    cmocka_unit_test(test_keys),   cmocka_unit_test(test_objects),
-        cmocka_unit_test(test_sheets),    cmocka_unit_test(test_syntax), cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_all_at_once), cmocka_unit_test(test_print), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_range_words),
-        cmocka_unit_test(test_ranges_at_once), cmocka_unit_test(test_step), cmocka_unit_test(test_truncated), cmocka_unit_test(test_truncated_block),
+        cmocka_unit_test(test_values),         cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_objects),        cmocka_unit_test(test_sheets),
+        cmocka_unit_test(test_syntax),         cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_all_at_once),    cmocka_unit_test(test_print),
+        cmocka_unit_test(test_files),          cmocka_unit_test(test_range_words),
+        cmocka_unit_test(test_ranges_at_once), cmocka_unit_test(test_step),
+        cmocka_unit_test(test_truncated),      cmocka_unit_test(test_truncated_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,7 +51,8 @@ static void check_full(const Scene *scene) {
     assert_true(sheet->scale == 0.001f && sheet->translate[1] == 0.01f && sheet->drop_pieces_below == 4e-6f);
     assert_true(fabsf(sheet->rotate[0] - 1.5707964f) < 1e-7f);
     const SingeMaterialDef *material = &sheet->material.def;
-    assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA && !material->ablate);
+    assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA &&
+                !material->ablate);
     assert_true(material->thickness.field == SINGE_FIELD_PICTURE && material->thickness.to == 0.002f);
     assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(thickness)].name, "t.png");
     assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].name, "w.png");
@@ -110,8 +111,8 @@ static void test_all_vary(void **state) {
             char set[128];
             const char *sets[] = {set};
             float from = strcmp(place.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
-            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g, to: %g, %s}", place.key, (double)from, (double)to,
-                     fields[f]);
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g, to: %g, %s}", place.key, (double)from,
+                     (double)to, fields[f]);
             Scene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;

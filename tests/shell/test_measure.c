@@ -27,7 +27,8 @@ static void check_layers(const Shell *shell, double area, double tolerance) {
     for (int layer = 0; layer < 2; layer++) {
         assert_near(layer_sum(shell, shell->matter.area, layer), area, tolerance);
         assert_near(layer_sum(shell, shell->matter.mass, layer), mass, tolerance);
-        assert_near(layer_sum(shell, shell->matter.capacity, layer), mass * (double)material->specific_heat.value, tolerance);
+        assert_near(layer_sum(shell, shell->matter.capacity, layer), mass * (double)material->specific_heat.value,
+                    tolerance);
     }
 }
 

@@ -90,7 +90,8 @@ static void sheet_of_any_size(void **state) {
     SingeMaterialDef material = singe_default_material();
     assert_int_equal(def.struct_size, sizeof def);
     assert_int_equal(def.material.struct_size, sizeof def.material);
-    assert_true(def.material.grammage.value == material.grammage.value && def.material.damping.value == material.damping.value);
+    assert_true(def.material.grammage.value == material.grammage.value &&
+                def.material.damping.value == material.damping.value);
     assert_null(def.name);
     assert_true(def.drop_pieces_below == 0);
 }
