@@ -19,7 +19,7 @@ static void default_preview(ScenePreview *preview) {
     set3(preview->camera.target, 0, 0, 0);
     set3(preview->camera.up, 0, 0, 1);
     preview->camera.fov = 35 * DEGREE;
-    set3(preview->light_direction, -0.5f, -0.3f, 1);
+    set3(preview->light_direction, -0.5f, -0.7f, 1);
     preview->light_angle = 3 * DEGREE;
     set3(preview->light_colour, 2.2f, 2.1f, 2);
     set3(preview->sky, 0.4f, 0.43f, 0.5f);
