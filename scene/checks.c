@@ -73,6 +73,9 @@ void finish_pin(Reader *reader, const Node *map, void *object) {
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
 }
 
+/// Whether the scene says where the camera is; otherwise scene_frame places it.
+static bool camera_given(const Node *map) { return node_find(map, "eye") || node_find(map, "target"); }
+
 void finish_camera(Reader *reader, const Node *map, void *object) {
     const PreviewCamera *camera = object;
     double view[3], cross[3], length = 0, across = 0;
@@ -85,7 +88,12 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
         cross[i] = view[j] * (double)camera->up[k] - view[k] * (double)camera->up[j];
         across += cross[i] * cross[i];
     }
-    if (!(length > 0))
+    const float *up = camera->up;
+    if (up[0] == 0 && up[1] == 0 && up[2] == 0)
+        complain(reader, map->place, "the camera's up must not be zero");
+    else if (!camera_given(map))
+        return;
+    else if (!(length > 0))
         complain(reader, map->place, "the camera's eye and target are the same point");
     else if (!(across > 0))
         complain(reader, map->place, "the camera's up must point away from the line of sight");
@@ -93,8 +101,7 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
 
 void finish_preview(Reader *reader, const Node *map, void *object) {
     ScenePreview *preview = object;
-    const Node *camera = node_find(map, "camera");
-    preview->camera_given = node_find(camera, "eye") || node_find(camera, "target");
+    preview->camera_given = camera_given(node_find(map, "camera"));
     const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && d[0] == 0 && d[1] == 0 && d[2] == 0)

@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/// As far from the origin as a camera may be, m.
+static const double farthest = 1e4;
+
 typedef struct Box {
     double low[3], high[3];
 } Box;
@@ -74,9 +77,15 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
         double across = fmax(fabs(dot3(d, right)) / aspect, fabs(dot3(d, top)));
         distance = fmax(distance, dot3(d, back) + 1.15 * across / half); // a margin of 15 %
     }
+    double target[3], eye[3];
     for (int i = 0; i < 3; i++) {
-        double middle = 0.5 * (box.low[i] + box.high[i]);
-        camera->target[i] = (float)middle;
-        camera->eye[i] = (float)(middle + distance * back[i]);
+        target[i] = 0.5 * (box.low[i] + box.high[i]);
+        eye[i] = target[i] + distance * back[i];
+        if (fabs(eye[i]) > farthest)
+            return;
+    }
+    for (int i = 0; i < 3; i++) {
+        camera->target[i] = (float)target[i];
+        camera->eye[i] = (float)eye[i];
     }
 }

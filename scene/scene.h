@@ -207,7 +207,8 @@ SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *a
 
 // ---- from scene to preview
 
-/// Places a camera that was not given so that all sheets, as they start, fill the picture.
+/// Places a camera that was not given so that all sheets, as they start, fill the picture. One that would have to
+/// stand farther than 10 km from the origin stays where it is by default.
 void scene_frame(Scene *scene, const SceneAssets *assets);
 
 /// Fills *def; the scene and the assets must outlive it. Threads: 1. Shapes: none (scene_shapes).

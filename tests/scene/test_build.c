@@ -312,6 +312,18 @@ static void test_camera_finds_the_sheets(void **state) {
         scene_assets_free(&assets);
         scene_free(scene);
     }
+    // too far for a camera: the default one stays
+    Scene *scene = good_scene("sheets: [{grid: {size: [9000, 9000], cells: [2, 2]}}]", NULL, 0);
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    PreviewCamera before = scene->preview.camera;
+    scene_frame(scene, &assets);
+    assert_memory_equal(&scene->preview.camera, &before, sizeof before);
+    scene_assets_free(&assets);
+    scene_free(scene);
+    // an up along the default line of sight is good where that is not used
+    scene_free(good_scene(SHEET "preview: {camera: {up: [0, 0.5, -0.4]}}\n", NULL, 0));
 }
 
 int main(void) {

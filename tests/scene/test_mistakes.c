@@ -70,6 +70,7 @@ static void test_values(void **state) {
     one("solver: {order: [red]}", "bad.yaml:3:17", "each once");
     one("wind: 3", "bad.yaml:3:7", "wind must be a map");
     one("preview: {camera: {eye: [0, 0, 0], target: [0, 0, 0]}}", "bad.yaml:3:19", "same point");
+    one("preview: {camera: {up: [0, 0, 0]}}", "bad.yaml:3:19", "must not be zero");
     one("preview: {camera: {fov: 180}}", "bad.yaml:3:25", "out of range");
     one("preview: {light: {direction: [0, 0, 0]}}", "bad.yaml:3:30", "must not be zero");
 }
