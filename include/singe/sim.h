@@ -122,6 +122,12 @@ typedef struct SingeTimers {
     uint64_t heat_iterations;   ///< of the implicit diffusion
     uint64_t strands_projected;
     uint64_t contacts;
+    // of the stage dynamics, the projection of springs alone
+    double projection_seconds;
+    uint64_t springs_projected; ///< springs times projections
+    uint64_t projection_iterations; ///< of the conjugate gradients
+    double projection_flops;    ///< floating-point operations, counted from the source: a division or root is one
+    double projection_bytes;    ///< bytes read and written, counted from the source: what a cold cache would move
 } SingeTimers;
 
 SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);

@@ -281,25 +281,51 @@ static inline SingeWindDef singe_default_wind(void) {
     return def;
 }
 
-/// The strand projection (docs/equations.md).
+/// How springs are kept at their lengths.
+typedef enum SingeSolverMethod {
+    SINGE_SOLVER_STRAND = 0,        ///< strand after strand in SIMD lanes, single precision
+    SINGE_SOLVER_PAPER = 1,         ///< successive fast projection (section 7.1): conjugate gradients a colour, double
+    SINGE_SOLVER_PAPER_LITERAL = 2, ///< the same to the letter of the paper; may fail
+    SINGE_SOLVER_ALL_AT_ONCE = 3,   ///< fast projection of all colours in one system, which diverges (section 7.1)
+    SINGE_SOLVER_MASS_SPRING = 4,   ///< Hooke's law, the comparison of section 8
+} SingeSolverMethod;
+
+/// The solver of the shell's motion (docs/equations.md).
 typedef struct SingeSolverDef {
     size_t struct_size;
+    SingeSolverMethod method;
     int substeps;                              ///< per step, 1 to 1000
+    int projections;                           ///< of all colours, per substep, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
+    bool attachments;       ///< hold particles within their geodesic distance of every pin (strand)
+    bool early_exit;        ///< stop projecting when the error is below `tolerance` (paper, all-at-once)
+    float tolerance;        ///< of the conjugate gradients and the early exit, 1e-12 to 1 (paper, all-at-once)
+    float stiffness;        ///< N/m, of every spring (mass-spring), > 0
     float smoothing;        ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
     float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
     float height_min;       ///< smallest height of a centre over its corners, in thicknesses; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
 } SingeSolverDef;
 
+/// Fills a Def with what suits SINGE_SOLVER_STRAND, and for another method with what the paper gives for it.
 SINGE_API void singe_init_solver(SingeSolverDef *def, size_t struct_size);
+SINGE_API void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolverMethod method);
 
 static inline SingeSolverDef singe_default_solver(void) {
     SingeSolverDef def;
     singe_init_solver(&def, sizeof def);
     return def;
 }
+
+/// Instructions that the inner loops use. Results are the same.
+typedef enum SingeInstructions {
+    SINGE_INSTRUCTIONS_BEST = 0,   ///< the best that the processor has
+    SINGE_INSTRUCTIONS_PLAIN = 1,  ///< plain C
+    SINGE_INSTRUCTIONS_X86_V2 = 2, ///< x86-64-v2: SSE 4.2, 4 lanes
+    SINGE_INSTRUCTIONS_X86_V3 = 3, ///< x86-64-v3: AVX2, 8 lanes
+    SINGE_INSTRUCTIONS_X86_V4 = 4, ///< x86-64-v4: AVX-512, 16 lanes
+} SingeInstructions;
 
 /// A simulation.
 typedef struct SingeSimDef {
@@ -308,6 +334,7 @@ typedef struct SingeSimDef {
     SingeLog log;
     SingeTasks tasks;
     int thread_count;           ///< of the simulation's own pool, 1 to 64
+    SingeInstructions instructions; ///< refused where the processor lacks them
     uint64_t seed; ///< not used by the simulation, saved with it: for a renderer; noise and wind have their own
     float time_step;            ///< s, h of the paper, > 0
     float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real

@@ -24,7 +24,8 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan);
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 
 typedef struct DynamicsCounters {
-    uint64_t strands, contacts;
+    uint64_t strands, contacts, springs, iterations;
+    double seconds, flops, bytes; ///< of the projection of springs; see SingeTimers
 } DynamicsCounters;
 
 /// One step of length h in settings.solver.substeps substeps. Reads `state`, writes `dynamics` (which is

@@ -88,14 +88,32 @@ static SingeWindDef standard_wind(void) {
 static SingeSolverDef standard_solver(void) {
     return (SingeSolverDef){
         .struct_size = sizeof(SingeSolverDef),
+        .method = SINGE_SOLVER_STRAND,
         .substeps = 3,
+        .projections = 1,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
         .regularisation = {[SINGE_RED] = 4, [SINGE_GREEN] = 4, [SINGE_BLUE] = 0.01f, [SINGE_YELLOW] = 4},
+        .attachments = true,
+        .early_exit = true,
+        .tolerance = 1e-7f,
+        .stiffness = 1000,
         .smoothing = 170,
         .smoothing_length = 0.02f,
         .height_min = 0.3f,
         .height_gain = 0.5f,
     };
+}
+
+static SingeSolverDef method_solver(SingeSolverMethod method) {
+    SingeSolverDef def = standard_solver();
+    if (method == SINGE_SOLVER_STRAND) return def;
+    const SingeColour order[] = {SINGE_RED, SINGE_GREEN, SINGE_BLUE, SINGE_YELLOW};
+    def.method = method;
+    def.substeps = method == SINGE_SOLVER_MASS_SPRING ? 20 : 1;
+    def.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
+    memcpy(def.order, order, sizeof order);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) def.regularisation[colour] = 1e-4f;
+    return def;
 }
 
 static SingeSimDef standard_sim(void) {
@@ -159,7 +177,11 @@ void singe_init_wind(SingeWindDef *def, size_t struct_size) {
 }
 
 void singe_init_solver(SingeSolverDef *def, size_t struct_size) {
-    const SingeSolverDef standard = standard_solver();
+    singe_init_solver_method(def, struct_size, SINGE_SOLVER_STRAND);
+}
+
+void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolverMethod method) {
+    const SingeSolverDef standard = method_solver(method);
     fill_def(def, struct_size, &standard, sizeof standard);
 }
 

@@ -14,6 +14,11 @@ static bool in_range(float value, float low, float high) { return value >= low &
 
 static const char *sim_check_solver(const SingeSolverDef *solver) {
     bool seen[SINGE_COLOUR_COUNT] = {false};
+    if ((int)solver->method < SINGE_SOLVER_STRAND || solver->method > SINGE_SOLVER_MASS_SPRING)
+        return "solver.method is none of the methods";
+    if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
+    if (!in_range(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
+    if (!in_range(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
     if (solver->substeps < 1 || solver->substeps > 1000) return "solver.substeps must be between 1 and 1000";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
@@ -33,6 +38,8 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     const char *what = sim_check_solver(&def->solver);
     if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
+    if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_X86_V4)
+        what = "instructions is none of the choices";
     if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
     if (!in_range(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
     for (int i = 0; i < 3; i++)

@@ -20,9 +20,15 @@ static void def_wind(Stream *stream, SingeWindDef *wind) {
 
 static void def_solver(Stream *stream, SingeSolverDef *solver) {
     solver->struct_size = sizeof *solver;
+    STREAM(stream, solver->method);
     STREAM(stream, solver->substeps);
+    STREAM(stream, solver->projections);
     STREAM(stream, solver->order);
     STREAM(stream, solver->regularisation);
+    def_bool(stream, &solver->attachments);
+    def_bool(stream, &solver->early_exit);
+    STREAM(stream, solver->tolerance);
+    STREAM(stream, solver->stiffness);
     STREAM(stream, solver->smoothing);
     STREAM(stream, solver->smoothing_length);
     STREAM(stream, solver->height_min);

@@ -1,18 +1,13 @@
 // The step, in the order of the paper's section 4.
+#include "base/clock.h"
 #include "step/sim.h"
 
 #include <string.h>
-#include <time.h>
 
-static double step_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /// Adds the time since *start to a stage and starts the next.
 static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
-    double now = step_seconds();
+    double now = clock_seconds();
     sim->timers.seconds[stage] += now - *start;
     *start = now;
 }
@@ -24,7 +19,7 @@ static SingeResult step_stages(SingeSim *sim) {
     State *state = &sim->state;
     SingeError *error = &sim->error;
     float h = def->time_step;
-    double start = step_seconds();
+    double start = clock_seconds();
     sim->events.count = 0;
 
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
@@ -45,7 +40,7 @@ static SingeResult step_stages(SingeSim *sim) {
     step_lap(sim, SINGE_STAGE_ABLATE, &start);
 
     // 4. positions and velocities (eq 8 to 19)
-    DynamicsCounters counters = {0, 0};
+    DynamicsCounters counters = {0};
     TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h,
                       &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
@@ -53,6 +48,11 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->timers.heat_iterations += heat.iterations;
     sim->timers.strands_projected += counters.strands;
     sim->timers.contacts += counters.contacts;
+    sim->timers.projection_seconds += counters.seconds;
+    sim->timers.springs_projected += counters.springs;
+    sim->timers.projection_iterations += counters.iterations;
+    sim->timers.projection_flops += counters.flops;
+    sim->timers.projection_bytes += counters.bytes;
     return SINGE_OK;
 }
 
