@@ -10,27 +10,14 @@
 static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
     bool ok = NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
-              NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->direction, plan->spring_most) &&
-              NEW(memory, plan->upper, plan->spring_most) && NEW(memory, plan->cyclic, plan->spring_most) &&
+              NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
               NEW(memory, plan->cell_normal, plan->cell_count) &&
               NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
-    for (int colour = 0; ok && colour < SINGE_COLOUR_COUNT; colour++)
-        ok = NEW(memory, plan->weight[colour], plan->spring_count[colour]) &&
-             NEW(memory, plan->compliance[colour], plan->spring_count[colour]);
     return ok;
 }
 
-/// Each spring's compliance: strands read it in their order, which is faster than at both ends.
-static void plan_comply(DynamicsPlan *plan, const Shell *shell) {
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        const float *compliance = shell->matter.compliance[colour];
-        for (uint32_t k = 0; k < plan->spring_count[colour]; k++) {
-            const uint32_t *ends = shell->springs[colour].ends[k];
-            plan->compliance[colour][k] = 0.5f * (compliance[ends[0]] + compliance[ends[1]]);
-        }
-    }
-}
+bool dynamics_runs_here(SingeInstructions instructions) { return strand_choose(instructions) != NULL; }
 
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
                                  DynamicsPlan **out) {
@@ -42,13 +29,12 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->cell_count = shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         plan->spring_count[colour] = shell->springs[colour].count;
-        if (plan->spring_most < plan->spring_count[colour]) plan->spring_most = plan->spring_count[colour];
     }
-    if (!plan_allocate(plan, memory)) {
+    StrandSolve *solve = strand_choose(settings->instructions);
+    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, solve, &plan->strands)) {
         dynamics_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
-    plan_comply(plan, shell);
     *out = plan;
     return SINGE_OK;
 }
@@ -60,16 +46,11 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
     FREE(memory, plan->normal, plan->particle_count);
     FREE(memory, plan->air, plan->particle_count);
     FREE(memory, plan->predicted, plan->particle_count);
-    FREE(memory, plan->direction, plan->spring_most);
-    FREE(memory, plan->upper, plan->spring_most);
-    FREE(memory, plan->cyclic, plan->spring_most);
+    FREE(memory, plan->soft, plan->particle_count);
     FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        FREE(memory, plan->weight[colour], plan->spring_count[colour]);
-        FREE(memory, plan->compliance[colour], plan->spring_count[colour]);
-    }
+    strands_free(memory, &plan->strands);
     FREE(memory, plan, 1);
 }
 
@@ -133,7 +114,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
                           DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
     const SingeSolverDef *solver = &plan->settings.solver;
     float h_sub = h / (float)solver->substeps;
-    dynamics_prepare(plan, shell, state, wind, pool);
+    dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     for (int substep = 0; substep < solver->substeps; substep++) {
         double before = state->time + (double)h * substep / solver->substeps;
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
@@ -144,7 +125,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         double start = clock_seconds();
         for (int projection = 0; projection < solver->projections; projection++)
             for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
-                counters->strands += strand_project(plan, shell, &state->burn, solver->order[i], pool, h_sub, dynamics);
+                strand_project(plan, solver->order[i], pool, h_sub, dynamics, counters);
         counters->seconds += clock_seconds() - start;
         height_project(plan, shell, &state->ablate, pool, dynamics);
         counters->contacts += contact_project(plan, collider_count, pool, h_sub, dynamics);
@@ -152,6 +133,6 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         Finish finish = {plan, dynamics, 1 / h_sub};
         pool_for(pool, (int)shell->particle_count, POOL_BLOCK, dynamics_velocities, &finish);
     }
-    dynamics_smooth(plan, shell, pool, h, dynamics);
+    dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     return dynamics_check(plan, pool, dynamics, error);
 }

@@ -12,7 +12,12 @@ typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
     SingeSolverDef solver;
+    SingeInstructions instructions;
+    int thread_count; ///< that may work at once
 } DynamicsSettings;
+
+/// Whether this processor has the instructions.
+bool dynamics_runs_here(SingeInstructions instructions);
 
 /// Scratch of the stage, built once.
 typedef struct DynamicsPlan DynamicsPlan;

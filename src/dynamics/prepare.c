@@ -15,12 +15,9 @@ typedef struct Prepare {
     const Shell *shell;
     const State *state;
     const SingeWindDef *wind;
+    float (*position)[4]; ///< gets the inverse mass
     SingeColour colour;
 } Prepare;
-
-static float prepare_progress(const Shell *shell, const State *state, uint32_t particle) {
-    return shell_burn_progress(state->burn.mass[particle], shell->matter.mass_min[particle]);
-}
 
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
@@ -52,6 +49,8 @@ static void prepare_particles(void *task, int begin, int end) {
         bool alive = state->ablate.particle_flags[i] & SINGE_ALIVE;
         float mass = matter->mass[i] * fmaxf(state->burn.mass[i], PREPARE_MASS_MIN);
         plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
+        job->position[i][3] = plan->inverse_mass[i];
+        plan->soft[i] = 1 + (matter->char_weight[i] - 1) * shell_burn_progress(state->burn.mass[i], matter->mass_min[i]);
         if (!alive) continue;
         vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
         plan->drag[i] = 0.25f * plan->settings.air_density * matter->drag[i] * matter->area[i] / mass;
@@ -59,28 +58,33 @@ static void prepare_particles(void *task, int begin, int end) {
     }
 }
 
-static void prepare_springs(void *task, int begin, int end) {
+static void prepare_strands(void *task, int begin, int end) {
     Prepare *job = task;
-    const Shell *shell = job->shell;
-    const SpringSet *set = &shell->springs[job->colour];
+    const SpringSet *springs = &job->shell->springs[job->colour];
+    StrandSet *set = &job->plan->strands.sets[job->colour];
     const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
-    const float *material_weight = shell->matter.weight[job->colour], *char_weight = shell->matter.char_weight;
-    for (int k = begin; k < end; k++) {
-        uint32_t a = set->ends[k][0], b = set->ends[k][1];
-        float soft = 0.5f * (char_weight[a] + char_weight[b]);
-        float progress = 0.5f * (prepare_progress(shell, job->state, a) + prepare_progress(shell, job->state, b));
-        float weight = 0.5f * (material_weight[a] + material_weight[b]) * (1 + (soft - 1) * progress);
-        job->plan->weight[job->colour][k] = flags[k] & SINGE_ALIVE ? weight : 0;
+    const float *target = job->state->burn.spring_length[job->colour];
+    const float *material = job->shell->matter.weight[job->colour], *soft = job->plan->soft;
+    for (int s = begin; s < end; s++) {
+        size_t slot = set->strand_slot[s];
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+            uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
+            float weight = 0.25f * (material[a] + material[b]) * (soft[a] + soft[b]);
+            set->weight[slot] = flags[k] & SINGE_ALIVE ? weight : 0;
+            set->length[slot] = target[k];
+        }
     }
 }
 
-void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind,
-                      Pool *pool) {
-    Prepare job = {plan, shell, state, wind, SINGE_RED};
+void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
+                      DynamicsState *dynamics) {
+    Prepare job = {plan, shell, state, wind, dynamics->position, SINGE_RED};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
-        pool_for(pool, (int)shell->springs[colour].count, POOL_BLOCK, prepare_springs, &job);
+        const SpringSet *springs = &shell->springs[colour];
+        int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
+        pool_for(pool, (int)springs->strand_count, grain, prepare_strands, &job);
     }
 }

@@ -19,7 +19,7 @@
 typedef struct Smooth {
     const DynamicsPlan *plan;
     const SpringSet *set;
-    const float *weight;
+    const uint8_t *flags; ///< of the springs
     float (*velocity)[4];
     uint32_t first_strand;
     float share;
@@ -44,7 +44,7 @@ static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint3
     const uint32_t(*ends)[2] = job->set->ends;
     uint32_t run = 0; // springs in a row that are there
     for (uint32_t k = begin; k < end; k++) {
-        run = job->weight[k] > 0 ? run + 1 : 0;
+        run = job->flags[k] & SINGE_ALIVE ? run + 1 : 0;
         if (run >= 2 * reach) smooth_triple(job, ends[k + 1 - 2 * reach][0], ends[k + 1 - reach][0], ends[k][1]);
     }
 }
@@ -66,21 +66,28 @@ static void smooth_range(void *task, int begin, int end) {
     }
 }
 
-void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics) {
+/// Strands of a family that make about 2,048 springs: the least a thread is given.
+static int smooth_grain(const SpringSet *set, uint32_t family) {
+    uint32_t first = set->family_first[family], last = set->family_first[family + 1];
+    uint32_t springs = set->strand_first[last] - set->strand_first[first];
+    return (int)(2048 * (last - first) / (springs + 1)) + 1;
+}
+
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h, DynamicsState *dynamics) {
     if (plan->settings.solver.smoothing <= 0) return;
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {
         const SpringSet *set = &shell->springs[layers[layer]];
         Smooth job = {plan,
                       set,
-                      plan->weight[layers[layer]],
+                      ablate->spring_flags[layers[layer]],
                       dynamics->velocity,
                       0,
                       1 - expf(-plan->settings.solver.smoothing * h)};
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
             uint32_t strands = set->family_first[f + 1] - job.first_strand;
-            pool_for(pool, (int)strands, dynamics_strand_grain(set, f), smooth_range, &job);
+            pool_for(pool, (int)strands, smooth_grain(set, f), smooth_range, &job);
         }
     }
 }

@@ -162,7 +162,7 @@ typedef struct AblateState {
 } AblateState;
 
 typedef struct DynamicsState {
-    float (*position)[4]; ///< m
+    float (*position)[4]; ///< [particles + 1] m; fourth: 1/kg, inverse mass in this step; the last is nowhere, of no mass
     float (*velocity)[4]; ///< m/s
     uint8_t *pinned;      ///< [particles] number of pins that hold it
 } DynamicsState;

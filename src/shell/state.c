@@ -17,7 +17,7 @@ static void *take(char *base, size_t *used, size_t count, size_t element_size) {
 /// Points the arrays into the block at `base` and returns the block's size.
 static size_t lay_out(const Shell *shell, State *state, char *base) {
     size_t used = 0, particles = shell->particle_count;
-    TAKE(state->dynamics.position, particles);
+    TAKE(state->dynamics.position, particles + 1);
     TAKE(state->dynamics.velocity, particles);
     TAKE(state->heat.temperature, particles);
     TAKE(state->heat.temperature_peak, particles);

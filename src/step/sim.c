@@ -87,6 +87,8 @@ SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeErro
         return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1,
                          "struct_size is not set; start from singe_default_sim()");
     TRY(sim_check_def(&def, error));
+    if (!dynamics_runs_here(def.instructions))
+        return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the instructions asked for");
     Memory memory = memory_make(def.allocator);
     SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
     if (!sim) return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
@@ -186,7 +188,11 @@ SingeResult sim_build(SingeSim *sim) {
     HeatSettings heat = {
         .ambient_temperature = def->ambient_temperature, .tolerance = def->heat_tolerance, .pace = def->pace};
     sim_up(def->gravity, heat.up);
-    DynamicsSettings dynamics = {{def->gravity[0], def->gravity[1], def->gravity[2]}, def->air_density, def->solver};
+    DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
+                                 .air_density = def->air_density,
+                                 .solver = def->solver,
+                                 .instructions = def->instructions,
+                                 .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
     sim->events.capacity = 0;
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
     ok = ok && (sim->backup = memory_new(memory, sim->state.arena_size, 1)) != NULL;

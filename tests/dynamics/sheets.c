@@ -1,5 +1,7 @@
 #include "sheets.h"
 
+#include "dynamics/plan.h"
+
 #include <assert.h>
 #include <stdarg.h>
 #include <setjmp.h>
@@ -37,7 +39,8 @@ void quads_free(Quads *quads) {
 
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
     *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
-    bench->settings = (DynamicsSettings){{0, 0, -9.81f}, 1.2f, singe_default_solver()};
+    bench->settings = (DynamicsSettings){
+        .gravity = {0, 0, -9.81f}, .air_density = 1.2f, .solver = singe_default_solver(), .thread_count = threads};
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = quads.vertex_count, def.positions = quads.positions;
     def.cell_count = quads.cell_count, def.cells = quads.cells;
@@ -90,4 +93,12 @@ double bench_height(const Bench *bench, uint32_t cell) {
     Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
     return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
                            normal);
+}
+
+float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring) {
+    const SpringSet *springs = &bench->shell.springs[colour];
+    const StrandSet *set = &bench->plan->strands.sets[colour];
+    uint32_t s = 0;
+    while (springs->strand_first[s + 1] <= spring) s++;
+    return set->weight[set->strand_slot[s] + (spring - springs->strand_first[s]) * STRAND_LANES];
 }

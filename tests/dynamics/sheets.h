@@ -40,4 +40,7 @@ void bench_step(Bench *bench, float h);
 /// m, of a cell's centre over its corners; negative where the cell is inverted.
 double bench_height(const Bench *bench, uint32_t cell);
 
+/// Weight of a spring in the strands' layout.
+float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring);
+
 #endif

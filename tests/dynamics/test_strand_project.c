@@ -53,7 +53,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
         for (int i = 0; i < 3; i++) u[k][i] = x[e[1]][i] - x[e[0]][i], length += u[k][i] * u[k][i];
         length = sqrt(length);
         for (int i = 0; i < 3; i++) u[k][i] /= length;
-        b[k] = (double)bench->plan->weight[colour][first + (uint32_t)k] * (length * length - l * l) / (2 * length);
+        b[k] = (double)bench_weight(bench, colour, first + (uint32_t)k) * (length * length - l * l) / (2 * length);
     }
     for (int p = 0; p < n; p++)
         for (int q = 0; q < n; q++) {
@@ -86,11 +86,12 @@ static void shake(Bench *bench, float amount) {
 
 static void compare(Quads quads, bool pin_some) {
     Bench bench;
+    DynamicsCounters counters = {0};
     bench_open(&bench, quads, NULL, 1);
     if (pin_some)
         for (uint32_t i = 0; i < bench.shell.particle_count; i += 5) bench.state.dynamics.pinned[i] = 1;
     shake(&bench, 0.002f);
-    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL);
+    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL, &bench.state.dynamics);
     double(*x)[3] = malloc(bench.shell.particle_count * sizeof *x);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
@@ -98,8 +99,7 @@ static void compare(Quads quads, bool pin_some) {
         // strands are stored family by family, and strands of a family do not touch: one after another is the same
         for (uint32_t s = 0; s < bench.shell.springs[colour].strand_count; s++)
             dense_strand(&bench, (SingeColour)colour, s, x);
-        strand_project(bench.plan, &bench.shell, &bench.state.burn, (SingeColour)colour, NULL, 1e-3f,
-                       &bench.state.dynamics);
+        strand_project(bench.plan, (SingeColour)colour, NULL, 1e-3f, &bench.state.dynamics, &counters);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             for (int k = 0; k < 3; k++) assert_true(fabs(x[i][k] - (double)bench.state.dynamics.position[i][k]) < 2e-6);
     }
@@ -122,14 +122,15 @@ static void test_rings_match_dense(void **unused) {
 static void test_gone_springs_decouple(void **unused) {
     (void)unused;
     Bench bench;
+    DynamicsCounters counters = {0};
     bench_open(&bench, quads_grid(6, 1, 0.01f, 0.01f, false), NULL, 1);
     shake(&bench, 0.002f);
     const SpringSet *blue = &bench.shell.springs[SINGE_BLUE];
     for (uint32_t k = 0; k < blue->count; k++) bench.state.ablate.spring_flags[SINGE_BLUE][k] = 0;
-    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL);
+    dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, NULL, &bench.state.dynamics);
     float before[4], (*x)[4] = bench.state.dynamics.position;
     memcpy(before, x[3], sizeof before);
-    strand_project(bench.plan, &bench.shell, &bench.state.burn, SINGE_BLUE, NULL, 1e-3f, &bench.state.dynamics);
+    strand_project(bench.plan, SINGE_BLUE, NULL, 1e-3f, &bench.state.dynamics, &counters);
     assert_memory_equal(before, x[3], sizeof before);
     bench_close(&bench);
 }

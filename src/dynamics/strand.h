@@ -1,0 +1,53 @@
+// Strands laid out for lanes. A group is STRAND_LANES lanes side by side; a lane holds one strand, or several
+// one after another with a row between them that holds no spring. Row k of lane j of a group is the slot
+// (row + k) STRAND_LANES + j, of a node and of the spring from it to the node of the next row; a group ends with
+// a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is the one after
+// the last particle, which has no mass.
+#ifndef DYNAMICS_STRAND_H
+#define DYNAMICS_STRAND_H
+
+#include "shell/shell.h"
+
+enum { STRAND_LANES = 16, STRAND_KEEP = 7 };
+
+/// Lanes that are solved together.
+typedef struct StrandGroup {
+    uint32_t row;        ///< its first row in the set
+    uint32_t rows;       ///< springs of its longest lane; one more row of nodes
+    uint32_t lane_count; ///< lanes in use
+    bool ring;           ///< every lane is one ring of `rows` springs
+} StrandGroup;
+
+/// The strands of one colour. Family f is the groups [family_first[f], family_first[f + 1]).
+typedef struct StrandSet {
+    uint32_t group_count, row_count, family_count, strand_count;
+    uint32_t longest;      ///< rows of the longest group
+    uint32_t group_capacity;
+    StrandGroup *groups;
+    uint32_t *family_first;
+    uint32_t *strand_slot; ///< [strands] slot of the strand's first spring; spring k lies k rows further
+    uint32_t *node;        ///< [row_count STRAND_LANES] four times the particle's number
+    float *length;         ///< [row_count STRAND_LANES] m, targets
+    float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
+    float *compliance;     ///< [row_count STRAND_LANES] m/N
+    void *block;           ///< that the four lie in
+} StrandSet;
+
+/// Lays out the strands of a colour. `nowhere` is the particle of no mass. False when out of memory.
+bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, StrandSet *set);
+void strand_set_free(Memory *memory, StrandSet *set);
+
+typedef struct StrandJob {
+    const StrandSet *set;
+    float *position; ///< [4 (particles + 1)] m, fourth: inverse mass
+    float regularisation, inverse_h2;
+} StrandJob;
+
+/// Projects the strands of one group; `keep` has room for strand_keep_size floats.
+typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
+StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4;
+
+/// The solve for these instructions, or NULL where the processor lacks them (strand_choose.c).
+StrandSolve *strand_choose(SingeInstructions instructions);
+
+#endif
