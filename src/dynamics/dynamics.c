@@ -31,15 +31,16 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         plan->spring_count[colour] = shell->springs[colour].count;
     }
     StrandSolve *solve = strand_choose(settings->instructions);
-    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, solve, &plan->strands)) {
-        dynamics_plan_free(memory, plan);
+    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, solve, &plan->strands) ||
+        !attach_create(memory, shell, &plan->attachments)) {
+        dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
     }
     *out = plan;
     return SINGE_OK;
 }
 
-void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
+void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->drag, plan->particle_count);
@@ -51,7 +52,16 @@ void dynamics_plan_free(Memory *memory, DynamicsPlan *plan) {
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
     strands_free(memory, &plan->strands);
+    attach_free(memory, shell, &plan->attachments);
     FREE(memory, plan, 1);
+}
+
+void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state) {
+    if (plan->settings.solver.attachments) attach_update(&plan->attachments, shell, state, true);
+}
+
+void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
+    attach_stream(&plan->attachments, shell, stream);
 }
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {
@@ -109,6 +119,18 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
                      i);
 }
 
+/// One projection of all colours. The attachments come before the last, which is held best: so it mends what they
+/// disturb.
+static void dynamics_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
+                             DynamicsState *dynamics, DynamicsCounters *counters) {
+    const SingeSolverDef *solver = &plan->settings.solver;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+        if (i == SINGE_COLOUR_COUNT - 1 && solver->attachments)
+            attach_project(&plan->attachments, shell, ablate, pool, dynamics);
+        strand_project(plan, solver->order[i], pool, h, dynamics, counters);
+    }
+}
+
 SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
                           const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
                           DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
@@ -120,12 +142,11 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
         uint32_t collider_count = dynamics_place_colliders(plan, colliders, before, after);
 
-        dynamics_predict(plan, shell, pool, h_sub, dynamics);
         dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        dynamics_predict(plan, shell, pool, h_sub, dynamics);
         double start = clock_seconds();
         for (int projection = 0; projection < solver->projections; projection++)
-            for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
-                strand_project(plan, solver->order[i], pool, h_sub, dynamics, counters);
+            dynamics_project(plan, shell, &state->ablate, pool, h_sub, dynamics, counters);
         counters->seconds += clock_seconds() - start;
         height_project(plan, shell, &state->ablate, pool, dynamics);
         counters->contacts += contact_project(plan, collider_count, pool, h_sub, dynamics);
@@ -134,5 +155,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         pool_for(pool, (int)shell->particle_count, POOL_BLOCK, dynamics_velocities, &finish);
     }
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
-    return dynamics_check(plan, pool, dynamics, error);
+    TRY(dynamics_check(plan, pool, dynamics, error));
+    if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
+    return SINGE_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef DYNAMICS_DYNAMICS_H
 #define DYNAMICS_DYNAMICS_H
 
+#include "base/bytes.h"
 #include "base/pool.h"
 #include "shell/shell.h"
 #include "world/collider.h"
@@ -23,7 +24,13 @@ bool dynamics_runs_here(SingeInstructions instructions);
 typedef struct DynamicsPlan DynamicsPlan;
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
                                  DynamicsPlan **plan);
-void dynamics_plan_free(Memory *memory, DynamicsPlan *plan);
+void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan);
+
+/// What the plan remembers of earlier steps, as part of a snapshot.
+void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream);
+
+/// To be called when other particles are pinned than before.
+void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
 
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);

@@ -2,6 +2,7 @@
 #ifndef DYNAMICS_PLAN_H
 #define DYNAMICS_PLAN_H
 
+#include "dynamics/attach.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/strand.h"
 
@@ -36,6 +37,7 @@ struct DynamicsPlan {
     float (*predicted)[4];   ///< m, x~ of eq 9
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
+    Attachments attachments;
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;

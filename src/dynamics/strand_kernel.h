@@ -11,28 +11,38 @@
 // Eq 16 and 19 with masses, w = 1/m: (J M^-1 J^T + S) lambda = W C, x_a += w_a u lambda, x_b -= w_b u lambda.
 // Along a chain, spring k shares node k with spring k - 1, so the matrix is tridiagonal:
 //
-//   diagonal     w_k + w_(k+1) + S_k,  S = c/h^2 + r (w_k + w_(k+1))/2   c compliance, r regularisation
+//   diagonal     w_k + w_(k+1) + S_k,  S = c/h^2 + (r/2 + y max(C_k, 0)/|d|) (w_k + w_(k+1))
 //   off-diagonal -w_k (u_(k-1) . u_k)
+//
+// with the compliance c, the regularisation r and y = STRAND_YIELD. The last is for what cannot be satisfied, a
+// strand pulled longer than it is between two pins: there lambda would grow to C/r, while a substep can take a pull
+// of w lambda of about |d| only, beyond which it throws what is not quite in line from side to side. With y it stays
+// near |d|/y; a spring within a thousandth of its length hardly knows of it.
 //
 // and the Thomas algorithm solves it. A ring adds one corner entry, taken in by the Sherman-Morrison formula.
 // Chains of constraints solved in linear time: Bender and Bayer, VRIPHYS 2008; fast projection: Goldenthal et
 // al. 2007. Springs that are gone have weight 0 and decouple the chain.
 #include "dynamics/strand.h"
 
+
 /// A spring of every lane: direction, constraint, diagonal.
 typedef struct Row {
     Lanes ux, uy, uz, constraint, diagonal;
 } Row;
 
+/// y above.
+#define STRAND_YIELD 0.25f
+
 /// What is kept of a row between elimination and substitution.
 enum { KEEP_UX, KEEP_UY, KEEP_UZ, KEEP_W, KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };
 
 typedef struct Group {
-    const StrandJob *job;
+    float *position;
     const uint32_t *node;
     const float *length, *weight, *compliance;
     uint32_t rows;
     float *keep;
+    Lanes softness, inverse_h2; ///< 1 + r/2, 1/h^2
 } Group;
 
 static inline float *keep_at(const Group *group, uint32_t row, int what) {
@@ -43,7 +53,7 @@ static inline const uint32_t *group_node(const Group *group, uint32_t k) {
     return group->node + (size_t)k * STRAND_LANES;
 }
 
-static inline Row group_row(const Group *group, uint32_t k, const Node *a, const Node *b) {
+static inline Row group_row(const Group *restrict group, uint32_t k, const Node *a, const Node *b) {
     size_t slot = (size_t)k * STRAND_LANES;
     Lanes l = lanes_load(group->length + slot), weight = lanes_load(group->weight + slot);
     Lanes compliance = lanes_load(group->compliance + slot);
@@ -53,17 +63,15 @@ static inline Row group_row(const Group *group, uint32_t k, const Node *a, const
     // a spring crushed below .41 of its length has hardly a direction: limit what its row asks for
     Lanes constraint = lanes_max((distance - l * l * inverse) * lanes_all(0.5f), -l);
     Lanes masses = a->w + b->w;
-    Lanes diagonal = masses * lanes_all(1 + 0.5f * group->job->regularisation) +
-                     compliance * lanes_all(group->job->inverse_h2);
+    Lanes stretch = lanes_max(constraint * inverse, lanes_all(0));
+    Lanes diagonal = masses * (group->softness + stretch * lanes_all(STRAND_YIELD)) + compliance * group->inverse_h2;
     inverse = lanes_where_positive(weight, inverse, lanes_all(0));
     return (Row){dx * inverse, dy * inverse, dz * inverse, weight * constraint,
                  lanes_where_positive(weight, diagonal, lanes_all(1))};
 }
 
-/// Smallest pivot: both ends pinned gives an empty row.
-static inline Lanes group_pivot(Lanes pivot) {
-    return lanes_where_positive(pivot - lanes_all(1e-20f), pivot, lanes_all(1));
-}
+/// Smallest pivot: both ends pinned gives an empty row, whose lambda moves nothing.
+static inline Lanes group_pivot(Lanes pivot) { return lanes_max(pivot, lanes_all(1e-20f)); }
 
 static inline void group_keep(const Group *group, uint32_t k, const Row *row, Lanes w) {
     lanes_store(keep_at(group, k, KEEP_UX), row->ux);
@@ -72,8 +80,9 @@ static inline void group_keep(const Group *group, uint32_t k, const Row *row, La
     lanes_store(keep_at(group, k, KEEP_W), w);
 }
 
-static inline void group_solve_chains(const Group *group) {
-    float *position = group->job->position;
+static inline void group_solve_chains(const Group *part) {
+    const Group local = *part, *group = &local; // of its own, so that stores cannot change it
+    float *position = group->position;
     Node a = lanes_gather(position, group_node(group, 0));
     Lanes start_w = a.w, zero = lanes_all(0);
     Lanes before_x = zero, before_y = zero, before_z = zero, inverse_before = zero, right_before = zero;
@@ -110,7 +119,7 @@ static inline void group_solve_chains(const Group *group) {
 /// Rings of one length. The corner entry couples the last spring with the first at the closing node:
 /// A = T + p q^T with p = (g, 0.., corner), q = (1, 0.., corner/g) and g = -diagonal of the first row.
 static inline void group_solve_rings(const Group *group) {
-    float *position = group->job->position;
+    float *position = group->position;
     uint32_t end = group->rows - 1;
     Lanes zero = lanes_all(0), one = lanes_all(1);
     Node a = lanes_gather(position, group_node(group, 0)), second = lanes_gather(position, group_node(group, 1));
@@ -168,8 +177,15 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
     const StrandGroup *part = &set->groups[index];
     for (uint32_t lane = 0; lane < part->lane_count; lane += LANES) {
         size_t slot = (size_t)part->row * STRAND_LANES + lane;
-        Group group = {job, set->node + slot, set->length + slot, set->weight + slot, set->compliance + slot,
-                       part->rows, keep};
+        Group group = {job->position,
+                       set->node + slot,
+                       set->length + slot,
+                       set->weight + slot,
+                       set->compliance + slot,
+                       part->rows,
+                       keep,
+                       lanes_all(1 + 0.5f * job->regularisation),
+                       lanes_all(job->inverse_h2)};
         if (part->ring)
             group_solve_rings(&group);
         else

@@ -242,6 +242,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
                          particle);
     }
     pin_count(sim, pin, 1);
+    dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
     pin->generation = sim->next_generation++;
     *id = (SingePinId){index, pin->generation};
     return SINGE_OK;
@@ -251,6 +252,7 @@ SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id) {
     Pin *pin = OBJECT_FIND(sim->pins, id);
     if (!pin) return object_stale(sim, "pin", id.index);
     pin_count(sim, pin, -1);
+    dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
     sim_free_pin(sim, pin);
     return SINGE_OK;
 }

@@ -108,7 +108,7 @@ static void sim_unbuild(SingeSim *sim) {
     Memory *memory = &sim->memory;
     heat_plan_free(memory, sim->heat);
     ablate_plan_free(memory, sim->ablate);
-    dynamics_plan_free(memory, sim->dynamics);
+    dynamics_plan_free(memory, &sim->shell, sim->dynamics);
     sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));

@@ -68,7 +68,7 @@ void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int
 
 void bench_close(Bench *bench) {
     pool_destroy(&bench->memory, bench->pool);
-    dynamics_plan_free(&bench->memory, bench->plan);
+    dynamics_plan_free(&bench->memory, &bench->shell, bench->plan);
     state_free(&bench->memory, &bench->state);
     shell_free(&bench->memory, &bench->shell);
     sheet_source_free(&bench->memory, &bench->source);

@@ -44,7 +44,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     uint32_t first = set->strand_first[strand];
     int n = (int)(set->strand_first[strand + 1] - first);
     assert_true(n <= N_MAX);
-    static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3];
+    static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
     const float *w = bench->plan->inverse_mass;
     double relative = (double)bench->settings.solver.regularisation[colour];
     for (int k = 0; k < n; k++) {
@@ -53,6 +53,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
         for (int i = 0; i < 3; i++) u[k][i] = x[e[1]][i] - x[e[0]][i], length += u[k][i] * u[k][i];
         length = sqrt(length);
         for (int i = 0; i < 3; i++) u[k][i] /= length;
+        stretch[k] = (length * length - l * l) / (2 * length * length);
         b[k] = (double)bench_weight(bench, colour, first + (uint32_t)k) * (length * length - l * l) / (2 * length);
     }
     for (int p = 0; p < n; p++)
@@ -64,6 +65,8 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
                 for (int j = 0; j < 2; j++)
                     if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
             if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
+            // what is too long yields
+            if (p == q) a[p][q] += 0.25 * fmax(stretch[p], 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
             if (p == q && a[p][q] == 0) a[p][q] = 1; // pinned at both ends: an empty row
         }
     dense_solve(a, b, n);

@@ -1,0 +1,200 @@
+// Long-range attachments (Kim, Chentanez and Mueller-Fischer, Long range attachments, 2012). On an inextensible
+// sheet the distance in space between two particles never exceeds the geodesic distance L along the sheet. For
+// every particle i and held vertex p, where |x_i - x_p| > L_ip,
+//
+//   x_i <- x_p + (x_i - x_p) L_ip / |x_i - x_p|.
+//
+// A strand passes a pull on only to the other end of itself within a projection, so that on a fine sheet most of
+// the load at a pin would be carried by stretch; these carry it at once.
+//
+// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
+// are those of the springs' targets, over the cells that are left; they are measured again as these change. What
+// has come free of a source is let go at once. A sheet whose mesh may stretch by its compliance has none.
+#include "dynamics/attach.h"
+
+#include "base/vec.h"
+
+/// Steps between two measurements while a sheet burns: a search costs as much as several steps.
+enum { ATTACH_PERIOD = 32 };
+
+bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
+    *attachments = (Attachments){0};
+    bool done = NEW(memory, attachments->source, shell->sheet_count) &&
+                NEW(memory, attachments->length, shell->particle_count) &&
+                NEW(memory, attachments->distance, shell->vertex_count) &&
+                geodesic_create(memory, shell->vertex_count, &attachments->search);
+    for (uint32_t s = 0; done && s < shell->sheet_count; s++)
+        for (int k = 0; k < ATTACH_SOURCES; k++) attachments->source[s][k] = SHELL_NONE;
+    return done;
+}
+
+void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
+    FREE(memory, attachments->source, shell->sheet_count);
+    FREE(memory, attachments->length, shell->particle_count);
+    FREE(memory, attachments->distance, shell->vertex_count);
+    geodesic_free(memory, shell->vertex_count, &attachments->search);
+}
+
+static bool attach_may_hold(const State *state, uint32_t v) {
+    return state->dynamics.pinned[v] && (state->ablate.particle_flags[v] & SINGE_ALIVE);
+}
+
+/// The held vertex that is farthest, at rest, from the sources found so far; the first one for none.
+static uint32_t attach_farthest(const Shell *shell, const State *state, const Sheet *sheet, const uint32_t *source,
+                                int count) {
+    uint32_t farthest = SHELL_NONE;
+    float most = 0;
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
+        if (!attach_may_hold(state, v)) continue;
+        float nearest = INFINITY;
+        for (int k = 0; k < count; k++) {
+            Vec way = vec_sub(vec_load(shell->rest_position[v]), vec_load(shell->rest_position[source[k]]));
+            nearest = fminf(nearest, vec_dot(way, way));
+        }
+        if (nearest > most) farthest = v, most = nearest;
+    }
+    return farthest;
+}
+
+/// Distances of a sheet's centres from those of its corners, as in the plane: with the mean m of the corners,
+/// mean |c_i - p|^2 = |m - p|^2 + mean |c_i - m|^2, and the last is an eighth of the diagonals' squares.
+static void attach_write(Attachments *attachments, const Shell *shell, const State *state, const Sheet *sheet, int k) {
+    const float *distance = attachments->distance;
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+        attachments->length[v][k] = distance[v];
+    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        uint32_t centre = shell_centre(shell, c);
+        float sum = 0;
+        for (int i = 0; i < 4; i++) sum += distance[shell->cells[c][i]] * distance[shell->cells[c][i]];
+        for (int i = 0; i < 2; i++) {
+            float diagonal = state->burn.spring_length[SINGE_YELLOW][shell->cell_springs[c].yellow[i]];
+            sum -= 0.5f * diagonal * diagonal;
+        }
+        float thickness = shell->matter.thickness[centre];
+        attachments->length[centre][k] = sqrtf(fmaxf(0, 0.25f * sum) + thickness * thickness);
+    }
+}
+
+/// Whether nothing in a sheet's mesh may stretch.
+static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+        if (shell->matter.compliance[SINGE_BLUE][v] > 0) return false;
+    return true;
+}
+
+static void attach_measure(Attachments *attachments, const Shell *shell, const State *state) {
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        uint32_t *source = attachments->source[s];
+        bool more = attach_is_inextensible(shell, sheet);
+        for (int k = 0; k < ATTACH_SOURCES; k++) {
+            source[k] = more ? attach_farthest(shell, state, sheet, source, k) : SHELL_NONE;
+            more = source[k] != SHELL_NONE;
+            if (!more) continue;
+            geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
+                          sheet->vertex_first + sheet->vertex_count, attachments->distance);
+            attach_write(attachments, shell, state, sheet, k);
+        }
+    }
+}
+
+void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed) {
+    bool changed = attachments->topology != state->ablate.topology_version ||
+                   attachments->mass_burnt != state->burn.mass_burnt;
+    if (!pins_changed && !(changed && (state->step + 1) % ATTACH_PERIOD == 0)) return;
+    attach_measure(attachments, shell, state);
+    attachments->topology = state->ablate.topology_version;
+    attachments->mass_burnt = state->burn.mass_burnt;
+}
+
+void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream) {
+    STREAM(stream, attachments->topology);
+    STREAM(stream, attachments->mass_burnt);
+    stream_data(stream, attachments->source, shell->sheet_count * sizeof *attachments->source);
+    stream_data(stream, attachments->length, shell->particle_count * sizeof *attachments->length);
+    for (uint32_t s = 0; stream->mode == STREAM_READ && s < shell->sheet_count; s++)
+        for (int k = 0; k < ATTACH_SOURCES; k++) {
+            uint32_t source = attachments->source[s][k];
+            stream->failed |= source != SHELL_NONE && source >= shell->vertex_count;
+        }
+}
+
+typedef struct Attach {
+    const Attachments *attachments;
+    const Shell *shell;
+    const int32_t *piece;
+    float (*position)[4];
+} Attach;
+
+/// Distances in space between a sheet's sources. Returns whether two are farther apart than the sheet reaches.
+static bool attach_spread(const Attach *job, const uint32_t *source, float (*apart)[ATTACH_SOURCES],
+                          float (*ratio)[ATTACH_SOURCES]) {
+    bool tight = false;
+    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++)
+        for (int q = 0; q < ATTACH_SOURCES && source[q] != SHELL_NONE; q++) {
+            apart[p][q] = vec_length(vec_sub(vec_load(job->position[source[p]]), vec_load(job->position[source[q]])));
+            ratio[p][q] = p == q ? 1 : apart[p][q] / job->attachments->length[source[p]][q];
+            tight |= ratio[p][q] > 1;
+        }
+    return tight;
+}
+
+/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
+/// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
+/// most f and so far that the spheres overlap by a margin.
+static void attach_stretch(const uint32_t *source, const float (*apart)[ATTACH_SOURCES],
+                           const float (*ratio)[ATTACH_SOURCES], const float *length, float *stretched) {
+    const float margin = 1.15f;
+    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++) {
+        float factor = 1;
+        for (int q = 0; q < ATTACH_SOURCES && source[q] != SHELL_NONE; q++) {
+            float enough = margin * apart[p][q] / (length[p] + length[q]);
+            factor = fmaxf(factor, enough < ratio[p][q] ? enough : ratio[p][q]);
+        }
+        stretched[p] = factor * length[p];
+    }
+}
+
+static void attach_sheet(const Attach *job, const uint32_t *source, int begin, int end) {
+    float apart[ATTACH_SOURCES][ATTACH_SOURCES], ratio[ATTACH_SOURCES][ATTACH_SOURCES], stretched[ATTACH_SOURCES];
+    bool tight = attach_spread(job, source, apart, ratio);
+    for (int i = begin; i < end; i++) {
+        float *x = job->position[i];
+        if (x[3] == 0) continue;
+        const float *length = job->attachments->length[i];
+        if (tight) {
+            attach_stretch(source, (const float(*)[ATTACH_SOURCES])apart, (const float(*)[ATTACH_SOURCES])ratio, length,
+                           stretched);
+            length = stretched;
+        }
+        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
+            if (job->piece[i] != job->piece[source[k]] || job->position[source[k]][3] > 0) continue;
+            Vec anchor = vec_load(job->position[source[k]]), way = vec_sub(vec_load(x), anchor);
+            float square = vec_dot(way, way);
+            if (square > length[k] * length[k]) vec_store(x, vec_mad(anchor, way, length[k] / sqrtf(square)));
+        }
+    }
+}
+
+static void attach_range(void *task, int begin, int end) {
+    const Attach *job = task;
+    const Shell *shell = job->shell;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        const uint32_t *source = job->attachments->source[s];
+        if (source[0] == SHELL_NONE) continue;
+        int first[2] = {(int)sheet->vertex_first, (int)shell_centre(shell, sheet->cell_first)};
+        int last[2] = {first[0] + (int)sheet->vertex_count, first[1] + (int)sheet->cell_count};
+        for (int layer = 0; layer < 2; layer++)
+            attach_sheet(job, source, first[layer] > begin ? first[layer] : begin, last[layer] < end ? last[layer] : end);
+    }
+}
+
+void attach_project(const Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics) {
+    bool any = false;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) any |= attachments->source[s][0] != SHELL_NONE;
+    if (!any) return;
+    Attach job = {attachments, shell, ablate->piece, dynamics->position};
+    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, attach_range, &job);
+}

@@ -1,0 +1,36 @@
+// Long-range attachments: no particle is farther from a pin than its geodesic distance along the sheet.
+#ifndef DYNAMICS_ATTACH_H
+#define DYNAMICS_ATTACH_H
+
+#include "base/bytes.h"
+#include "base/pool.h"
+#include "dynamics/geodesic.h"
+
+enum { ATTACH_SOURCES = 4 };
+
+/// Held vertices of a sheet, far from each other, and every particle's distance from them.
+typedef struct Attachments {
+    uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
+    float (*length)[ATTACH_SOURCES];    ///< [particles] m, INFINITY where nothing holds
+    float *distance;                    ///< [vertices] scratch
+    Geodesic search;
+    // what they were measured for
+    uint64_t topology;
+    double mass_burnt;
+} Attachments;
+
+bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments);
+void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
+
+/// Finds sources and lengths: after pins have changed, and at the end of every ATTACH_PERIODth step in which the
+/// sheet has.
+void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
+
+/// Puts what is too far from a source back on the sphere around it.
+void attach_project(const Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics);
+
+/// Sources and lengths are part of a snapshot: they are those of an earlier step.
+void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream);
+
+#endif

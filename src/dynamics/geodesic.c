@@ -1,0 +1,119 @@
+// Geodesic distances from one vertex, by a front that moves outward over the cells as Dijkstra's algorithm does
+// over edges. A corner u of a cell is reached from another corner v along the side or diagonal between them,
+//
+//   d(u) = d(v) + |vu|,
+//
+// or through the segment between two corners v and w that have their distances: these and |vw| place a virtual
+// source s in the plane of the triangle, beyond vw, and where the line from s to u crosses the segment,
+//
+//   d(u) = |s - u|.
+//
+// This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
+// triangular meshes, 2002). The metric is intrinsic: lengths of blue and yellow springs, wherever the sheet is.
+#include "dynamics/geodesic.h"
+
+#include <math.h>
+
+enum { GEODESIC_FAR = UINT32_MAX, GEODESIC_DONE = UINT32_MAX - 1 };
+
+bool geodesic_create(Memory *memory, uint32_t vertex_count, Geodesic *search) {
+    *search = (Geodesic){0};
+    return NEW(memory, search->heap, vertex_count) && NEW(memory, search->place, vertex_count);
+}
+
+void geodesic_free(Memory *memory, uint32_t vertex_count, Geodesic *search) {
+    FREE(memory, search->heap, vertex_count);
+    FREE(memory, search->place, vertex_count);
+}
+
+static void heap_put(Geodesic *search, uint32_t at, uint32_t vertex) {
+    search->heap[at] = vertex;
+    search->place[vertex] = at;
+}
+
+/// Moves a vertex up to its place, after its distance has become smaller.
+static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) {
+    uint32_t at = search->place[vertex];
+    for (; at > 0; at = (at - 1) / 2) {
+        uint32_t above = search->heap[(at - 1) / 2];
+        if (distance[above] <= distance[vertex]) break;
+        heap_put(search, at, above);
+    }
+    heap_put(search, at, vertex);
+}
+
+static uint32_t heap_pop(Geodesic *search, const float *distance) {
+    uint32_t nearest = search->heap[0], last = search->heap[--search->waiting], at = 0;
+    search->place[nearest] = GEODESIC_DONE;
+    if (search->waiting == 0) return nearest;
+    for (;;) {
+        uint32_t below = 2 * at + 1;
+        if (below >= search->waiting) break;
+        if (below + 1 < search->waiting && distance[search->heap[below + 1]] < distance[search->heap[below]]) below++;
+        if (distance[search->heap[below]] >= distance[last]) break;
+        heap_put(search, at, search->heap[below]);
+        at = below;
+    }
+    heap_put(search, at, last);
+    return nearest;
+}
+
+/// The distance at u through the segment vw of length c, or INFINITY where the way does not cross it.
+static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
+    if (c <= 0) return INFINITY;
+    // v at the origin, w at (c, 0), u above, the virtual source below
+    float ux = (vu * vu - wu * wu + c * c) / (2 * c), uy = sqrtf(fmaxf(0, vu * vu - ux * ux));
+    float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(fmaxf(0, dv * dv - sx * sx));
+    if (uy - sy <= 0) return INFINITY;
+    float cross = sx - (ux - sx) * sy / (uy - sy);
+    return cross >= 0 && cross <= c ? hypotf(ux - sx, uy - sy) : INFINITY;
+}
+
+/// Length of the side or diagonal between corners i and j of a cell.
+static float cell_length(const CellSprings *springs, const BurnState *burn, int i, int j) {
+    if (((i ^ j) & 1) == 0) return burn->spring_length[SINGE_YELLOW][springs->yellow[i & 1]];
+    int side = ((i + 1) & 3) == j ? i : j;
+    return burn->spring_length[SINGE_BLUE][springs->blue[side]];
+}
+
+/// Lowers the distances at a cell's other corners, now that corner i has its own for good.
+static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const BurnState *burn, uint32_t cell, int i,
+                                float *distance) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const uint32_t *corner = shell->cells[cell];
+    float dv = distance[corner[i]];
+    for (int turn = 1; turn < 4; turn++) {
+        int j = (i + turn) & 3;
+        uint32_t u = corner[j];
+        if (search->place[u] == GEODESIC_DONE) continue;
+        float vu = cell_length(springs, burn, i, j), d = dv + vu;
+        for (int other = 1; other < 4; other++) {
+            int k = (i + other) & 3;
+            if (k == j || search->place[corner[k]] != GEODESIC_DONE) continue;
+            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(springs, burn, i, k), vu,
+                                          cell_length(springs, burn, k, j)));
+        }
+        if (d >= distance[u]) continue;
+        distance[u] = d;
+        if (search->place[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
+        heap_rise(search, distance, u);
+    }
+}
+
+void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, const AblateState *ablate,
+                   uint32_t source, uint32_t first, uint32_t last, float *distance) {
+    for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->place[v] = GEODESIC_FAR;
+    distance[source] = 0;
+    search->waiting = 1;
+    heap_put(search, 0, source);
+    while (search->waiting > 0) {
+        uint32_t v = heap_pop(search, distance);
+        for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
+            uint32_t cell = shell->fan[k];
+            if (!(ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+            int i = 0;
+            while (shell->cells[cell][i] != v) i++;
+            geodesic_cross_cell(search, shell, burn, cell, i, distance);
+        }
+    }
+}
