@@ -1,0 +1,16 @@
+// The measurements behind `singe bench`. Each fills the table that it is given, whose `text` is set, and returns
+// what stopped it. A simulation that diverges is a result, not a failure.
+#ifndef BENCH_BENCH_H
+#define BENCH_BENCH_H
+
+#include "bench/options.h"
+#include "bench/table.h"
+
+typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, SingeError *error);
+
+/// A sheet falls from the horizontal and swings, held at corner points: cost, strain and motion.
+BenchFn bench_swing;
+/// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
+BenchFn bench_hang_and_shrink;
+
+#endif
