@@ -13,4 +13,14 @@ BenchFn bench_swing;
 /// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
 BenchFn bench_hang_and_shrink;
 
+/// The stage dynamics and its projection by size, against the machine's peaks.
+BenchFn bench_dynamics;
+/// Whole burning steps with a sphere and the ground, held against a limit if one is given (SINGE_ERROR_LIMIT).
+BenchFn bench_step;
+/// One stage of burning steps.
+BenchFn bench_heat;
+BenchFn bench_ablate;
+/// Bytes a spring.
+BenchFn bench_memory;
+
 #endif

@@ -39,11 +39,12 @@ typedef struct BenchOptions {
 static inline BenchOptions bench_options(void) { return (BenchOptions){.threads = 1, .smoothing = -1}; }
 
 /// The list asked for, or these defaults.
-static inline BenchList bench_list(const BenchList *asked, int count, const double *defaults) {
-    if (asked->count) return *asked;
-    BenchList list = {.count = count};
-    for (int i = 0; i < count; i++) list.values[i] = defaults[i];
-    return list;
-}
+BenchList bench_list(const BenchList *asked, int count, const double *defaults);
+
+/// Cells a side of a square sheet with about so many springs, ten a cell.
+int options_cells(double springs);
+
+const char *options_solver_name(SingeSolverMethod method);
+const char *options_instructions_name(SingeInstructions instructions);
 
 #endif

@@ -18,18 +18,18 @@ enum {
 
 static const BenchColumn columns[COLUMNS] = {
     [CELLS] = {"cells", "%.0f", 5, NULL},
-    [THICKNESS] = {"t_mm", "%.3g", 5, NULL},
+    [THICKNESS] = {"thickness_mm", "%.3g", 12, NULL},
     [SUBSTEPS] = {"substeps", "%.0f", 8, NULL},
     [CPU_MEDIAN] = {"cpu_ms", "%.2f", 8, NULL},
     [CPU_MEAN] = {"mean_ms", "%.2f", 8, NULL},
     [DYNAMICS] = {"dynamics_ms", "%.2f", 11, NULL},
-    [BLUE] = {"blue_%", "%.3g", 20, "max/p99/mean"},
-    [RED] = {"red_%", "%.3g", 20, "max/p99/mean"},
-    [GREEN] = {"green_%", "%.3g", 20, "max/p99/mean"},
-    [YELLOW] = {"yellow_%", "%.3g", 20, "max/p99/mean"},
+    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
+    [RED] = {"red_pct", "%.3g", 20, "max/p99/mean"},
+    [GREEN] = {"green_pct", "%.3g", 20, "max/p99/mean"},
+    [YELLOW] = {"yellow_pct", "%.3g", 20, "max/p99/mean"},
     [FALL] = {"fall_m", "%.3f", 20, "0.33/0.50/0.67"},
     [OFF] = {"off_cm", "%.1f", 6, NULL},
-    [SPEED] = {"speed_m/s", "%.2f", 9, NULL},
+    [SPEED] = {"speed", "%.2f", 9, NULL},
     [RESULT] = {"result", NULL, 8, NULL},
 };
 

@@ -38,6 +38,12 @@ static void print_row(const BenchTable *table, const BenchValue *row) {
     fflush(table->text);
 }
 
+void table_fact(BenchTable *table, const char *name, double number) {
+    if (table->fact_count == BENCH_FACTS_MAX) return;
+    table->facts[table->fact_count++] = (BenchFact){name, number};
+    if (table->text) fprintf(table->text, "%s %.4g\n", name, number);
+}
+
 bool table_add(BenchTable *table, const BenchValue *row) {
     size_t width = (size_t)table->column_count;
     if (table->row_count == table->capacity) {
@@ -109,6 +115,10 @@ void table_write_json(const BenchTable *table, FILE *file) {
     write_json_text(file, machine_name());
     fputs(", \"version\": ", file);
     write_json_text(file, singe_version());
+    for (int f = 0; f < table->fact_count; f++) {
+        fprintf(file, ", \"%s\": ", table->facts[f].name);
+        write_number(file, table->facts[f].number, "null");
+    }
     fputs(", \"rows\": [", file);
     for (int r = 0; r < table->row_count; r++) {
         fputs(r ? ",\n  {" : "\n  {", file);
@@ -120,6 +130,8 @@ void table_write_json(const BenchTable *table, FILE *file) {
 
 void table_write_csv(const BenchTable *table, FILE *file) {
     fprintf(file, "# singe bench %s, version %s, %s\n", table->command, singe_version(), machine_name());
+    for (int f = 0; f < table->fact_count; f++)
+        fprintf(file, "# %s %.7g\n", table->facts[f].name, table->facts[f].number);
     for (int r = -1; r < table->row_count; r++) {
         for (int c = 0; c < table->column_count; c++)
             for (int part = 0; part < (table->columns[c].parts ? 3 : 1); part++) {

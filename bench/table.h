@@ -20,15 +20,28 @@ typedef struct BenchColumn {
     const char *parts;  ///< "max/p99/mean": three numbers, keys name_max and so on; NULL for one
 } BenchColumn;
 
+/// A number about the whole table, printed above it: "fma_peak_gflops".
+typedef struct BenchFact {
+    const char *name;
+    double number;
+} BenchFact;
+
+enum { BENCH_FACTS_MAX = 24 };
+
 typedef struct BenchTable {
     const char *command;        ///< the measurement's name
     const BenchColumn *columns;
     int column_count, row_count, capacity;
     BenchValue *values; ///< [row_count * column_count]
     FILE *text;         ///< where rows are printed as they come, or NULL
+    BenchFact facts[BENCH_FACTS_MAX];
+    int fact_count;
 } BenchTable;
 
 BenchTable table_begin(const char *command, const BenchColumn *columns, int column_count, FILE *text);
+
+/// Says a number about the table as a whole; before the first row.
+void table_fact(BenchTable *table, const char *name, double number);
 
 /// Adds a row of `column_count` values. False when out of memory.
 bool table_add(BenchTable *table, const BenchValue *row);

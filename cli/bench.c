@@ -14,6 +14,7 @@
 #define TRAJECTORY                                                                                               \
     (BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(PINS) | BENCH_BIT(TIME) | BENCH_BIT(STEPS) |            \
      BENCH_BIT(SMOOTHING) | BENCH_BIT(THREADS) | SOLVER | OUTPUT)
+#define SIZES (BENCH_BIT(SPRINGS) | BENCH_BIT(TIMED) | BENCH_BIT(THREADS) | OUTPUT)
 
 static const struct {
     const char *name, *full_name;
@@ -25,6 +26,14 @@ static const struct {
      "A sheet of 1 m x 1 m falls from the horizontal, held at corner points: CPU ms per 1/24 s frame, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers, and the largest speed."},
+    {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
+     "The stage dynamics and its projection of springs by size: time, arithmetic and traffic against the machine's."},
+    {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT),
+     "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
+    {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
+    {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
+    {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
+     "Bytes a spring: what a simulation holds, and its drawn mesh."},
 };
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };

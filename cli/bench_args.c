@@ -17,6 +17,11 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_SOLVER] = {"solver", 0, "METHOD", "strand, paper, paper-literal, all-at-once or mass-spring [strand]"},
     [BENCH_OPT_INSTRUCTIONS] = {"instructions", 0, "SET", "best, plain, v2, v3 or v4 [best]"},
     [BENCH_OPT_PROJECTIONS] = {"projections", 0, "N", "projections a substep, 1 to 1000 [the solver's]"},
+    [BENCH_OPT_SPRINGS] = {"springs", 0, "N,N,...", "sizes, 40 to 40000000 springs"},
+    [BENCH_OPT_STATE] = {"state", 0, "swing|shrink", "what the sheet does [swing]"},
+    [BENCH_OPT_LIMIT] = {"limit-ms", 0, "MS", "fails where a step takes longer at the reference machine's pace"},
+    [BENCH_OPT_QUICK] = {"quick", 0, NULL, "a short run"},
+    [BENCH_OPT_TIMED] = {"steps", 0, "N", "steps to time, 1 to 100000 [by size]"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
 };
@@ -89,6 +94,14 @@ static bool read_instructions(const Parser *parser, const char *text, SingeInstr
     return true;
 }
 
+static bool read_state(const Parser *parser, const char *text, BenchState *state) {
+    static const char *const words[] = {"swing", "shrink"};
+    int value;
+    if (!read_word(parser, text, words, 2, "swing or shrink", &value)) return false;
+    *state = (BenchState)value;
+    return true;
+}
+
 static bool read_option(Parser *parser, const char *text, BenchRequest *request) {
     BenchOptions *o = &request->options;
     const ArgReader *reader = &parser->reader;
@@ -108,6 +121,13 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_SOLVER: return read_solver(parser, text, &o->solver);
     case BENCH_OPT_INSTRUCTIONS: return read_instructions(parser, text, &o->instructions);
     case BENCH_OPT_PROJECTIONS: return args_int(reader, option, text, 1, 1000, &o->projections);
+    case BENCH_OPT_SPRINGS:
+        return read_list(parser, text, 40, 4e7, true, 1, "whole numbers from 40 to 40000000 as in 1000,16000",
+                         &o->springs);
+    case BENCH_OPT_STATE: return read_state(parser, text, &o->state);
+    case BENCH_OPT_LIMIT: return read_one(parser, text, 1e-3, 1e6, "milliseconds from 0.001 to 1e6", &o->limit_ms);
+    case BENCH_OPT_QUICK: o->quick = true; return true;
+    case BENCH_OPT_TIMED: return args_int(reader, option, text, 1, 100000, &o->steps);
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;
     case BENCH_OPT_COUNT: break;
