@@ -23,4 +23,13 @@ BenchFn bench_ablate;
 /// Bytes a spring.
 BenchFn bench_memory;
 
+/// The paper's solver and ours on the same trajectories.
+BenchFn bench_compare;
+/// The same run with each set of instructions.
+BenchFn bench_width;
+/// Over thickness, resolution and time step: does it hold?
+BenchFn bench_stability;
+/// How much the look hangs on time step, substeps and resolution.
+BenchFn bench_look;
+
 #endif

@@ -17,6 +17,7 @@ typedef struct BenchList {
 typedef enum BenchState {
     BENCH_SWING,  ///< held at corner points, lets go horizontally
     BENCH_SHRINK, ///< hangs from two corner patches, all target lengths shrink to 0.8 of themselves within a second
+    BENCH_HANG,   ///< hangs from two corner patches that come nearer to each other
 } BenchState;
 
 typedef struct BenchOptions {

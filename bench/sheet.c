@@ -7,7 +7,7 @@ static const float size = 1; // m
 
 BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps) {
     BenchSetup setup = {
-        .state = state, .cells = 100, .pins = 2, .thickness = 1e-3f, .threads = options->threads,
+        .state = state, .cells = 100, .pins = 2, .thickness = 1e-3f, .shrink = 0.8f, .threads = options->threads,
         .time_step = 1.0f / (float)(BENCH_FPS * steps), .instructions = options->instructions,
     };
     singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
@@ -54,9 +54,9 @@ static void material_inert(SingeMaterialDef *material) {
 }
 
 /// Hot all over from the start, it loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
-/// lengths ends at m_min/ash_density = 0.8. It never burns through, for mass_loss is below m_min.
-static void material_shrinks(SingeMaterialDef *material) {
-    const float least = 0.99f, ratio = 0.8f, excess = 100; // excess in K
+/// lengths ends at m_min/ash_density = `ratio`. It never burns through, for mass_loss is below m_min.
+static void material_shrinks(SingeMaterialDef *material, float ratio) {
+    const float least = 0.99f, excess = 100; // excess in K
     material->ignition_temperature = singe_param(500);
     material->temperature = singe_param(500 + excess);
     material->rate_ceiling = singe_param(excess);
@@ -68,14 +68,22 @@ static void material_shrinks(SingeMaterialDef *material) {
     material->shrink_front = material->shrink_back = singe_param(1);
 }
 
+/// A corner's vertex alone where the sheet swings, else a patch.
 static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId sheet) {
-    const bool upright = setup->state == BENCH_SHRINK;
-    const float high = upright ? size : 0, corners[6] = {0, 0, high, size, 0, high};
+    const bool upright = setup->state != BENCH_SWING;
+    const float high = upright ? size : 0, corners[2][3] = {{0, 0, high}, {size, 0, high}};
+    const SingePoseKey path[2] = {{0, {size, 0, high}, {0, 0, 0, 1}},
+                                  {0.5f, {size - setup->approach, 0, high}, {0, 0, 0, 1}}};
     SingePinDef pin = singe_default_pin();
     SingePinId id;
-    pin.sheet = sheet, pin.points = corners, pin.point_count = (uint32_t)setup->pins;
-    pin.radius = upright ? 0.05f * size : 0; // a patch, or the corner's vertex alone
-    return singe_sim_add_pin(sim, &pin, &id);
+    pin.sheet = sheet, pin.point_count = 1, pin.radius = upright ? 0.05f * size : 0;
+    for (int p = 0; p < setup->pins; p++) {
+        pin.points = corners[p];
+        if (p == 1 && setup->approach > 0) pin.path_count = 2, pin.path = path;
+        SingeResult result = singe_sim_add_pin(sim, &pin, &id);
+        if (result) return result;
+    }
+    return SINGE_OK;
 }
 
 static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
@@ -83,8 +91,9 @@ static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetId id;
     material_inert(&sheet.material);
     sheet.material.thickness = singe_param(setup->thickness);
-    if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material);
-    SingeResult result = sheet_add(sim, &sheet, setup->cells, size, setup->state == BENCH_SHRINK, &id);
+    if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
+    sheet.material.damping = singe_param(setup->damping);
+    SingeResult result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
     if (!result) result = singe_sim_commit(sim);
     return result ? result : pins_add(sim, setup, id);
 }

@@ -10,6 +10,9 @@ typedef struct BenchSetup {
     int pins;         ///< corners held, 1 or 2
     float thickness;  ///< m
     float time_step;  ///< s
+    float shrink;     ///< what the lengths end at in BENCH_SHRINK
+    float damping;    ///< 1/s
+    float approach;   ///< m that the second patch moves towards the first within half a second (BENCH_HANG)
     int threads;
     SingeInstructions instructions;
     SingeSolverDef solver;

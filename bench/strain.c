@@ -34,6 +34,14 @@ void strain_add(Strain *strain, const SingeView *view, SingeColour colour) {
     }
 }
 
+void strain_merge(Strain *strain, const Strain *other) {
+    for (uint32_t bin = 0; bin < STRAIN_BINS; bin++) strain->bins[bin] += other->bins[bin];
+    strain->count += other->count;
+    strain->sum += other->sum;
+    strain->max = fmax(strain->max, other->max);
+    strain->finite = strain->finite && other->finite;
+}
+
 /// The middle of the bin below or in which 99 of 100 samples lie.
 static double percentile(const Strain *strain) {
     uint64_t below = 0, wanted = strain->count - strain->count / 100;

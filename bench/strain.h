@@ -23,6 +23,9 @@ void strain_clear(Strain *strain);
 /// change them.
 void strain_add(Strain *strain, const SingeView *view, SingeColour colour);
 
+/// Adds the samples of another.
+void strain_merge(Strain *strain, const Strain *other);
+
 /// Max, p99 and mean in percent.
 BenchValue strain_percent(const Strain *strain);
 

@@ -73,7 +73,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, doubl
     for (int c = 0; c < cells->count; c++)
         for (int t = 0; t < thickness->count; t++) {
             setup->cells = (int)cells->values[c], setup->thickness = (float)thickness->values[t];
-            Trajectory *trajectory = trajectory_run(setup, frames, steps, error);
+            Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
             bool added = trajectory && add_row(table, setup, steps, trajectory);
             trajectory_free(trajectory);
             if (!trajectory) return error->code;

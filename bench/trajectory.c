@@ -1,34 +1,13 @@
 #include "bench/trajectory.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
+#include "bench/geometry.h"
 #include "bench/machine.h"
 #include "bench/numbers.h"
 
 static const int marks[TRAJECTORY_MARKS] = {8, 12, 16}; // frames
-
-/// m; every particle of either layer with the mass that it has.
-static double centre_height(const SingeView *view) {
-    double moment = 0, mass = 0;
-    for (uint32_t i = 0; i < view->particle_count; i++) {
-        double m = (double)view->area[i] * (double)view->mass[i];
-        moment += m * (double)view->position[i][2];
-        mass += m;
-    }
-    return moment / mass;
-}
-
-static double speed_max(const SingeView *view) {
-    double most = 0;
-    for (uint32_t i = 0; i < view->particle_count; i++) {
-        const float *v = view->velocity[i];
-        double square = (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
-        if (!(square <= most)) most = square; // NaN stays
-    }
-    return sqrt(most);
-}
 
 static void sample(Trajectory *trajectory, const SingeSim *sim, double height_start) {
     SingeView view = singe_sim_view(sim);
@@ -36,18 +15,20 @@ static void sample(Trajectory *trajectory, const SingeSim *sim, double height_st
         strain_add(&trajectory->strain[colour], &view, (SingeColour)colour);
         if (!trajectory->strain[colour].finite) trajectory->diverged = true;
     }
-    double speed = speed_max(&view);
+    double speed = geometry_speed(&view);
     if (!(speed <= trajectory->speed_max)) trajectory->speed_max = speed;
     if (!isfinite(speed)) trajectory->diverged = true;
+    trajectory->fall_end = geometry_height(&view) - height_start;
     for (int m = 0; m < TRAJECTORY_MARKS; m++)
-        if (trajectory->frames == marks[m]) trajectory->fall[m] = centre_height(&view) - height_start;
+        if (trajectory->frames == marks[m]) trajectory->fall[m] = trajectory->fall_end;
 }
 
-/// Runs the frames until one fails.
-static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps) {
+/// Runs the frames until one fails or the time is over.
+static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps, double budget) {
+    const double until = machine_clock() + budget;
     SingeView start = singe_sim_view(sim);
-    double height = centre_height(&start);
-    while (trajectory->frames < frames && !trajectory->diverged) {
+    double height = geometry_height(&start);
+    while (trajectory->frames < frames && !trajectory->diverged && machine_clock() < until) {
         double begun = machine_cpu_clock();
         for (int step = 0; step < steps && !trajectory->diverged; step++) trajectory->diverged = singe_sim_step(sim);
         trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun);
@@ -59,7 +40,7 @@ static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps)
     trajectory->cpu_median = numbers_median(trajectory->cpu_ms, trajectory->frames);
 }
 
-Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, SingeError *error) {
+Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error) {
     SingeSim *sim;
     if (sheet_build(setup, &sim, error)) return NULL;
     Trajectory *trajectory = calloc(1, sizeof *trajectory);
@@ -71,7 +52,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, Singe
     } else {
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_clear(&trajectory->strain[colour]);
         for (int m = 0; m < TRAJECTORY_MARKS; m++) trajectory->fall[m] = NAN;
-        follow(trajectory, sim, frames, steps);
+        follow(trajectory, sim, frames, steps, budget);
     }
     singe_sim_destroy(sim);
     return trajectory;

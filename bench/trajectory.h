@@ -13,14 +13,15 @@ typedef struct Trajectory {
     double *cpu_ms;          ///< [frames] a frame, all threads together, ascending at the end
     double cpu_median, cpu_mean;
     double dynamics_ms;      ///< a frame's mean of the stage dynamics, by the wall's clock
+    double fall_end;         ///< m, rise of the centre of mass at the end
     double fall[TRAJECTORY_MARKS]; ///< m, rise of the centre of mass since the start; NAN where not reached
     double speed_max;        ///< m/s, the largest met at the end of any frame
     Strain strain[SINGE_COLOUR_COUNT]; ///< over all frames
     bool diverged;           ///< a step failed, or a position or speed is not finite
 } Trajectory;
 
-/// Runs `frames` frames of `steps` steps. NULL and *error when out of memory or when the simulation cannot be built.
-Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, SingeError *error);
+/// Runs `frames` frames of `steps` steps, or fewer when `budget` seconds of the wall's clock are over. NULL and *error when out of memory or when the simulation cannot be built.
+Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error);
 void trajectory_free(Trajectory *trajectory);
 
 #endif

@@ -34,6 +34,18 @@ static const struct {
     {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
+    {"compare", "bench compare", bench_compare,
+     BENCH_BIT(SPRINGS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+     "The paper's solver and ours on the same trajectories: error, cost, and the ratio at no more error."},
+    {"width", "bench width", bench_width, SIZES | BENCH_BIT(SUBSTEPS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(STATE),
+     "The same run with each set of instructions: cost, and whether the bytes are the same."},
+    {"stability", "bench stability", bench_stability,
+     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+     "Swing and strong shrink over thickness, resolution and time step: does it hold? Cases run side by side."},
+    {"look", "bench look", bench_look,
+     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
+         BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+     "Rest shape, sag and wrinkles at other time steps, substeps and resolutions."},
 };
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
@@ -94,7 +106,7 @@ int command_bench(int argc, char **argv) {
         help();
         return EXIT_GOOD;
     }
-    int m = find(argv[0]);
+    int m = find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;
     int end = bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
