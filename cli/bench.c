@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "cli/args.h"
 #include "cli/bench_args.h"
+#include "cli/bench_plot.h"
 #include "cli/cli.h"
 #include "cli/console.h"
 
@@ -23,11 +24,11 @@ static const struct {
     const char *summary;
 } measurements[] = {
     {"swing", "bench swing", bench_swing, TRAJECTORY,
-     "A sheet of 1 m x 1 m falls from the horizontal, held at corner points: CPU ms per 1/24 s frame, strain, motion."},
+     "A sheet of 1 m x 1 m falls from the horizontal, held at corners: cost of a frame, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
-     "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers, and the largest speed."},
+     "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers."},
     {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
-     "The stage dynamics and its projection of springs by size: time, arithmetic and traffic against the machine's."},
+     "The stage dynamics and its projection of springs by size, against the machine's peaks."},
     {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT),
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
     {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
@@ -41,7 +42,7 @@ static const struct {
      "The same run with each set of instructions: cost, and whether the bytes are the same."},
     {"stability", "bench stability", bench_stability,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER | OUTPUT,
-     "Swing and strong shrink over thickness, resolution and time step: does it hold? Cases run side by side."},
+     "Swing and strong shrink over thickness, resolution and time step: does it hold?"},
     {"look", "bench look", bench_look,
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
          BENCH_BIT(QUICK) | SOLVER | OUTPUT,
@@ -53,6 +54,7 @@ enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
 static void help(void) {
     printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
     for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
+    printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
     printf("\n  singe bench MEASUREMENT --help   its options\n");
 }
 
@@ -106,6 +108,7 @@ int command_bench(int argc, char **argv) {
         help();
         return EXIT_GOOD;
     }
+    if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);
     int m = find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;
