@@ -13,7 +13,8 @@ void curves_add_paper(Curves *curves) {
     for (int kind = 0; kind < 2; kind++) {
         Curve *curve = &curves->list[curves->count++];
         *curve = (Curve){.count = 5};
-        snprintf(curve->name, sizeof curve->name, "Table 2 (four cores, 2010), %s", kind ? "7 projections" : "to convergence");
+        snprintf(curve->name, sizeof curve->name, "Table 2 (four cores, 2010), %s",
+                 kind ? "7 projections" : "to convergence");
         memcpy(curve->springs, springs, sizeof springs);
         memcpy(curve->ms, kind ? full : stopped, sizeof full);
     }
@@ -68,9 +69,10 @@ static void name_curve(char *name, size_t size, char **fields, const Place *plac
     base = base ? base + 1 : path;
     end = strrchr(base, '.');
     int length = end && end > base ? (int)(end - base) : (int)strlen(base);
-    snprintf(name, size, "%s%s%s%s%.*s", place->solver >= 0 ? fields[place->solver] : "",
-             place->solver >= 0 ? ", " : "", place->threads >= 0 ? fields[place->threads] : "",
-             place->threads < 0 ? "" : strcmp(fields[place->threads], "1") == 0 ? " thread, " : " threads, ", length > 40 ? 40 : length, base);
+    const char *solver = place->solver >= 0 ? fields[place->solver] : "";
+    const char *threads = place->threads >= 0 ? fields[place->threads] : "";
+    const char *word = !*threads ? "" : strcmp(threads, "1") == 0 ? " thread, " : " threads, ";
+    snprintf(name, size, "%s%s%s%s%.*s", solver, *solver ? ", " : "", threads, word, length > 40 ? 40 : length, base);
 }
 
 static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Place *place, const char *path,

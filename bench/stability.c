@@ -158,7 +158,8 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
     *table = table_begin("stability", columns, COLUMNS, table->text);
     if (table->text)
         fputs("NaN: a step failed or a number is not finite. exploded: energy_gain > 0.5 J/kg (shrink 10) or\n"
-              "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25 of the edges.\n",
+              "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"
+              "of the edges.\n",
               table->text);
     fill(&cases, options);
     workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), run, done, &cases);

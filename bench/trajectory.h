@@ -20,7 +20,8 @@ typedef struct Trajectory {
     bool diverged;           ///< a step failed, or a position or speed is not finite
 } Trajectory;
 
-/// Runs `frames` frames of `steps` steps, or fewer when `budget` seconds of the wall's clock are over. NULL and *error when out of memory or when the simulation cannot be built.
+/// Runs `frames` frames of `steps` steps, or fewer when `budget` seconds of the wall's clock are over. NULL and
+/// *error when out of memory or when the simulation cannot be built.
 Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error);
 void trajectory_free(Trajectory *trajectory);
 

@@ -41,7 +41,8 @@ static const struct {
     {"width", "bench width", bench_width, SIZES | BENCH_BIT(SUBSTEPS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(STATE),
      "The same run with each set of instructions: cost, and whether the bytes are the same."},
     {"stability", "bench stability", bench_stability,
-     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
+         OUTPUT,
      "Swing and strong shrink over thickness, resolution and time step: does it hold?"},
     {"look", "bench look", bench_look,
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
