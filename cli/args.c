@@ -131,7 +131,7 @@ int args_next(ArgReader *reader, const char **value) {
         reader->letters = 1;
         return take_letter(reader, value);
     }
-    if (!command->operand || ++reader->operand_count > 1)
+    if (!command->operand || (++reader->operand_count > 1 && !strstr(command->operand, "...")))
         return args_complain(reader, "one argument too many: '%s'", argument);
     reader->index++;
     *value = argument;

@@ -13,7 +13,7 @@ typedef struct ArgOption {
 
 typedef struct ArgCommand {
     const char *name;    ///< "run"
-    const char *operand; ///< "SCENE"; every command takes exactly one, or none where NULL
+    const char *operand; ///< "SCENE" takes exactly one, "FILE..." one or more, NULL none
     const char *summary;
     const ArgOption *options;
     int option_count;

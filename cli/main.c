@@ -14,6 +14,7 @@ static const struct {
     {"run", command_run, "burns a scene: cache, pictures, video, numbers"},
     {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
     {"render", command_render, "draws a cache's pictures and video again"},
+    {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"scene-doc", command_scene_doc, NULL},
 };
 
@@ -39,7 +40,7 @@ static int finish(int code) {
 
 int main(int argc, char **argv) {
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check or render\nsee: singe --help\n", stderr);
+        fputs("singe: error: needs a command: run, check, render or bench\nsee: singe --help\n", stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

@@ -9,7 +9,8 @@
 #   formats       formats
 #   preview       preview, formats
 #   scene         scene, formats, preview/preview.h
-#   cli           cli, scene, formats, preview/preview.h
+#   bench         bench
+#   cli           cli, bench, scene, formats, preview/preview.h
 #
 # and the public headers for all. Only src and tests see src. include/singe sees itself alone.
 set -euo pipefail
@@ -45,8 +46,8 @@ check src/step 'singe/.*|(base|shell|world|heat|burn|ablate|dynamics|step)/.*'
 check formats 'singe/.*|formats/.*'
 check preview 'singe/.*|formats/.*|preview/.*'
 check scene 'singe/.*|formats/.*|preview/preview\.h|scene/.*'
-check cli 'singe/.*|formats/.*|preview/preview\.h|scene/.*|cli/.*'
-check bench 'singe/.*|formats/.*|preview/preview\.h|scene/.*|bench/.*'
+check cli 'singe/.*|formats/.*|preview/preview\.h|scene/.*|bench/.*|cli/.*'
+check bench 'singe/.*|bench/.*'
 check examples 'singe/.*'
 check web 'singe/.*|web/.*'
 

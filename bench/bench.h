@@ -1,0 +1,35 @@
+// The measurements behind `singe bench`. Each fills the table that it is given, whose `text` is set, and returns
+// what stopped it. A simulation that diverges is a result, not a failure.
+#ifndef BENCH_BENCH_H
+#define BENCH_BENCH_H
+
+#include "bench/options.h"
+#include "bench/table.h"
+
+typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, SingeError *error);
+
+/// A sheet falls from the horizontal and swings, held at corner points: cost, strain and motion.
+BenchFn bench_swing;
+/// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
+BenchFn bench_hang_and_shrink;
+
+/// The stage dynamics and its projection by size, against the machine's peaks.
+BenchFn bench_dynamics;
+/// Whole burning steps with a sphere and the ground, held against a limit if one is given (SINGE_ERROR_LIMIT).
+BenchFn bench_step;
+/// One stage of burning steps.
+BenchFn bench_heat;
+BenchFn bench_ablate;
+/// Bytes a spring.
+BenchFn bench_memory;
+
+/// The paper's solver and ours on the same trajectories.
+BenchFn bench_compare;
+/// The same run with each set of instructions.
+BenchFn bench_width;
+/// Over thickness, resolution and time step: does it hold?
+BenchFn bench_stability;
+/// How much the look hangs on time step, substeps and resolution.
+BenchFn bench_look;
+
+#endif

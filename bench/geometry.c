@@ -1,0 +1,99 @@
+#include "bench/geometry.h"
+
+#include <math.h>
+
+static double distance(const float *a, const float *b) {
+    double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+static double square(const float *v) {
+    return (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
+}
+
+double geometry_energy(const SingeView *view, double gravity) {
+    double energy = 0, mass = 0;
+    for (uint32_t i = 0; i < view->particle_count; i++) {
+        double m = (double)view->area[i] * (double)view->mass[i];
+        energy += m * (0.5 * square(view->velocity[i]) + gravity * (double)view->position[i][2]);
+        mass += m;
+    }
+    return energy / mass;
+}
+
+double geometry_height(const SingeView *view) {
+    double moment = 0, mass = 0;
+    for (uint32_t i = 0; i < view->particle_count; i++) {
+        double m = (double)view->area[i] * (double)view->mass[i];
+        moment += m * (double)view->position[i][2];
+        mass += m;
+    }
+    return moment / mass;
+}
+
+double geometry_speed(const SingeView *view) {
+    double most = 0;
+    for (uint32_t i = 0; i < view->particle_count; i++) {
+        double v = square(view->velocity[i]);
+        if (!(v <= most)) most = v; // NaN stays
+    }
+    return sqrt(most);
+}
+
+double geometry_gyration(const SingeView *view) {
+    double centre[3] = {0}, sum = 0;
+    const double count = view->particle_count;
+    for (uint32_t i = 0; i < view->particle_count; i++)
+        for (int axis = 0; axis < 3; axis++) centre[axis] += (double)view->position[i][axis] / count;
+    for (uint32_t i = 0; i < view->particle_count; i++)
+        for (int axis = 0; axis < 3; axis++) sum += pow((double)view->position[i][axis] - centre[axis], 2);
+    return sqrt(sum / count);
+}
+
+/// Cross product of a cell's diagonals.
+static void cell_normal(const SingeView *view, uint32_t cell, double *normal) {
+    const uint32_t *corner = view->cells[cell];
+    double a[3], b[3];
+    for (int axis = 0; axis < 3; axis++) {
+        a[axis] = (double)view->position[corner[2]][axis] - (double)view->position[corner[0]][axis];
+        b[axis] = (double)view->position[corner[3]][axis] - (double)view->position[corner[1]][axis];
+    }
+    for (int k = 0; k < 3; k++) normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+double geometry_folded(const SingeView *view, int cells) {
+    uint32_t n = (uint32_t)cells, folded = 0, edges = 0;
+    for (uint32_t cell = 0; cell < n * n; cell++) {
+        double own[3], other[3];
+        cell_normal(view, cell, own);
+        for (int side = 0; side < 2; side++) {
+            if (side ? cell / n + 1 == n : cell % n + 1 == n) continue;
+            cell_normal(view, side ? cell + n : cell + 1, other);
+            folded += own[0] * other[0] + own[1] * other[1] + own[2] * other[2] < 0;
+            edges++;
+        }
+    }
+    return edges ? (double)folded / edges : 0;
+}
+
+double geometry_reach(const SingeView *view, const float *place) {
+    double most = 0;
+    for (uint32_t i = 0; i < view->vertex_count; i++) {
+        double rest = distance(view->rest_position[i], place);
+        if (rest < 0.2) continue;
+        double ratio = distance(view->position[i], place) / rest;
+        if (!(ratio <= most)) most = ratio; // NaN stays
+    }
+    return most;
+}
+
+void geometry_point(const SingeView *view, int cells, double u, double v, double *point) {
+    double x = u * cells, y = v * cells;
+    int i = (int)fmin(x, cells - 1), j = (int)fmin(y, cells - 1), row = cells + 1;
+    double fx = x - i, fy = y - j, weights[4] = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+    const int corners[4] = {j * row + i, j * row + i + 1, (j + 1) * row + i, (j + 1) * row + i + 1};
+    for (int axis = 0; axis < 3; axis++) {
+        point[axis] = 0;
+        for (int c = 0; c < 4; c++) point[axis] += weights[c] * (double)view->position[corners[c]][axis];
+    }
+}

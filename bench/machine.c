@@ -1,0 +1,47 @@
+#include "bench/machine.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static double clock_read(clockid_t id) {
+    struct timespec now;
+    clock_gettime(id, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double machine_clock(void) { return clock_read(CLOCK_MONOTONIC); }
+double machine_cpu_clock(void) { return clock_read(CLOCK_PROCESS_CPUTIME_ID); }
+
+int machine_processors(void) {
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : (int)count;
+}
+
+/// Reads "model name : NAME" of Linux.
+static int read_model(char *name, int size) {
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    char line[256];
+    int found = 0;
+    while (file && !found && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !colon) continue;
+        line[strcspn(line, "\n")] = 0;
+        found = snprintf(name, (size_t)size, "%s", colon + 1 + strspn(colon + 1, " ")) > 0;
+    }
+    if (file) fclose(file);
+    return found;
+}
+
+const char *machine_name(void) {
+    static char name[128];
+    if (name[0] || read_model(name, sizeof name)) return name;
+#if defined(__x86_64__)
+    return "x86-64";
+#elif defined(__aarch64__)
+    return "aarch64";
+#else
+    return "unknown";
+#endif
+}

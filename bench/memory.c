@@ -1,0 +1,69 @@
+// Bytes a spring by size: what a simulation holds, what building it takes at most, and what its drawn mesh takes.
+#include <stdlib.h>
+
+#include "bench/bench.h"
+#include "bench/burning.h"
+#include "bench/timing.h"
+
+enum { SPRINGS, SIMULATION, BUILDING, SURFACE, TOGETHER, MEGABYTES, COLUMNS };
+
+static const BenchColumn columns[COLUMNS] = {
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},
+    [SIMULATION] = {"bytes_spring", "%.1f", 12, NULL},
+    [BUILDING] = {"building_bytes_spring", "%.1f", 21, NULL},
+    [SURFACE] = {"surface_bytes_spring", "%.1f", 20, NULL},
+    [TOGETHER] = {"all_bytes_spring", "%.1f", 16, NULL},
+    [MEGABYTES] = {"all_mb", "%.2f", 8, NULL},
+};
+
+typedef struct Held {
+    size_t now, most;
+} Held;
+
+static void *resize(void *context, void *block, size_t old_size, size_t new_size) {
+    Held *held = context;
+    void *moved = NULL;
+    if (new_size) {
+        moved = realloc(block, new_size);
+        if (!moved) return NULL;
+    } else {
+        free(block);
+    }
+    held->now += new_size - old_size;
+    if (held->now > held->most) held->most = held->now;
+    return moved;
+}
+
+static SingeResult measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
+    Held held = {0};
+    const SingeAllocator counting = {resize, &held};
+    SingeSim *sim;
+    SingeSurface surface = {.allocator = counting};
+    if (burning_build(options, &counting, springs, 1, &sim, error)) return error->code;
+    size_t building = held.most;
+    SingeResult result = singe_sim_step(sim);
+    size_t simulation = held.now;
+    if (!result) result = singe_sim_surface(sim, &surface);
+    if (result) *error = *singe_sim_error(sim);
+    springs = timing_springs(sim);
+    BenchValue row[COLUMNS] = {
+        [SPRINGS] = bench_number(springs),
+        [SIMULATION] = bench_number((double)simulation / springs),
+        [BUILDING] = bench_number((double)building / springs),
+        [SURFACE] = bench_number((double)(held.now - simulation) / springs),
+        [TOGETHER] = bench_number((double)held.now / springs),
+        [MEGABYTES] = bench_number(1e-6 * (double)held.now),
+    };
+    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+    return result;
+}
+
+SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
+    SingeResult result = SINGE_OK;
+    *table = table_begin("memory", columns, COLUMNS, table->text);
+    for (int i = 0; i < springs.count && !result; i++) result = measure(options, springs.values[i], table, error);
+    return result;
+}

@@ -1,0 +1,27 @@
+// What the machine can do at best: fused multiply-adds from registers, and streaming through arrays.
+#ifndef BENCH_PEAKS_H
+#define BENCH_PEAKS_H
+
+#include "bench/table.h"
+
+/// Sizes of the three arrays of the triad together, each four times the one before; from a first-level cache to
+/// beyond the last.
+enum { PEAKS_SIZES = 8 };
+
+typedef struct Peaks {
+    double gflops;                ///< single precision; a fused multiply-add is two operations
+    double bytes[PEAKS_SIZES];    ///< working set a thread, ascending
+    double gb_s[PEAKS_SIZES];     ///< of the triad a = b + s c at that working set, a read or a write counted once
+    int count;
+} Peaks;
+
+/// Measures with `threads` threads at once, within about `seconds`. False when out of memory.
+bool peaks_measure(Peaks *peaks, int threads, double seconds);
+
+/// GB/s at a working set of so many bytes a thread.
+double peaks_stream(const Peaks *peaks, double bytes);
+
+/// Adds them to a table's facts.
+void peaks_tell(const Peaks *peaks, BenchTable *table);
+
+#endif

@@ -1,0 +1,63 @@
+#include "bench/strain.h"
+
+#include <math.h>
+#include <string.h>
+
+void strain_clear(Strain *strain) {
+    memset(strain, 0, sizeof *strain);
+    strain->finite = true;
+}
+
+static double distance(const float *a, const float *b) {
+    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+void strain_add(Strain *strain, const SingeView *view, SingeColour colour) {
+    for (uint32_t s = 0; s < view->spring_count[colour]; s++) {
+        const uint32_t *ends = view->springs[colour][s];
+        if (!(view->spring_flags[colour][s] & SINGE_ALIVE)) continue;
+        if (view->particle_flags[ends[0]] & view->particle_flags[ends[1]] & SINGE_PINNED) continue;
+        double length = distance(view->position[ends[0]], view->position[ends[1]]);
+        double value = fabs(length / (double)view->spring_length[colour][s] - 1);
+        strain->count++;
+        if (!isfinite(value)) {
+            strain->finite = false;
+            continue;
+        }
+        float rounded = (float)value;
+        uint32_t bits;
+        memcpy(&bits, &rounded, sizeof bits);
+        strain->bins[bits >> 16]++;
+        strain->sum += value;
+        if (value > strain->max) strain->max = value;
+    }
+}
+
+void strain_merge(Strain *strain, const Strain *other) {
+    for (uint32_t bin = 0; bin < STRAIN_BINS; bin++) strain->bins[bin] += other->bins[bin];
+    strain->count += other->count;
+    strain->sum += other->sum;
+    strain->max = fmax(strain->max, other->max);
+    strain->finite = strain->finite && other->finite;
+}
+
+/// The middle of the bin below or in which 99 of 100 samples lie.
+static double percentile(const Strain *strain) {
+    uint64_t below = 0, wanted = strain->count - strain->count / 100;
+    for (uint32_t bin = 0; bin < STRAIN_BINS; bin++) {
+        below += strain->bins[bin];
+        if (below < wanted) continue;
+        uint32_t bits = bin << 16 | 0x8000;
+        float value;
+        memcpy(&value, &bits, sizeof value);
+        return fmin((double)value, strain->max);
+    }
+    return NAN;
+}
+
+BenchValue strain_percent(const Strain *strain) {
+    if (!strain->finite || strain->count == 0) return (BenchValue){.number = {NAN, NAN, NAN}};
+    return (BenchValue){
+        .number = {100 * strain->max, 100 * percentile(strain), 100 * strain->sum / (double)strain->count}};
+}

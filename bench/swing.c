@@ -1,0 +1,100 @@
+// Trajectories: swing and hang-and-shrink.
+//
+// The right motion of `swing` held at two corners is that to which all solvers converge with finer time steps: the
+// centre of mass at .33, .50 and .67 s. A sheet that looks stiff because it barely falls has it wrong.
+#include <math.h>
+
+#include "bench/bench.h"
+#include "bench/trajectory.h"
+
+enum { DEFAULT_STEPS = 20 }; // a frame
+
+static const double right_motion[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
+
+enum {
+    CELLS, THICKNESS, SUBSTEPS, CPU_MEDIAN, CPU_MEAN, DYNAMICS, BLUE, RED, GREEN, YELLOW, FALL, OFF, SPEED, RESULT,
+    COLUMNS
+};
+
+static const BenchColumn columns[COLUMNS] = {
+    [CELLS] = {"cells", "%.0f", 5, NULL},
+    [THICKNESS] = {"thickness_mm", "%.3g", 12, NULL},
+    [SUBSTEPS] = {"substeps", "%.0f", 8, NULL},
+    [CPU_MEDIAN] = {"cpu_ms", "%.2f", 8, NULL},
+    [CPU_MEAN] = {"mean_ms", "%.2f", 8, NULL},
+    [DYNAMICS] = {"dynamics_ms", "%.2f", 11, NULL},
+    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
+    [RED] = {"red_pct", "%.3g", 20, "max/p99/mean"},
+    [GREEN] = {"green_pct", "%.3g", 20, "max/p99/mean"},
+    [YELLOW] = {"yellow_pct", "%.3g", 20, "max/p99/mean"},
+    [FALL] = {"fall_m", "%.3f", 20, "0.33/0.50/0.67"},
+    [OFF] = {"off_cm", "%.1f", 6, NULL},
+    [SPEED] = {"speed", "%.2f", 9, NULL},
+    [RESULT] = {"result", NULL, 8, NULL},
+};
+
+/// cm, how far the centre of mass is at most from the right motion; NAN where that is not known.
+static double motion_error(const BenchSetup *setup, const Trajectory *trajectory) {
+    double most = 0;
+    if (setup->state != BENCH_SWING || setup->pins != 2) return NAN;
+    for (int m = 0; m < TRAJECTORY_MARKS; m++) {
+        double off = 100 * fabs(trajectory->fall[m] - right_motion[m]);
+        if (!(off <= most)) most = off; // NaN stays: not reached
+    }
+    return most;
+}
+
+static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {
+    BenchValue row[COLUMNS] = {
+        [CELLS] = bench_number(setup->cells),
+        [THICKNESS] = bench_number(1e3 * (double)setup->thickness),
+        [SUBSTEPS] = bench_number(steps * setup->solver.substeps),
+        [CPU_MEDIAN] = bench_number(t->cpu_median),
+        [CPU_MEAN] = bench_number(t->cpu_mean),
+        [DYNAMICS] = bench_number(t->dynamics_ms),
+        [BLUE] = strain_percent(&t->strain[SINGE_BLUE]),
+        [RED] = strain_percent(&t->strain[SINGE_RED]),
+        [GREEN] = strain_percent(&t->strain[SINGE_GREEN]),
+        [YELLOW] = strain_percent(&t->strain[SINGE_YELLOW]),
+        [FALL] = {.number = {t->fall[0], t->fall[1], t->fall[2]}},
+        [OFF] = bench_number(motion_error(setup, t)),
+        [SPEED] = bench_number(t->speed_max),
+        [RESULT] = bench_text(t->diverged ? "diverged" : "ok"),
+    };
+    return table_add(table, row);
+}
+
+static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, double seconds, const BenchList *cells,
+                           const BenchList *thickness, BenchTable *table, SingeError *error) {
+    const int steps = options->steps ? options->steps : DEFAULT_STEPS;
+    const int frames = (int)fmax(1, round((options->time > 0 ? options->time : seconds) * BENCH_FPS));
+    setup->pins = options->pins ? options->pins : 2;
+    setup->time_step = 1.0f / (float)(BENCH_FPS * steps);
+    for (int c = 0; c < cells->count; c++)
+        for (int t = 0; t < thickness->count; t++) {
+            setup->cells = (int)cells->values[c], setup->thickness = (float)thickness->values[t];
+            Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
+            bool added = trajectory && add_row(table, setup, steps, trajectory);
+            trajectory_free(trajectory);
+            if (!trajectory) return error->code;
+            if (!added) return SINGE_ERROR_MEMORY;
+        }
+    return SINGE_OK;
+}
+
+SingeResult bench_swing(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 4, (const double[]){32, 50, 100, 150});
+    BenchList thickness = bench_list(&options->thickness, 3, (const double[]){1e-3, 2e-3, 5e-3});
+    BenchSetup setup = sheet_setup(options, BENCH_SWING, DEFAULT_STEPS);
+    if (options->smoothing < 0) setup.solver.smoothing = 0; // no damping of any kind
+    *table = table_begin("swing", columns, COLUMNS, table->text);
+    return run_all(options, &setup, 1, &cells, &thickness, table, error);
+}
+
+SingeResult bench_hang_and_shrink(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 2, (const double[]){50, 100});
+    BenchList thickness = bench_list(&options->thickness, 3, (const double[]){1e-3, 2e-3, 5e-3});
+    BenchSetup setup = sheet_setup(options, BENCH_SHRINK, DEFAULT_STEPS);
+    *table = table_begin("hang-and-shrink", columns, COLUMNS, table->text);
+    return run_all(options, &setup, 2, &cells, &thickness, table, error);
+}

@@ -1,0 +1,120 @@
+// singe bench MEASUREMENT: what the solver costs and how well it holds, measured on this machine.
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "cli/args.h"
+#include "cli/bench_args.h"
+#include "cli/bench_plot.h"
+#include "cli/cli.h"
+#include "cli/console.h"
+
+#define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
+#define SOLVER (BENCH_BIT(SOLVER) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(SUBSTEPS))
+#define TRAJECTORY                                                                                               \
+    (BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(PINS) | BENCH_BIT(TIME) | BENCH_BIT(STEPS) |            \
+     BENCH_BIT(SMOOTHING) | BENCH_BIT(THREADS) | SOLVER | OUTPUT)
+#define SIZES (BENCH_BIT(SPRINGS) | BENCH_BIT(TIMED) | BENCH_BIT(THREADS) | OUTPUT)
+
+static const struct {
+    const char *name, *full_name;
+    BenchFn *run;
+    unsigned accepted; ///< options
+    const char *summary;
+} measurements[] = {
+    {"swing", "bench swing", bench_swing, TRAJECTORY,
+     "A sheet of 1 m x 1 m falls from the horizontal, held at corners: cost of a frame, strain, motion."},
+    {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
+     "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers."},
+    {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
+     "The stage dynamics and its projection of springs by size, against the machine's peaks."},
+    {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT),
+     "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
+    {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
+    {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
+    {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
+     "Bytes a spring: what a simulation holds, and its drawn mesh."},
+    {"compare", "bench compare", bench_compare,
+     BENCH_BIT(SPRINGS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
+     "The paper's solver and ours on the same trajectories: error, cost, and the ratio at no more error."},
+    {"width", "bench width", bench_width, SIZES | BENCH_BIT(SUBSTEPS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(STATE),
+     "The same run with each set of instructions: cost, and whether the bytes are the same."},
+    {"stability", "bench stability", bench_stability,
+     BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
+         OUTPUT,
+     "Swing and strong shrink over thickness, resolution and time step: does it hold?"},
+    {"look", "bench look", bench_look,
+     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
+         BENCH_BIT(QUICK) | SOLVER | OUTPUT,
+     "Rest shape, sag and wrinkles at other time steps, substeps and resolutions."},
+};
+
+enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
+
+static void help(void) {
+    printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
+    for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
+    printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
+    printf("\n  singe bench MEASUREMENT --help   its options\n");
+}
+
+static ExitCode write_csv(Console *console, const char *path, const BenchTable *table) {
+    FILE *file = fopen(path, "w");
+    if (file) table_write_csv(table, file);
+    bool failed = !file || ferror(file);
+    if (file && fclose(file)) failed = true;
+    if (failed) console_error(console, "cannot write %s: %s", path, strerror(errno));
+    return failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
+/// A refused argument is the user's, all else went wrong on the way.
+static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
+
+static ExitCode measure(int m, const BenchRequest *request) {
+    Console console = console_make(false);
+    BenchTable table = {.text = request->json ? NULL : stdout};
+    SingeError error = {.element = -1};
+    SingeResult result = measurements[m].run(&request->options, &table, &error);
+    ExitCode code = EXIT_GOOD;
+    if (result) {
+        fflush(stdout);
+        error.code = result;
+        console_result(&console, &error);
+        code = exit_code(result);
+    }
+    if (!result && request->json) table_write_json(&table, stdout);
+    if (!result && request->csv) code = write_csv(&console, request->csv, &table);
+    table_free(&table);
+    return code;
+}
+
+/// The measurement's index, or -1 after a message.
+static int find(const char *word) {
+    for (int i = 0; i < MEASUREMENTS; i++)
+        if (strcmp(measurements[i].name, word) == 0) return i;
+    const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
+    fprintf(stderr, "singe bench: error: unknown measurement '%s'", word);
+    if (near) fprintf(stderr, "; did you mean '%s'?", near);
+    fputs("\nsee: singe bench --help\n", stderr);
+    return -1;
+}
+
+int command_bench(int argc, char **argv) {
+    if (argc < 1) {
+        fputs("singe bench: error: needs a measurement\nsee: singe bench --help\n", stderr);
+        return EXIT_INPUT;
+    }
+    if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
+        help();
+        return EXIT_GOOD;
+    }
+    if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);
+    int m = find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
+    if (m < 0) return EXIT_INPUT;
+    BenchRequest request;
+    int end = bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
+                              argv + 1, &request);
+    if (end == ARG_HELP) return EXIT_GOOD;
+    return end == ARG_END ? measure(m, &request) : EXIT_INPUT;
+}

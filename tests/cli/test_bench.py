@@ -1,0 +1,187 @@
+"""singe bench: every measurement at a tiny size, its JSON and CSV, and what is refused."""
+
+import csv
+import json
+import math
+import os
+import unittest
+import xml.dom.minidom
+
+from support import Case
+
+# a measurement, options that make it short, and keys that its rows must have
+TINY = (
+    ("swing", ["--cells", "6,8", "--thickness", "2", "--time", "0.1"], ["cpu_ms", "blue_pct_max", "fall_m_0.33"]),
+    ("hang-and-shrink", ["--cells", "8", "--thickness", "2", "--time", "0.1"], ["blue_pct_p99", "speed", "result"]),
+    ("dynamics", ["--springs", "250,1000", "--steps", "3", "--quick"], ["step_ms", "ns_spring_sweep", "blue_pct_mean"]),
+    ("dynamics", ["--springs", "250", "--steps", "3", "--quick", "--state", "shrink", "--threads", "2"], ["gflops"]),
+    ("step", ["--springs", "1000", "--steps", "3"], ["step_ms", "heat_ms", "contacts"]),
+    ("heat", ["--springs", "1000", "--steps", "3"], ["stage_ms"]),
+    ("ablate", ["--springs", "1000", "--steps", "3"], ["springs_gone"]),
+    ("memory", ["--springs", "1000"], ["bytes_spring", "all_bytes_spring"]),
+    ("compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio", "no_more_error"]),
+    ("--compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio"]),
+    ("width", ["--springs", "1000", "--steps", "5"], ["instructions", "bytes"]),
+    ("stability", ["--cells", "8", "--quick", "--time", "0.1"], ["result", "max_strain_pct"]),
+    ("look", ["--cells", "8", "--quick", "--time", "0.2"], ["sag_m", "shape_mm", "wavelength_mm"]),
+)
+
+
+class Bench(Case):
+    def measure(self, *args):
+        return json.loads(self.singe("bench", *args, "--json")[0])
+
+    def test_tables(self):
+        for name, options, keys in TINY:
+            with self.subTest(name):
+                out, err = self.singe("bench", name, *options)
+                self.assertEqual(err, "")
+                self.assertGreaterEqual(len(out.splitlines()), 2)
+
+    def test_json_and_csv(self):
+        for name, options, keys in TINY:
+            with self.subTest(name):
+                path = self.path("table.csv")
+                result = self.measure(name, *options, "--csv", path)
+                self.assertEqual(result["command"], name.lstrip("-"))
+                self.assertTrue(result["machine"])
+                rows = result["rows"]
+                self.assertGreaterEqual(len(rows), 1)
+                for key in keys:
+                    self.assertIn(key, rows[0])
+                with open(path, newline="") as file:
+                    table = list(csv.DictReader(line for line in file if not line.startswith("#")))
+                self.assertEqual([list(row) for row in table], [list(row) for row in rows])
+                for line, row in zip(table, rows):
+                    for key, value in row.items():
+                        if value is None:
+                            self.assertEqual(line[key], "")
+                        if isinstance(value, float):
+                            self.assertAlmostEqual(float(line[key]), value, delta=1e-5 * abs(value))
+
+    def test_same_springs_and_cells(self):
+        rows = self.measure("memory", "--springs", "1000,4000")["rows"]
+        self.assertEqual([row["springs"] for row in rows], [1000, 4000])
+        rows = self.measure("swing", "--cells", "6,8", "--thickness", "1,2.5", "--time", "0.05")["rows"]
+        self.assertEqual([(r["cells"], r["thickness_mm"]) for r in rows], [(6, 1), (6, 2.5), (8, 1), (8, 2.5)])
+
+    def test_swing_falls(self):
+        """The motion that all solvers converge to, within what eight cells can show."""
+        row = self.measure("swing", "--cells", "8", "--thickness", "1", "--time", "1")["rows"][0]
+        self.assertEqual(row["result"], "ok")
+        self.assertAlmostEqual(row["fall_m_0.33"], -0.373, delta=0.03)
+        self.assertLess(row["blue_pct_mean"], 1)
+        self.assertGreater(row["cpu_ms"], 0)
+
+    def test_shrink_ends_at_its_ratio(self):
+        """A sheet held by one corner, far from any stress, ends with lengths of 0.8."""
+        options = ["--cells", "8", "--thickness", "5", "--pins", "1", "--time", "1.2"]
+        row = self.measure("hang-and-shrink", *options)["rows"][0]
+        self.assertEqual(row["result"], "ok")
+        self.assertTrue(math.isfinite(row["speed"]))
+        self.assertLess(row["blue_pct_mean"], 1, "strain is measured against the lengths that shrink")
+
+    def test_peaks(self):
+        result = self.measure("dynamics", "--springs", "250", "--steps", "2", "--quick")
+        self.assertGreater(result["fma_gflops"], 0.1)
+        self.assertGreater(result["stream_24k_gb_s"], 0.1)
+
+    def test_width_begins_with_plain(self):
+        rows = self.measure("width", "--springs", "1000", "--steps", "5")["rows"]
+        self.assertEqual(rows[0]["instructions"], "plain")
+        self.assertEqual({row["bytes"] for row in rows} - {"same", "not here"}, set())
+
+    def test_limit(self):
+        out, err = self.singe("bench", "step", "--springs", "1000", "--steps", "3", "--limit-ms", "0.001", expect=1)
+        self.assertIn("above the limit of 0.001 ms", err)
+        self.singe("bench", "step", "--springs", "1000", "--steps", "3", "--limit-ms", "10000")
+
+    def test_plot(self):
+        table, picture = self.path("a&b.csv"), self.path("cost.svg")
+        self.singe("bench", "dynamics", "--springs", "250,1000", "--steps", "2", "--quick", "--csv", table)
+        out, _ = self.singe("bench", "plot", table, table, "-o", picture)
+        self.assertEqual(out.strip(), picture)
+        texts = [node.firstChild.data for node in xml.dom.minidom.parse(picture).getElementsByTagName("text")]
+        self.assertIn("strand, 1 thread, a&b", texts)
+        self.assertTrue(any("Table 2" in text for text in texts))
+
+    def test_plot_refuses(self):
+        for text, hint in (
+            ("", "no rows"),
+            ("# nothing\n", "no rows"),
+            ("springs,ms\n1,2\n", "columns springs and step_ms"),
+            ("springs,step_ms\n", "no rows"),
+            ("springs,step_ms\n1000\n", "bad.csv:2: has fewer fields"),
+            ("springs,step_ms\n1000,fast\n", "bad.csv:2: springs and step_ms must be numbers"),
+            ("springs,step_ms\n1000,-1\n", "numbers above 0"),
+            ("springs,step_ms\n1000,nan\n", "numbers above 0"),
+            ("solver,springs,step_ms\n" + "".join(f"s{i},1,1\n" for i in range(40)), "more curves"),
+            ("springs,step_ms\n" + "1,1\n" * 100, "more curves or points"),
+            ("," * 9000, "columns"),
+        ):
+            with self.subTest(text[:40]):
+                with open(self.path("bad.csv"), "w") as file:
+                    file.write(text)
+                _, err = self.singe("bench", "plot", self.path("bad.csv"), "-o", self.path("x.svg"), expect=2)
+                self.assertIn(hint, err)
+                self.assertFalse(os.path.exists(self.path("x.svg")))
+        self.assertIn("needs -o", self.singe("bench", "plot", self.write_csv(), expect=2)[1])
+        self.assertIn("needs FILE", self.singe("bench", "plot", "-o", self.path("x.svg"), expect=2)[1])
+        self.assertIn("nothing.csv", self.singe("bench", "plot", "nothing.csv", "-o", "x", expect=2, cwd=self.dir)[1])
+        bad = self.path("no", "where.svg")
+        self.assertIn("cannot write", self.singe("bench", "plot", self.write_csv(), "-o", bad, expect=1)[1])
+
+    def write_csv(self):
+        path = self.path("good.csv")
+        with open(path, "w") as file:
+            file.write("springs,step_ms\n1000,1\n")
+        return path
+
+    def test_help(self):
+        out, _ = self.singe("bench", "--help")
+        for name, options, _ in TINY:
+            self.assertIn(name.lstrip("-"), out)
+            help = self.singe("bench", name, "--help")[0]
+            self.assertIn(f"usage: singe bench {name.lstrip('-')}", help)
+            for option in options:
+                if option.startswith("--"):
+                    self.assertIn(option, help)
+        self.assertIn("-o, --out", self.singe("bench", "plot", "--help")[0])
+
+    def test_bad_usage(self):
+        for args, hint in (
+            ([], "needs a measurement"),
+            (["swin"], "did you mean 'swing'?"),
+            (["--swing"], "unknown measurement"),
+            (["swing", "x"], "one argument too many"),
+            (["swing", "--cells", "1"], "whole numbers from 2 to 2000"),
+            (["swing", "--cells", "8,"], "whole numbers from 2 to 2000"),
+            (["swing", "--cells", "8.5"], "whole numbers"),
+            (["swing", "--cells", ""], "whole numbers"),
+            (["swing", "--cells", "nan"], "whole numbers"),
+            (["swing", "--cells", ",".join(["8"] * 17)], "at most 16"),
+            (["swing", "--thickness", "0"], "millimetres"),
+            (["swing", "--pins", "3"], "from 1 to 2"),
+            (["swing", "--time", "0"], "seconds from 0.01 to 60"),
+            (["swing", "--time", "1s"], "seconds from 0.01 to 60"),
+            (["swing", "--substeps", "0"], "from 1 to 1000"),
+            (["swing", "--threads", "65"], "from 1 to 64"),
+            (["swing", "--springs", "1000"], "unknown option"),
+            (["dynamics", "--springs", "10"], "from 40 to 40000000"),
+            (["dynamics", "--solver", "best"], "strand, paper"),
+            (["dynamics", "--instructions", "v5"], "v2, v3 or v4"),
+            (["dynamics", "--state", "still"], "swing or shrink"),
+            (["dynamics", "--json=1"], "takes no value"),
+            (["step", "--limit-ms", "-1"], "milliseconds"),
+            (["memory", "--steps", "3"], "unknown option"),
+        ):
+            with self.subTest(args=args):
+                self.assertIn(hint, self.singe("bench", *args, expect=2)[1])
+
+    def test_csv_that_cannot_be_written(self):
+        _, err = self.singe("bench", "memory", "--springs", "250", "--csv", self.path("no", "x.csv"), expect=1)
+        self.assertIn("cannot write", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
