@@ -12,6 +12,7 @@
 // has come free of a source is let go at once. A sheet whose mesh may stretch by its compliance has none.
 #include "dynamics/attach.h"
 
+#include "base/quad.h"
 #include "base/vec.h"
 
 /// Steps between two measurements while a sheet burns: a search costs as much as several steps.
@@ -126,15 +127,23 @@ typedef struct Attach {
     float (*position)[4];
 } Attach;
 
-/// Distances in space between a sheet's sources. Returns whether two are farther apart than the sheet reaches.
-static bool attach_spread(const Attach *job, const uint32_t *source, float (*apart)[ATTACH_SOURCES],
-                          float (*ratio)[ATTACH_SOURCES]) {
+/// How far apart a sheet's sources are, in space and over what the sheet reaches between them.
+typedef struct Spread {
+    int count;
+    float apart[ATTACH_SOURCES][ATTACH_SOURCES], ratio[ATTACH_SOURCES][ATTACH_SOURCES];
+} Spread;
+
+/// Returns whether two sources are farther apart than the sheet reaches.
+static bool attach_spread(const Attach *job, const uint32_t *source, Spread *spread) {
     bool tight = false;
-    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++)
-        for (int q = 0; q < ATTACH_SOURCES && source[q] != SHELL_NONE; q++) {
-            apart[p][q] = vec_length(vec_sub(vec_load(job->position[source[p]]), vec_load(job->position[source[q]])));
-            ratio[p][q] = p == q ? 1 : apart[p][q] / job->attachments->length[source[p]][q];
-            tight |= ratio[p][q] > 1;
+    *spread = (Spread){0};
+    while (spread->count < ATTACH_SOURCES && source[spread->count] != SHELL_NONE) spread->count++;
+    for (int p = 0; p < spread->count; p++)
+        for (int q = 0; q < spread->count; q++) {
+            Vec way = vec_sub(vec_load(job->position[source[p]]), vec_load(job->position[source[q]]));
+            spread->apart[p][q] = vec_length(way);
+            spread->ratio[p][q] = p == q ? 1 : spread->apart[p][q] / job->attachments->length[source[p]][q];
+            tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
         }
     return tight;
 }
@@ -142,38 +151,61 @@ static bool attach_spread(const Attach *job, const uint32_t *source, float (*apa
 /// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
 /// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
 /// most f and so far that the spheres overlap by a margin.
-static void attach_stretch(const uint32_t *source, const float (*apart)[ATTACH_SOURCES],
-                           const float (*ratio)[ATTACH_SOURCES], const float *length, float *stretched) {
+static void attach_stretch(const Spread *spread, const float *length, float *stretched) {
     const float margin = 1.15f;
-    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++) {
+    for (int p = 0; p < spread->count; p++) {
         float factor = 1;
-        for (int q = 0; q < ATTACH_SOURCES && source[q] != SHELL_NONE; q++) {
-            float enough = margin * apart[p][q] / (length[p] + length[q]);
-            factor = fmaxf(factor, enough < ratio[p][q] ? enough : ratio[p][q]);
+        for (int q = 0; q < spread->count; q++) {
+            float enough = margin * spread->apart[p][q] / (length[p] + length[q]);
+            factor = fmaxf(factor, enough < spread->ratio[p][q] ? enough : spread->ratio[p][q]);
         }
         stretched[p] = factor * length[p];
     }
 }
 
-static void attach_sheet(const Attach *job, const uint32_t *source, int begin, int end) {
-    float apart[ATTACH_SOURCES][ATTACH_SOURCES], ratio[ATTACH_SOURCES][ATTACH_SOURCES], stretched[ATTACH_SOURCES];
-    bool tight = attach_spread(job, source, apart, ratio);
-    for (int i = begin; i < end; i++) {
-        float *x = job->position[i];
-        if (x[3] == 0) continue;
-        const float *length = job->attachments->length[i];
-        if (tight) {
-            attach_stretch(source, (const float(*)[ATTACH_SOURCES])apart, (const float(*)[ATTACH_SOURCES])ratio, length,
-                           stretched);
-            length = stretched;
-        }
-        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
-            if (job->piece[i] != job->piece[source[k]] || job->position[source[k]][3] > 0) continue;
-            Vec anchor = vec_load(job->position[source[k]]), way = vec_sub(vec_load(x), anchor);
-            float square = vec_dot(way, way);
-            if (square > length[k] * length[k]) vec_store(x, vec_mad(anchor, way, length[k] / sqrtf(square)));
-        }
+/// Four particles, source after source, without branches.
+static void attach_four(const Attach *job, const uint32_t *source, int count, int first) {
+    float *position = job->position[first];
+    Quad x[4], length[4]; // by particle, then by coordinate and by source
+    for (int i = 0; i < 4; i++) {
+        x[i] = quad_load(position + 4 * i);
+        length[i] = quad_load(job->attachments->length[first + i]);
     }
+    quad_transpose(x);
+    quad_transpose(length);
+    QuadMask piece = quad_load_ints(job->piece + first), free = x[3] > 0;
+    for (int k = 0; k < count; k++) {
+        const float *anchor = job->position[source[k]];
+        if (anchor[3] > 0) continue; // no longer held
+        Quad dx = x[0] - anchor[0], dy = x[1] - anchor[1], dz = x[2] - anchor[2];
+        Quad square = dx * dx + dy * dy + dz * dz, most = length[k] * length[k];
+        QuadMask far = (square > most) & free & (piece == job->piece[source[k]]);
+        Quad factor = quad_sqrt(quad_select(far, most / square, quad_all(1)));
+        x[0] = quad_select(far, anchor[0] + dx * factor, x[0]);
+        x[1] = quad_select(far, anchor[1] + dy * factor, x[1]);
+        x[2] = quad_select(far, anchor[2] + dz * factor, x[2]);
+    }
+    quad_transpose(x);
+    for (int i = 0; i < 4; i++) quad_store(position + 4 * i, x[i]);
+}
+
+/// One particle, where sources are too far apart for the sheet or where less than four are left.
+static void attach_one(const Attach *job, const uint32_t *source, const Spread *spread, int i) {
+    float *x = job->position[i], length[ATTACH_SOURCES];
+    attach_stretch(spread, job->attachments->length[i], length);
+    for (int k = 0; k < spread->count; k++) {
+        if (x[3] == 0 || job->piece[i] != job->piece[source[k]] || job->position[source[k]][3] > 0) continue;
+        Vec anchor = vec_load(job->position[source[k]]), way = vec_sub(vec_load(x), anchor);
+        float square = vec_dot(way, way), most = length[k] * length[k];
+        if (square > most) vec_store(x, vec_mad(anchor, way, sqrtf(most / square)));
+    }
+}
+
+static void attach_sheet(const Attach *job, const uint32_t *source, int begin, int end) {
+    Spread spread;
+    bool tight = attach_spread(job, source, &spread);
+    for (; !tight && begin + 4 <= end; begin += 4) attach_four(job, source, spread.count, begin);
+    for (; begin < end; begin++) attach_one(job, source, &spread, begin);
 }
 
 static void attach_range(void *task, int begin, int end) {

@@ -13,6 +13,27 @@ typedef struct Contact {
     const DynamicsState *dynamics;
 } Contact;
 
+MovingCollider contact_collider(const Collider *collider, double before, double after) {
+    const SingeColliderDef *def = &collider->def;
+    MovingCollider moving = {.def = def, .before = path_pose(&collider->path, before),
+                             .after = path_pose(&collider->path, after), .reach = def->offset};
+    moving.normal = quat_rotate(moving.after.rotation, vec(0, 0, 1));
+    switch (def->kind) {
+    case SINGE_COLLIDER_PLANE: break;
+    case SINGE_COLLIDER_SPHERE: moving.reach += def->radius; break;
+    case SINGE_COLLIDER_BOX: moving.reach += vec_length(vec_load(def->half_size)); break;
+    case SINGE_COLLIDER_CAPSULE: moving.reach += def->radius + def->height / 2; break;
+    }
+    moving.reach *= 1 + 1e-6f; // for rounding
+    return moving;
+}
+
+static bool contact_is_near(const MovingCollider *collider, Vec x) {
+    Vec way = vec_sub(x, collider->after.position);
+    return collider->def->kind == SINGE_COLLIDER_PLANE ? vec_dot(way, collider->normal) < collider->reach
+                                                       : vec_dot(way, way) < collider->reach * collider->reach;
+}
+
 static bool contact_particle(const MovingCollider *collider, Vec previous, float *position) {
     const SingeColliderDef *def = collider->def;
     Vec x = vec_load(position), local = pose_unapply(&collider->after, x), local_normal;
@@ -35,10 +56,14 @@ static double contact_range(void *task, int begin, int end) {
     Contact *job = task;
     double contacts = 0;
     for (int i = begin; i < end; i++) {
-        if (job->plan->inverse_mass[i] == 0) continue;
-        Vec previous = vec_mad(vec_load(job->plan->predicted[i]), vec_load(job->dynamics->velocity[i]), -job->h);
-        for (uint32_t c = 0; c < job->collider_count; c++)
-            contacts += contact_particle(&job->plan->colliders[c], previous, job->dynamics->position[i]);
+        float *x = job->dynamics->position[i];
+        if (x[3] == 0) continue;
+        for (uint32_t c = 0; c < job->collider_count; c++) {
+            const MovingCollider *collider = &job->plan->colliders[c];
+            if (!contact_is_near(collider, vec_load(x))) continue;
+            Vec previous = vec_mad(vec_load(job->plan->predicted[i]), vec_load(job->dynamics->velocity[i]), -job->h);
+            contacts += contact_particle(collider, previous, x);
+        }
     }
     return contacts;
 }

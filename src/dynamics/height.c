@@ -20,24 +20,30 @@ typedef struct Height {
     const uint32_t *cells; ///< of the family
 } Height;
 
+/// Whether a height is enough, by its square: `above` is the height times |n|, `square` is |n|^2.
+static bool height_is_enough(float above, float square, float enough) {
+    return above > 0 && above * above >= enough * enough * square;
+}
+
 static void height_cell(const Height *job, uint32_t c) {
-    const float *w = job->plan->inverse_mass;
     float(*x)[4] = job->position;
     const SingeSolverDef *solver = &job->plan->settings.solver;
     uint32_t centre = shell_centre(job->shell, c);
     const uint32_t *corner = job->shell->cells[c];
     Vec p[4];
     for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]);
-    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
     Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
-    float height = vec_dot(vec_sub(vec_load(x[centre]), mean), normal);
-    float missing = solver->height_min * job->shell->matter.thickness[centre] - height;
-    if (missing <= 0) return;
-    float weight = w[centre] + (w[corner[0]] + w[corner[1]] + w[corner[2]] + w[corner[3]]) / 16;
+    float enough = solver->height_min * job->shell->matter.thickness[centre];
+    float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
+    if (height_is_enough(above, square, enough) || square == 0) return;
+    float length = sqrtf(square), missing = enough - above / length;
+    float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
+    float weight = x[centre][3] + (w[0] + w[1] + w[2] + w[3]) / 16;
     if (weight <= 0) return;
-    float lambda = solver->height_gain * missing / weight;
-    vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, w[centre] * lambda));
-    for (int i = 0; i < 4; i++) vec_store(x[corner[i]], vec_mad(p[i], normal, -0.25f * w[corner[i]] * lambda));
+    float push = solver->height_gain * missing / (weight * length);
+    vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, x[centre][3] * push));
+    for (int i = 0; i < 4; i++) vec_store(x[corner[i]], vec_mad(p[i], normal, -0.25f * w[i] * push));
 }
 
 static void height_range(void *task, int begin, int end) {

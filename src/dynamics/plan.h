@@ -8,10 +8,13 @@
 
 #include <stdatomic.h>
 
-/// A collider at the two ends of a substep.
+/// A collider at the two ends of a substep. What is farther from it than it reaches is known without its shape: of
+/// a plane by (x - after.position) . normal, of the rest by |x - after.position|.
 typedef struct MovingCollider {
     const SingeColliderDef *def;
     Pose before, after;
+    Vec normal;
+    float reach; ///< m
 } MovingCollider;
 
 /// The strands of all colours, and scratch for the threads that solve them.
@@ -49,10 +52,11 @@ struct DynamicsPlan {
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
                       DynamicsState *dynamics);
 
-/// Eq 8 and 9: velocities under gravity, drag and damping, then positions (predict.c).
-void dynamics_predict(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics);
+/// Closes a substep (eq 13), opens the next (eq 8 and 9), or both in one pass (move.c).
+void dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool closes, bool opens,
+                   DynamicsState *dynamics);
 
-/// Puts pinned particles on their paths (predict.c).
+/// Puts pinned particles on their paths (move.c).
 void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                          DynamicsState *dynamics);
 
@@ -66,6 +70,9 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 
 /// Internal friction of both layers over a step of h seconds (smooth.c).
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h, DynamicsState *dynamics);
+
+/// A collider between two times of a substep.
+MovingCollider contact_collider(const Collider *collider, double before, double after);
 
 /// Contact and friction with the colliders in plan->colliders (contact.c). Returns the number of contacts.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);

@@ -1,0 +1,35 @@
+// Four floats at once: the arithmetic of gcc's and clang's vector types, which every processor has some form of.
+#ifndef BASE_QUAD_H
+#define BASE_QUAD_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef float Quad __attribute__((vector_size(16)));
+typedef int32_t QuadMask __attribute__((vector_size(16))); ///< -1 where it holds, 0 elsewhere
+
+static inline Quad quad_load(const float *p) { Quad a; memcpy(&a, p, sizeof a); return a; }
+static inline void quad_store(float *p, Quad a) { memcpy(p, &a, sizeof a); }
+static inline QuadMask quad_load_ints(const int32_t *p) { QuadMask a; memcpy(&a, p, sizeof a); return a; }
+static inline Quad quad_all(float a) { return (Quad){a, a, a, a}; }
+static inline Quad quad_select(QuadMask mask, Quad yes, Quad no) {
+    return (Quad)((mask & (QuadMask)yes) | (~mask & (QuadMask)no));
+}
+static inline Quad quad_sqrt(Quad a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
+
+/// Four rows become four columns.
+static inline void quad_transpose(Quad q[4]) {
+#ifdef __clang__
+#define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#else
+#define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (QuadMask){i, j, k, l})
+#endif
+    Quad xy01 = QUAD_SHUFFLE(q[0], q[1], 0, 4, 1, 5), zw01 = QUAD_SHUFFLE(q[0], q[1], 2, 6, 3, 7);
+    Quad xy23 = QUAD_SHUFFLE(q[2], q[3], 0, 4, 1, 5), zw23 = QUAD_SHUFFLE(q[2], q[3], 2, 6, 3, 7);
+    q[0] = QUAD_SHUFFLE(xy01, xy23, 0, 1, 4, 5), q[1] = QUAD_SHUFFLE(xy01, xy23, 2, 3, 6, 7);
+    q[2] = QUAD_SHUFFLE(zw01, zw23, 0, 1, 4, 5), q[3] = QUAD_SHUFFLE(zw01, zw23, 2, 3, 6, 7);
+#undef QUAD_SHUFFLE
+}
+
+#endif

@@ -1,0 +1,76 @@
+// What a particle does by itself between two projections: eq 13 closes one substep,
+//
+//   v^ = v~ + (x^ - x~)/h
+//
+// (not (x^ - x)/h, which would round the whole motion at every substep), and eq 8 and 9 open the next, with the h
+// that eq 9 lacks:
+//
+//   v~ = v + h F_ext / m,   x~ = x + h v~
+//
+// F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken implicitly
+// (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
+//
+// The fourth numbers: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
+#include "base/quad.h"
+#include "dynamics/plan.h"
+
+typedef struct Move {
+    DynamicsPlan *plan;
+    const Shell *shell;
+    DynamicsState *dynamics;
+    float h;
+    bool closes, opens;
+} Move;
+
+/// Drag on a velocity that gravity and damping have been at.
+static Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad velocity) {
+    Vec normal = vec_load(plan->normal[i]), air = vec_load(plan->air[i]);
+    float slip = vec_dot(vec_sub((Vec){velocity[0], velocity[1], velocity[2]}, air), normal);
+    float k = h * plan->drag[i] * fabsf(slip), change = -slip * k / (1 + k);
+    return velocity + change * (Quad){normal.x, normal.y, normal.z, 0};
+}
+
+static void move_range(void *task, int begin, int end) {
+    const Move job = *(const Move *)task;
+    DynamicsPlan *plan = job.plan;
+    const float *damping = job.shell->matter.damping, *gravity = plan->settings.gravity;
+    float h = job.h, inverse_h = 1 / h;
+    Quad fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
+    for (int i = begin; i < end; i++) {
+        float *x = job.dynamics->position[i], *v = job.dynamics->velocity[i], *predicted = plan->predicted[i];
+        if (x[3] == 0) continue; // pinned or gone
+        Quad place = quad_load(x), velocity = quad_load(v);
+        if (job.closes) velocity += (place - quad_load(predicted)) * inverse_h;
+        if (job.opens) {
+            velocity = (velocity + fall) * (1 / (1 + h * damping[i]));
+            if (plan->drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
+            place += h * velocity;
+            quad_store(x, place);
+            quad_store(predicted, place);
+        }
+        quad_store(v, velocity);
+    }
+}
+
+void dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool closes, bool opens,
+                   DynamicsState *dynamics) {
+    Move job = {plan, shell, dynamics, h, closes, opens};
+    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, move_range, &job);
+}
+
+void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+                         DynamicsState *dynamics) {
+    for (uint32_t p = 0; p < pins->count; p++) {
+        const Pin *pin = &pins->items[p];
+        if (pin->generation == 0) continue;
+        Pose pose = path_pose(&pin->path, time);
+        for (uint32_t k = 0; k < pin->count; k++) {
+            uint32_t i = pin->particles[k];
+            if (!(ablate->particle_flags[i] & SINGE_ALIVE)) continue;
+            Vec place = pose_apply(&pose, vec_load(pin->anchors[k]));
+            vec_store(dynamics->velocity[i], vec_scale(vec_sub(place, vec_load(dynamics->position[i])), 1 / h));
+            vec_store(dynamics->position[i], place);
+            vec_store(plan->predicted[i], place);
+        }
+    }
+}
