@@ -11,7 +11,7 @@ static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
     bool ok = NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
-              NEW(memory, plan->cell_normal, plan->cell_count) &&
+              NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, plan->cell_count) &&
               NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     return ok;
@@ -49,6 +49,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->predicted, plan->particle_count);
     FREE(memory, plan->soft, plan->particle_count);
     FREE(memory, plan->cell_normal, plan->cell_count);
+    FREE(memory, plan->height_wait, plan->cell_count);
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
     strands_free(memory, &plan->strands);
@@ -132,8 +133,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         for (int projection = 0; projection < solver->projections; projection++)
             dynamics_project(plan, shell, &state->ablate, pool, h_sub, dynamics, counters);
         counters->seconds += clock_seconds() - start;
-        // the order of layers is lost slowly: it is seen to at every third substep
-        if ((solver->substeps - substep) % 3 == 1) height_project(plan, shell, &state->ablate, pool, dynamics);
+        height_project(plan, shell, &state->ablate, pool, dynamics);
         counters->contacts += contact_project(plan, collider_count, pool, h_sub, dynamics);
         dynamics_move(plan, shell, pool, h_sub, true, substep + 1 < solver->substeps, dynamics);
     }

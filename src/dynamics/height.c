@@ -9,8 +9,11 @@
 //
 // which keeps linear momentum: what holds a centre up presses its corners down. Angular momentum it keeps where the
 // centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
-// share no corner; family follows family.
+// share no corner; family follows family. A centre twice as high as it must be is left alone for some substeps.
 #include "dynamics/plan.h"
+
+/// Substeps.
+enum { HEIGHT_WAIT = 5 };
 
 typedef struct Height {
     DynamicsPlan *plan;
@@ -36,6 +39,7 @@ static void height_cell(const Height *job, uint32_t c) {
     Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
     float enough = solver->height_min * job->shell->matter.thickness[centre];
     float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
+    if (height_is_enough(above, square, 2 * enough)) job->plan->height_wait[c] = HEIGHT_WAIT;
     if (height_is_enough(above, square, enough) || square == 0) return;
     float length = sqrtf(square), missing = enough - above / length;
     float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
@@ -48,8 +52,12 @@ static void height_cell(const Height *job, uint32_t c) {
 
 static void height_range(void *task, int begin, int end) {
     const Height *job = task;
-    for (int k = begin; k < end; k++)
-        if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) height_cell(job, job->cells[k]);
+    uint8_t *wait = job->plan->height_wait;
+    for (int k = begin; k < end; k++) {
+        uint32_t c = job->cells[k];
+        if (wait[c] > 0) wait[c]--;
+        else if (job->ablate->cell_flags[c] & SINGE_ALIVE) height_cell(job, c);
+    }
 }
 
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,

@@ -41,6 +41,7 @@ struct DynamicsPlan {
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
     Attachments attachments;
+    uint8_t *height_wait;    ///< [cells] substeps for which a centre needs no look; 0 at the start of a step
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;

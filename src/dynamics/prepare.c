@@ -27,6 +27,7 @@ static void prepare_cells(void *task, int begin, int end) {
         Vec a = vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]]));
         Vec b = vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]));
         vec_store(job->plan->cell_normal[c], vec_cross(a, b));
+        job->plan->height_wait[c] = 0;
     }
 }
 

@@ -125,7 +125,7 @@ static void test_inverted_cells_are_mended(void **unused) {
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         before += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
     assert_true(bench_height(&bench, 9) < 0);
-    for (int pass = 0; pass < 30; pass++)
+    for (int pass = 0; pass < 60; pass++)
         height_project(bench.plan, &bench.shell, &bench.state.ablate, bench.pool, &bench.state.dynamics);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         after += (double)bench.state.dynamics.position[i][2] / (double)bench.plan->inverse_mass[i];
