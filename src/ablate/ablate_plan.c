@@ -6,7 +6,7 @@
 static void mark_rim(AblatePlan *plan, const Shell *shell) {
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++)
-            if (shell->cell_springs[c].neighbour[i] == SHELL_NONE)
+            if (shell_neighbour(shell, c, i) == SHELL_NONE)
                 plan->rim[shell->cells[c][i]] = plan->rim[shell->cells[c][(i + 1) & 3]] = 1;
 }
 

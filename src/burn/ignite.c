@@ -7,14 +7,15 @@
 /// Marks new ignitions and leaves their number in every block's partial.
 static void mark_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
-    const float *temperature = job->state->heat.temperature, *ignition = job->shell->matter.ignition_temperature;
+    const float *temperature = job->state->heat.temperature;
+    const Field ignition = job->shell->matter.ignition_temperature;
     const uint8_t *flags = job->state->ablate.particle_flags;
     float *time_ignited = job->burn->time_ignited;
     for (int block = begin; block < end; block++) {
         uint32_t first, last, count = 0;
         burn_block(job, block, &first, &last);
         for (uint32_t i = first; i < last; i++) {
-            if (time_ignited[i] != NEVER || temperature[i] < ignition[i] || !(flags[i] & SINGE_ALIVE)) continue;
+            if (time_ignited[i] != NEVER || temperature[i] < field_at(ignition, i) || !(flags[i] & SINGE_ALIVE)) continue;
             time_ignited[i] = JUST_NOW;
             count++;
         }

@@ -18,9 +18,9 @@ typedef struct ShrinkJob {
 } ShrinkJob;
 
 static float length_ratio(const Matter *matter, const float *mass, uint32_t a, uint32_t b) {
-    float volume_a = burn_volume_ratio(mass[a], matter->mass_min[a], matter->ash_density[a]);
-    float volume_b = burn_volume_ratio(mass[b], matter->mass_min[b], matter->ash_density[b]);
-    float shrink = 0.5f * (matter->shrink[a] + matter->shrink[b]);
+    float volume_a = burn_volume_ratio(mass[a], field_at(matter->mass_min, a), field_at(matter->ash_density, a));
+    float volume_b = burn_volume_ratio(mass[b], field_at(matter->mass_min, b), field_at(matter->ash_density, b));
+    float shrink = 0.5f * (field_at(matter->shrink, a) + field_at(matter->shrink, b));
     float ratio = 1 - shrink * (1 - 0.5f * (volume_a + volume_b));
     return ratio < LEAST_RATIO ? LEAST_RATIO : ratio;
 }

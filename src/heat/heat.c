@@ -45,15 +45,15 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             plan->star[i] = T, plan->delta[i] = 0;
             continue;
         }
-        float combustion = matter->heating[i] * burn_rate[i] * h;
+        float combustion = field_at(matter->heating, i) * burn_rate[i] * h;
         float T1 = T + combustion;
         float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
         float T2 = T1 + warmth * flux;
-        float floor_mass = matter->loss_mass_floor[i], burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
-        float radiation = matter->emissivity[i] * STEFAN_BOLTZMANN;
-        float exchange = matter->convection[i] + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
+        float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
+        float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
+        float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
         float rate = warmth * exchange / burnt * slower; // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;

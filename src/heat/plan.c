@@ -11,11 +11,11 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, count = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
-        diffusivity += matter->diffusivity[i];
-        rate += matter->mass_rate[i];
-        heating += matter->heating[i];
-        ignition += matter->ignition_temperature[i];
-        ceiling += matter->rate_ceiling[i];
+        diffusivity += field_at(matter->diffusivity, i);
+        rate += field_at(matter->mass_rate, i);
+        heating += field_at(matter->heating, i);
+        ignition += field_at(matter->ignition_temperature, i);
+        ceiling += field_at(matter->rate_ceiling, i);
         count++;
     }
     if (count == 0) return 1;

@@ -69,7 +69,7 @@ static void start_particles(const Shell *shell, State *state) {
             state->dynamics.position[p][k] = shell->rest_position[p][k];
             state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
         }
-        state->heat.temperature[p] = state->heat.temperature_peak[p] = shell->matter.temperature[p];
+        state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
         state->burn.mass[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;

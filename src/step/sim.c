@@ -162,7 +162,7 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
         return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
     if (sim->sheet_count == sim->sheet_capacity) {
-        uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 4;
+        uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 1;
         if (!memory_grow(&sim->memory, &sim->sheets, sim->sheet_capacity, grown, sizeof *sim->sheets))
             return sim_fail(sim, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory");
         sim->sheet_capacity = grown;
