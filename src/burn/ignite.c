@@ -15,7 +15,8 @@ static void mark_blocks(void *context, int begin, int end) {
         uint32_t first, last, count = 0;
         burn_block(job, block, &first, &last);
         for (uint32_t i = first; i < last; i++) {
-            if (time_ignited[i] != NEVER || temperature[i] < field_at(ignition, i) || !(flags[i] & SINGE_ALIVE)) continue;
+            if (time_ignited[i] != NEVER || temperature[i] < field_at(ignition, i)) continue;
+            if (!(flags[i] & SINGE_ALIVE)) continue;
             time_ignited[i] = JUST_NOW;
             count++;
         }

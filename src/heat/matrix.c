@@ -1,4 +1,5 @@
-// The matrix of the heat equation: rows of conductances, kept in step with what ablation removes.
+// The matrix of the heat equation: rows of conductances. Springs and particles go and never come back, so that an
+// entry loses its value when its spring does, and nothing of the springs need be kept.
 #include <string.h>
 
 #include "heat/plan.h"
@@ -17,33 +18,37 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *fill) {
                     continue;
                 }
                 matrix->column[fill[row]] = shell->springs[c].ends[k][!end];
-                matrix->spring[fill[row]++] = spring;
+                matrix->value[fill[row]++] = plan->conductance[spring];
             }
         }
 }
 
-/// Values of one row. A spring conducts while it and both its ends are alive
-/// (bit 0 of their flags). Where an obtuse angle makes a
-/// conductance negative, it is safe only in the company of all the others at its ends: it goes with the first of them.
-static void matrix_row(HeatPlan *plan, uint32_t row) {
-    HeatMatrix *matrix = &plan->matrix;
+static void matrix_add_up(HeatMatrix *matrix, uint32_t row) {
     float sum = 0;
-    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) {
-        uint32_t spring = matrix->spring[k], other = matrix->column[k];
-        float c = plan->conductance[spring];
-        bool conducts = plan->spring_alive[spring] & plan->alive[row] & plan->alive[other] & 1 &&
-                        (c >= 0 || (plan->dead[row] == 0 && plan->dead[other] == 0));
-        matrix->value[k] = conducts ? c : 0;
-        sum += matrix->value[k];
-    }
+    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) sum += matrix->value[k];
     matrix->sum[row] = sum;
 }
 
-/// Rows of a particle and of all its neighbours.
-static void matrix_around(HeatPlan *plan, uint32_t row) {
-    matrix_row(plan, row);
-    for (uint32_t k = plan->matrix.first[row]; k < plan->matrix.first[row + 1]; k++)
-        matrix_row(plan, plan->matrix.column[k]);
+/// How many entries of a row are in a column: more than one where several springs join the same two particles.
+static uint32_t matrix_count(const HeatMatrix *matrix, uint32_t row, uint32_t column) {
+    uint32_t count = 0;
+    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) count += matrix->column[k] == column;
+    return count;
+}
+
+/// Lists the springs that share both ends with another one, in order, or only counts them.
+static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin *twins) {
+    uint32_t count = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        for (uint32_t k = 0; k < shell->springs[c].count; k++) {
+            const uint32_t *ends = shell->springs[c].ends[k];
+            uint32_t spring = plan->spring_first[c] + k;
+            uint32_t own = plan->conductance[spring] != 0;
+            if (matrix_count(&plan->matrix, ends[0], ends[1]) == own) continue;
+            if (twins) twins[count] = (HeatTwin){spring, plan->conductance[spring]};
+            count++;
+        }
+    return count;
 }
 
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell) {
@@ -53,15 +58,18 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     matrix_scatter(plan, shell, NULL);
     for (uint32_t i = 0; i < n; i++) matrix->first[i + 1] += matrix->first[i];
     matrix->entries = matrix->first[n];
-    if (!NEW(memory, matrix->column, matrix->entries) || !NEW(memory, matrix->spring, matrix->entries) ||
-        !NEW(memory, matrix->value, matrix->entries) || !NEW(memory, fill, n))
+    if (!NEW(memory, matrix->column, matrix->entries) || !NEW(memory, matrix->value, matrix->entries) ||
+        !NEW(memory, fill, n))
         return SINGE_ERROR_MEMORY;
     memcpy(fill, matrix->first, n * sizeof *fill);
     matrix_scatter(plan, shell, fill);
     FREE(memory, fill, n);
     memset(plan->spring_alive, 1, plan->springs);
     for (uint32_t i = 0; i < n; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
-    for (uint32_t i = 0; i < n; i++) matrix_row(plan, i);
+    for (uint32_t i = 0; i < n; i++) matrix_add_up(matrix, i);
+    matrix->twin_count = matrix_twins(plan, shell, NULL);
+    if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
+    matrix_twins(plan, shell, matrix->twins);
     return SINGE_OK;
 }
 
@@ -70,35 +78,62 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, matrix->first, (size_t)plan->particles + 1);
     FREE(memory, matrix->sum, plan->particles);
     FREE(memory, matrix->column, matrix->entries);
-    FREE(memory, matrix->spring, matrix->entries);
     FREE(memory, matrix->value, matrix->entries);
+    FREE(memory, matrix->twins, matrix->twin_count);
+}
+
+/// The spring among those that are not alone between their ends, or NULL.
+static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
+    uint32_t low = 0, high = matrix->twin_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (matrix->twins[middle].spring < spring) low = middle + 1;
+        else high = middle;
+    }
+    return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
+}
+
+/// Empties an entry of a spring that is gone. Twins are told apart by their values; equal ones need not be.
+static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32_t spring) {
+    const HeatTwin *twin = matrix_twin(matrix, spring);
+    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) {
+        if (matrix->column[k] != column || (twin && matrix->value[k] != twin->conductance)) continue;
+        matrix->value[k] = 0;
+        return;
+    }
+}
+
+/// Where an obtuse angle makes a conductance negative, it is safe only in the company of all the others at its ends: it
+/// goes with the first of them. What a dead particle still has goes as well.
+static void matrix_cut_unsafe(HeatPlan *plan, uint32_t row) {
+    HeatMatrix *matrix = &plan->matrix;
+    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) {
+        uint32_t other = matrix->column[k];
+        if (matrix->value[k] >= 0 && plan->alive[row]) continue;
+        matrix->value[k] = 0;
+        for (uint32_t j = matrix->first[other]; j < matrix->first[other + 1]; j++)
+            if (matrix->column[j] == row && (matrix->value[j] < 0 || !(plan->alive[row]))) matrix->value[j] = 0;
+        matrix_add_up(matrix, other);
+    }
+    matrix_add_up(matrix, row);
+}
+
+static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t spring) {
+    plan->spring_alive[spring] = 0;
+    for (int end = 0; end < 2; end++) matrix_cut(&plan->matrix, ends[end], ends[!end], spring);
+    for (int end = 0; end < 2; end++) matrix_cut_unsafe(plan, ends[end]);
 }
 
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate) {
-    // flags first, rows after: a row looks at the flags of its neighbours
-    for (int pass = 0; pass < 2; pass++) {
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
-            const uint8_t *flags = ablate->spring_flags[c];
-            uint8_t *known = plan->spring_alive + plan->spring_first[c];
-            for (uint32_t k = 0; k < shell->springs[c].count; k++) {
-                // bit 1 marks a change between the two passes
-                if (pass == 0 && (flags[k] & SINGE_ALIVE) != known[k]) {
-                    known[k] ^= 1;
-                    for (int end = 0; end < 2; end++) plan->dead[shell->springs[c].ends[k][end]] += known[k] ? -1 : 1;
-                    known[k] |= 2;
-                } else if (pass == 1 && known[k] & 2) {
-                    known[k] &= 1;
-                    for (int end = 0; end < 2; end++) matrix_around(plan, shell->springs[c].ends[k][end]);
-                }
-            }
-        }
-        for (uint32_t i = 0; i < plan->particles; i++) {
-            bool alive = ablate->particle_flags[i] & SINGE_ALIVE && plan->measure[i] > 0 && shell->matter.area[i] > 0;
-            if (pass == 0 && alive != plan->alive[i]) plan->alive[i] = alive | 2;
-            else if (pass == 1 && plan->alive[i] & 2) {
-                plan->alive[i] &= 1;
-                matrix_around(plan, i);
-            }
-        }
+    for (uint32_t i = 0; i < plan->particles; i++) {
+        if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
+        plan->alive[i] = 0;
+        matrix_cut_unsafe(plan, i);
+    }
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        const uint8_t *flags = ablate->spring_flags[c], *known = plan->spring_alive + plan->spring_first[c];
+        for (uint32_t k = 0; k < shell->springs[c].count; k++)
+            if (known[k] && !(flags[k] & SINGE_ALIVE))
+                matrix_lose_spring(plan, shell->springs[c].ends[k], plan->spring_first[c] + k);
     }
 }

@@ -191,7 +191,8 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
             continue;
         }
         for (uint32_t i = 0; i < shell->particle_count; i++)
-            if (shell->matter.sheet[i] == s) plan->measure[i] = shell->matter.area[i] * field_at(shell->matter.capacity_ratio, i);
+            if (shell->matter.sheet[i] == s)
+                plan->measure[i] = shell->matter.area[i] * field_at(shell->matter.capacity_ratio, i);
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             operator_cell(plan, shell, c);
             operator_exchange(plan, shell, c);

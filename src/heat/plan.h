@@ -7,14 +7,22 @@
 /// Cells of the plume's grid, at most.
 enum { PLUME_CELLS = 1 << 16 };
 
+/// A spring that shares both its ends with another one that conducts.
+typedef struct HeatTwin {
+    uint32_t spring;   ///< in the numbering of all colours
+    float conductance;
+} HeatTwin;
+
 /// The heat equation's matrix in rows: entry k of row i is a spring's conductance to particle column[k].
 /// `value` is 0 where the spring conducts no more; conductances are without the time step.
 typedef struct HeatMatrix {
     uint32_t *first;  ///< [particles + 1]
-    uint32_t *column, *spring; ///< [entries]
+    uint32_t *column; ///< [entries]
     float *value;     ///< [entries]
     float *sum;       ///< [particles] of a row's values
     uint32_t entries;
+    HeatTwin *twins;  ///< hardly ever any
+    uint32_t twin_count;
 } HeatMatrix;
 
 /// Hot gas in upright columns (plume.c). Cell (x, y, z) is x + nx (y + ny z), z against gravity.
@@ -36,15 +44,16 @@ struct HeatPlan {
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
-    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built
     uint8_t *spring_alive; ///< [springs] as the matrix has it
     uint8_t *alive;        ///< [particles] as the matrix has it
-    uint16_t *dead;        ///< [particles] springs at it that are gone
     HeatMatrix matrix;
+
+    void *scratch;         ///< the arrays below, but for the plume
+    size_t scratch_size;
 
     // sources, per particle
     float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
-    PlumeGrid plume;
 
     // solver, per particle
     float *star;           ///< T* after sources and losses, K
@@ -53,6 +62,7 @@ struct HeatPlan {
     float *residual, *search, *product, *inverse_diagonal;
     float *next;           ///< the new temperature, K
     double (*partial)[4];  ///< [blocks]
+    PlumeGrid plume;
 };
 
 /// What a step's passes read.

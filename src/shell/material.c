@@ -113,7 +113,8 @@ static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, 
                      what);
 }
 
-static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
+static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field,
+                                   SingeError *error) {
     const char *name = field->param->attribute;
     if (!name) return field_fail(field->source, rule, "names no attribute", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)

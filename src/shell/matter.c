@@ -96,7 +96,8 @@ static void matter_weigh_sheet(Shell *shell, const Sheet *sheet, const SheetSour
     for (uint32_t i = 0; i < total; i++) sum += matter_per_area(source, i);
     for (uint32_t i = 0; i < total; i++) {
         bool corner = i < sheet->vertex_count;
-        uint32_t p = corner ? sheet->vertex_first + i : shell_centre(shell, sheet->cell_first + i - sheet->vertex_count);
+        uint32_t cell = sheet->cell_first + i - sheet->vertex_count;
+        uint32_t p = corner ? sheet->vertex_first + i : shell_centre(shell, cell);
         if (matter->capacity_ratio.mask)
             matter->capacity_ratio.values[p] = (float)(matter_per_area(source, i) / (sum / total));
         matter->mass[p] = sheet_param(source, PARAM_GRAMMAGE, i) / 2 * matter->area[p];
