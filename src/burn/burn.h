@@ -15,4 +15,8 @@ float burn_volume_ratio(float mass, float mass_min, float ash_density);
 SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float h, float pace, const float *thickening,
                       double *partial, BurnState *burn, EventList *events, SingeError *error);
 
+/// Target lengths from the masses, of all springs alive: to the bit those that the steps left there. Reads `state`,
+/// writes `burn` (which is &state->burn).
+void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn);
+
 #endif

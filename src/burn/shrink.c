@@ -45,3 +45,14 @@ void burn_shrink(BurnJob *job, Pool *pool) {
         pool_for(pool, (int)job->shell->springs[colour].count, 4096, shrink_springs, &shrink);
     }
 }
+
+void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        for (uint32_t s = 0; s < springs->count; s++) {
+            if (!(state->ablate.spring_flags[colour][s] & SINGE_ALIVE)) continue;
+            float ratio = length_ratio(&shell->matter, burn->mass, springs->ends[s][0], springs->ends[s][1]);
+            burn->spring_length[colour][s] = springs->rest[s] * ratio;
+        }
+    }
+}

@@ -180,6 +180,7 @@ typedef struct State {
     DynamicsState dynamics;
     void *arena;   ///< all arrays above lie in one block
     size_t arena_size;
+    size_t basic_size; ///< of the arena's start: all but the springs' lengths, which follow from the rest
 } State;
 
 /// Events of one step; capacity is fixed, what exceeds it is dropped and counted.

@@ -114,7 +114,7 @@ static void sim_unbuild(SingeSim *sim) {
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
     sim->events = (EventList){0};
-    memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
+    memory_free(memory, (void *)&sim->backup, sim->state.basic_size, 1);
     state_free(memory, &sim->state);
     shell_free(memory, &sim->shell);
 }
@@ -198,7 +198,7 @@ SingeResult sim_build(SingeSim *sim) {
                                  .instructions = def->instructions,
                                  .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
-    ok = ok && (sim->backup = memory_new(memory, sim->state.arena_size, 1)) != NULL;
+    ok = ok && (sim->backup = memory_new(memory, sim->state.basic_size, 1)) != NULL;
     SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
     if (result && result != SINGE_ERROR_MEMORY) return result;
     ok = !result;
