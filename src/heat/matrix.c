@@ -124,16 +124,34 @@ static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t 
     for (int end = 0; end < 2; end++) matrix_cut_unsafe(plan, ends[end]);
 }
 
+/// Whether any of particles [first, last) has died since.
+static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t first, uint32_t last) {
+    uint8_t lost = 0;
+    for (uint32_t i = first; i < last; i++) lost |= known[i] & (flags[i] ^ SINGE_ALIVE);
+    return lost & SINGE_ALIVE;
+}
+
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate) {
-    for (uint32_t i = 0; i < plan->particles; i++) {
-        if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
-        plan->alive[i] = 0;
-        matrix_cut_unsafe(plan, i);
+    enum { LOOK = 1024 }; // at once, for a loss is rare
+    uint32_t count = plan->particles, last;
+    for (uint32_t first = 0; first < count; first = last) {
+        last = count - first < LOOK ? count : first + LOOK;
+        if (!matrix_lost_any(plan->alive, ablate->particle_flags, first, last)) continue;
+        for (uint32_t i = first; i < last; i++) {
+            if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
+            plan->alive[i] = 0;
+            matrix_cut_unsafe(plan, i);
+        }
     }
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         const uint8_t *flags = ablate->spring_flags[c], *known = plan->spring_alive + plan->spring_first[c];
-        for (uint32_t k = 0; k < shell->springs[c].count; k++)
-            if (known[k] && !(flags[k] & SINGE_ALIVE))
-                matrix_lose_spring(plan, shell->springs[c].ends[k], plan->spring_first[c] + k);
+        count = shell->springs[c].count;
+        for (uint32_t first = 0; first < count; first = last) {
+            last = count - first < LOOK ? count : first + LOOK;
+            if (!matrix_lost_any(known, flags, first, last)) continue;
+            for (uint32_t k = first; k < last; k++)
+                if (known[k] && !(flags[k] & SINGE_ALIVE))
+                    matrix_lose_spring(plan, shell->springs[c].ends[k], plan->spring_first[c] + k);
+        }
     }
 }

@@ -81,6 +81,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
         heat_plume_frame(&plan->plume, settings->up);
         result = heat_matrix_create(memory, plan, shell);
         FREE(memory, plan->conductance, plan->springs);
+        if (!result) result = heat_rest_create(memory, plan);
     }
     if (result) heat_plan_free(memory, plan);
     else *out = plan;
@@ -90,6 +91,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 void heat_plan_free(Memory *memory, HeatPlan *plan) {
     if (!plan) return;
     size_t n = plan->particles, springs = plan->springs;
+    heat_rest_free(memory, plan);
     heat_matrix_free(memory, plan);
     FREE(memory, plan->thickening, plan->sheets);
     FREE(memory, plan->measure, n);

@@ -7,6 +7,9 @@
 /// Cells of the plume's grid, at most.
 enum { PLUME_CELLS = 1 << 16 };
 
+/// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
+enum { HEAT_GROUP = 64 };
+
 /// A spring that shares both its ends with another one that conducts.
 typedef struct HeatTwin {
     uint32_t spring;   ///< in the numbering of all colours
@@ -24,6 +27,16 @@ typedef struct HeatMatrix {
     HeatTwin *twins;  ///< hardly ever any
     uint32_t twin_count;
 } HeatMatrix;
+
+/// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
+typedef struct HeatRest {
+    uint32_t groups;
+    uint32_t *first;   ///< [groups + 1] the groups that conduct with group g are near[first[g]] up to
+    uint32_t *near;    ///< near[first[g + 1]], less itself; all where there would be too many to list
+    uint32_t near_count;
+    uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
+    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
+} HeatRest;
 
 /// Hot gas in upright columns (plume.c). Cell (x, y, z) is x + nx (y + ny z), z against gravity.
 typedef struct PlumeGrid {
@@ -48,6 +61,7 @@ struct HeatPlan {
     uint8_t *spring_alive; ///< [springs] as the matrix has it
     uint8_t *alive;        ///< [particles] as the matrix has it
     HeatMatrix matrix;
+    HeatRest rest;
 
     void *scratch;         ///< the arrays below, but for the plume
     size_t scratch_size;
@@ -70,11 +84,13 @@ typedef struct HeatPass {
     HeatPlan *plan;
     const Shell *shell;
     const State *state;
+    HeatState *heat;
     Pool *pool;
     float h;  ///< s of scene time
     float dt; ///< s of fire
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
+    int turn;          ///< which of rest.awake holds
 } HeatPass;
 
 /// Fills plan->conductance and plan->measure (operator.c).
@@ -85,6 +101,12 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
 /// Makes the matrix follow what ablation removed since the last call.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate);
+
+/// Lists which groups conduct with which (rest.c).
+SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
+void heat_rest_free(Memory *memory, HeatPlan *plan);
+/// Whether the group or one near it is in `set`.
+bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
 
 /// Sums all sources into the plan's arrays (source.c, plume.c).
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
@@ -103,6 +125,17 @@ double heat_sum(const HeatPlan *plan, int column);
 static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
     uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
     return end < plan->particles ? end : plan->particles;
+}
+/// The groups of a block are [heat_group_first, heat_group_end).
+static inline uint32_t heat_group_first(int block) { return (uint32_t)block * (POOL_BLOCK / HEAT_GROUP); }
+static inline uint32_t heat_group_end(const HeatPlan *plan, int block) {
+    uint32_t end = heat_group_first(block + 1);
+    return end < plan->rest.groups ? end : plan->rest.groups;
+}
+/// The particles of a group are [group * HEAT_GROUP, heat_group_last).
+static inline uint32_t heat_group_last(const HeatPlan *plan, uint32_t group) {
+    uint32_t last = (group + 1) * HEAT_GROUP;
+    return last < plan->particles ? last : plan->particles;
 }
 
 #endif
