@@ -21,6 +21,7 @@
 #include "burn/burn_job.h"
 
 #include <math.h>
+#include <string.h>
 
 /// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
 static float fall(float x, float k, float p) {
@@ -44,12 +45,12 @@ static float lower_mass(const Matter *matter, uint32_t i, float mass, float exce
     return lowered < least ? least : lowered;
 }
 
-static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
+/// Adds the mass that particles [first, last) lose to *lost, kg.
+static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost) {
     const Matter *matter = &job->shell->matter;
     const float *temperature = job->state->heat.temperature;
     const uint8_t *flags = job->state->ablate.particle_flags;
     BurnState *burn = job->burn;
-    double lost = 0;
     for (uint32_t i = first; i < last; i++) {
         burn->burn_rate[i] = 0;
         float excess = temperature[i] - field_at(matter->ignition_temperature, i);
@@ -60,17 +61,24 @@ static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
         burn->mass[i] = after;
         burn->burn_rate[i] = (before - after) / job->h;
         if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
-        lost += ((double)before - (double)after) * (double)matter->mass[i];
+        *lost += ((double)before - (double)after) * (double)matter->mass[i];
     }
-    return lost;
 }
 
 static void lose_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
     for (int block = begin; block < end; block++) {
-        uint32_t first, last;
+        uint32_t first, last, run;
+        double lost = 0;
         burn_block(job, block, &first, &last);
-        job->partial[block] = lose_mass(job, first, last);
+        for (; first < last; first = run) {
+            run = burn_run_end(first, last);
+            if (burn_is_hot(job, first, run))
+                lose_mass(job, first, run, &lost);
+            else
+                memset(job->burn->burn_rate + first, 0, (run - first) * sizeof *job->burn->burn_rate);
+        }
+        job->partial[block] = lost;
     }
 }
 
