@@ -41,7 +41,9 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
         float T = temperature[i];
-        if (!plan->alive[i]) {
+        bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
+                    plan->source_temperature[i] == 0;
+        if (calm || !plan->alive[i]) {
             plan->star[i] = T, plan->delta[i] = 0;
             continue;
         }
@@ -135,7 +137,7 @@ SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, co
     HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = pool, .h = h,
                      .dt = h * plan->settings.pace};
     double made = 0;
-    heat_matrix_follow(plan, shell, &state->ablate);
+    heat_matrix_follow(plan, shell, &state->ablate, pass.dt);
 
     // eq 1: sources, combustion, losses
     heat_gather(&pass, sources, colliders, view);

@@ -26,13 +26,13 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
 
 static bool plan_allocate_scratch(Memory *memory, HeatPlan *plan) {
     float **arrays[] = {&plan->flux, &plan->source_conductance, &plan->source_temperature, &plan->star, &plan->delta,
-                        &plan->correction, &plan->residual, &plan->search, &plan->product, &plan->inverse_diagonal,
-                        &plan->next};
+                        &plan->correction, &plan->residual, &plan->search, &plan->product, &plan->next};
     enum { ARRAYS = sizeof arrays / sizeof *arrays };
-    size_t needed = ARRAYS * plan->particles * sizeof(float), least = plan->settings.scratch_least;
+    size_t slices = plan->particles / HEAT_ROWS + 1, stride = slices * HEAT_ROWS; // whole slices can be read
+    size_t needed = ARRAYS * stride * sizeof(float), least = plan->settings.scratch_least;
     plan->scratch_size = needed > least ? needed : least;
     if (!(plan->scratch = memory_new(memory, plan->scratch_size, 1))) return false;
-    for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * plan->particles;
+    for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
     return true;
 }
 

@@ -16,17 +16,31 @@ typedef struct HeatTwin {
     float conductance;
 } HeatTwin;
 
-/// The heat equation's matrix in rows: entry k of row i is a spring's conductance to particle column[k].
-/// `value` is 0 where the spring conducts no more; conductances are without the time step.
+/// Rows of the matrix that lie interleaved.
+enum { HEAT_ROWS = 4 };
+
+/// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
+/// spring conducts no more; conductances are without the time step. HEAT_ROWS rows lie interleaved, so that a processor
+/// can work on all of them at once (ELLPACK by slices): entry k of row i is heat_entry(matrix, i, k). Shorter rows are
+/// filled up with entries of value 0 in their own column.
 typedef struct HeatMatrix {
-    uint32_t *first;  ///< [particles + 1]
+    uint32_t *first;  ///< [slices + 1]
     uint32_t *column; ///< [entries]
     float *value;     ///< [entries]
-    float *sum;       ///< [particles] of a row's values
-    uint32_t entries;
+    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
+    float dt;         ///< s, of `inverse`
+    uint32_t slices, entries;
     HeatTwin *twins;  ///< hardly ever any
     uint32_t twin_count;
 } HeatMatrix;
+
+/// Entries of every row in the slice of row i, and where entry k of row i lies.
+static inline uint32_t heat_row_width(const HeatMatrix *matrix, uint32_t i) {
+    return (matrix->first[i / HEAT_ROWS + 1] - matrix->first[i / HEAT_ROWS]) / HEAT_ROWS;
+}
+static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t k) {
+    return matrix->first[i / HEAT_ROWS] + HEAT_ROWS * k + i % HEAT_ROWS;
+}
 
 /// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
 typedef struct HeatRest {
@@ -73,7 +87,7 @@ struct HeatPlan {
     float *star;           ///< T* after sources and losses, K
     float *delta;          ///< T* - T, K
     float *correction;     ///< T - T* of the diffusion, K
-    float *residual, *search, *product, *inverse_diagonal;
+    float *residual, *search, *product;
     float *next;           ///< the new temperature, K
     double (*partial)[4];  ///< [blocks]
     PlumeGrid plume;
@@ -99,8 +113,8 @@ void heat_operator(HeatPlan *plan, const Shell *shell);
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
-/// Makes the matrix follow what ablation removed since the last call.
-void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate);
+/// Makes the matrix follow what ablation removed since the last call, and the time step.
+void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);

@@ -10,7 +10,8 @@ enum { NEAR_MOST = 48 };
 /// the last one that listed it.
 static uint32_t list_near(const HeatPlan *plan, uint32_t group, uint32_t *seen, uint32_t *near) {
     const HeatMatrix *matrix = &plan->matrix;
-    uint32_t count = 0, begin = matrix->first[group * HEAT_GROUP], end = matrix->first[heat_group_last(plan, group)];
+    uint32_t count = 0, begin = matrix->first[group * (HEAT_GROUP / HEAT_ROWS)];
+    uint32_t end = matrix->first[(heat_group_last(plan, group) - 1) / HEAT_ROWS + 1];
     seen[group] = group + 1;
     for (uint32_t k = begin; k < end; k++) {
         uint32_t other = matrix->column[k] / HEAT_GROUP;
