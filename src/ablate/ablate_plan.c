@@ -6,7 +6,7 @@
 static void mark_rim(AblatePlan *plan, const Shell *shell) {
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++)
-            if (shell->cell_springs[c].neighbour[i] == SHELL_NONE)
+            if (shell_neighbour(shell, c, i) == SHELL_NONE)
                 plan->rim[shell->cells[c][i]] = plan->rim[shell->cells[c][(i + 1) & 3]] = 1;
 }
 
@@ -17,6 +17,21 @@ static SurfaceKeys number_keys(const Shell *shell) {
     return keys;
 }
 
+/// Lays out the scratch; the widest elements first, so that all are aligned.
+static bool allocate_scratch(Memory *memory, AblatePlan *plan) {
+    size_t particles = plan->particle_count, pieces = particles * (sizeof *plan->area + 3 * sizeof *plan->root + 1);
+    size_t surface = plan->keys.count * sizeof *plan->output;
+    plan->scratch_size = pieces > surface ? pieces : surface;
+    if (!(plan->scratch = memory_new(memory, plan->scratch_size, 1))) return false;
+    plan->area = plan->scratch;
+    plan->root = (uint32_t *)(plan->area + particles);
+    plan->size = plan->root + particles;
+    plan->heir = plan->size + particles;
+    plan->mark = (uint8_t *)(plan->heir + particles);
+    plan->output = plan->scratch;
+    return true;
+}
+
 SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **plan_out) {
     AblatePlan *plan;
     *plan_out = NULL;
@@ -24,10 +39,7 @@ SingeResult ablate_plan_create(Memory *memory, const Shell *shell, AblatePlan **
     size_t particles = plan->particle_count = shell->particle_count;
     size_t vertices = plan->vertex_count = shell->vertex_count;
     plan->keys = number_keys(shell);
-    if (!NEW(memory, plan->level, particles) || !NEW(memory, plan->rim, vertices)
-        || !NEW(memory, plan->root, particles) || !NEW(memory, plan->size, particles)
-        || !NEW(memory, plan->area, particles) || !NEW(memory, plan->mark, particles)
-        || !NEW(memory, plan->heir, particles) || !NEW(memory, plan->output, plan->keys.count)) {
+    if (!NEW(memory, plan->level, particles) || !NEW(memory, plan->rim, vertices) || !allocate_scratch(memory, plan)) {
         ablate_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -41,11 +53,6 @@ void ablate_plan_free(Memory *memory, AblatePlan *plan) {
     size_t particles = plan->particle_count, vertices = plan->vertex_count;
     FREE(memory, plan->level, particles);
     FREE(memory, plan->rim, vertices);
-    FREE(memory, plan->root, particles);
-    FREE(memory, plan->size, particles);
-    FREE(memory, plan->area, particles);
-    FREE(memory, plan->mark, particles);
-    FREE(memory, plan->heir, particles);
-    FREE(memory, plan->output, plan->keys.count);
+    memory_free(memory, (void *)&plan->scratch, plan->scratch_size, 1);
     FREE(memory, plan, 1);
 }

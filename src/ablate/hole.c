@@ -43,7 +43,7 @@ static bool centre_opens(const HoleSearch *search, uint32_t cell) {
     uint32_t centre = shell_centre(search->shell, cell);
     if (cell_open_before(search, cell, centre)) return false;
     for (int i = 0; i < 4; i++) {
-        uint32_t other = search->shell->cell_springs[cell].neighbour[i];
+        uint32_t other = shell_neighbour(search->shell, cell, i);
         if (other != SHELL_NONE && open_before(search, shell_centre(search->shell, other), centre)) return false;
     }
     return true;

@@ -8,13 +8,14 @@
 float ablate_level(const Shell *shell, const State *state, uint32_t particle) {
     const Matter *matter = &shell->matter;
     if (!shell->sheets[matter->sheet[particle]].material.ablate) return 1;
-    return state->burn.mass[particle] - matter->mass_loss[particle];
+    return state->burn.mass[particle] - field_at(matter->mass_loss, particle);
 }
 
 static void fill(AblatePlan *plan, const Shell *shell, const State *state, bool ablate, uint32_t first,
                  uint32_t count) {
-    const float *mass = state->burn.mass, *mass_loss = shell->matter.mass_loss;
-    for (uint32_t i = first; i < first + count; i++) plan->level[i] = ablate ? mass[i] - mass_loss[i] : 1;
+    const float *mass = state->burn.mass;
+    const Field mass_loss = shell->matter.mass_loss;
+    for (uint32_t i = first; i < first + count; i++) plan->level[i] = ablate ? mass[i] - field_at(mass_loss, i) : 1;
 }
 
 void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state) {

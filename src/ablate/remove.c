@@ -37,8 +37,8 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring) {
 
 /// The triangle on the other side of side i is gone, or there never was one. The two share the side's
 /// corners, so that only the other centre is left to ask.
-static bool gone_across(const Removal *removal, const CellSprings *springs, int i) {
-    uint32_t other = springs->neighbour[i];
+static bool gone_across(const Removal *removal, uint32_t cell, int i) {
+    uint32_t other = shell_neighbour(removal->shell, cell, i);
     if (other == SHELL_NONE || !(removal->ablate->cell_flags[other] & SINGE_ALIVE)) return true;
     return removal->plan->level[shell_centre(removal->shell, other)] < 0;
 }
@@ -49,7 +49,7 @@ static void remove_from_cell(Removal *removal, uint32_t cell) {
     for (int i = 0; i < 4; i++) {
         if (left >> i & 1) continue;
         if (!(left >> ((i + 3) & 3) & 1)) remove_spring(removal, SINGE_RED, springs->red[i]);
-        if (gone_across(removal, springs, i)) remove_spring(removal, SINGE_BLUE, springs->blue[i]);
+        if (gone_across(removal, cell, i)) remove_spring(removal, SINGE_BLUE, springs->blue[i]);
     }
     if (left) return;
     for (int i = 0; i < 4; i++)

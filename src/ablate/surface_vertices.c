@@ -39,7 +39,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
         .temperature = state->heat.temperature[particle],
         .temperature_peak = state->heat.temperature_peak[particle],
         .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
-        .burn = shell_burn_progress(burn->mass[particle], shell->matter.mass_min[particle]),
+        .burn = shell_burn_progress(burn->mass[particle], field_at(shell->matter.mass_min, particle)),
         .time_ignited = burn->time_ignited[particle],
         .piece = state->ablate.piece[particle], .sheet = shell->matter.sheet[particle],
     };

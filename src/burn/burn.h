@@ -3,16 +3,16 @@
 #define BURN_BURN_H
 
 #include "base/pool.h"
-#include "shell/shell.h"
-
-/// Volume ratio of eq 5 for a mass fraction, with density going linearly from 1 to `ash_density`
-/// as the mass goes from 1 to mass_min. In (0, 1] for sane materials, clamped to [0.05, 1].
-float burn_volume_ratio(float mass, float mass_min, float ash_density);
+#include "burn/volume.h"
 
 /// One step of length h: masses, times and target lengths. `thickening` holds F for every sheet; rates
 /// are divided by it. `partial` is scratch of pool_blocks(particle_count) doubles. Reads `state`,
 /// writes `burn` (which is &state->burn). Ignitions are pushed to `events` in order of particle.
 SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float h, float pace, const float *thickening,
                       double *partial, BurnState *burn, EventList *events, SingeError *error);
+
+/// Target lengths from the masses, of all springs alive: to the bit those that the steps left there. Reads `state`,
+/// writes `burn` (which is &state->burn).
+void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn);
 
 #endif

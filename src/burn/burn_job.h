@@ -21,6 +21,21 @@ static inline void burn_block(const BurnJob *job, int block, uint32_t *first, ui
     *last = *first + POOL_BLOCK < job->shell->particle_count ? *first + POOL_BLOCK : job->shell->particle_count;
 }
 
+/// Whether any of the particles [first, last), at most FIELD_RUN of them, is above its ignition temperature or not a
+/// number: most of a sheet is not, most of the time.
+static inline bool burn_is_hot(const BurnJob *job, uint32_t first, uint32_t last) {
+    const float *temperature = job->state->heat.temperature + first;
+    const float *ignition = field_run(job->shell->matter.ignition_temperature, first);
+    int hot = 0;
+    for (uint32_t i = 0; i < last - first; i++) hot |= !(temperature[i] < ignition[i]);
+    return hot;
+}
+
+/// The end of the run of particles from `first` that is looked at at once.
+static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
+    return last - first < FIELD_RUN ? last : first + FIELD_RUN;
+}
+
 /// Stamps what reached its ignition temperature and pushes its events in order of particle.
 void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
 

@@ -4,19 +4,31 @@
 #define NEVER (-1.0f)
 #define JUST_NOW (-2.0f) // only between the two passes below
 
-/// Marks new ignitions and leaves their number in every block's partial.
-static void mark_blocks(void *context, int begin, int end) {
-    BurnJob *job = context;
-    const float *temperature = job->state->heat.temperature, *ignition = job->shell->matter.ignition_temperature;
+/// Marks new ignitions among particles [first, last) and counts them.
+static uint32_t mark_run(BurnJob *job, uint32_t first, uint32_t last) {
+    const float *temperature = job->state->heat.temperature;
+    const Field ignition = job->shell->matter.ignition_temperature;
     const uint8_t *flags = job->state->ablate.particle_flags;
     float *time_ignited = job->burn->time_ignited;
+    uint32_t count = 0;
+    for (uint32_t i = first; i < last; i++) {
+        if (time_ignited[i] != NEVER || temperature[i] < field_at(ignition, i)) continue;
+        if (!(flags[i] & SINGE_ALIVE)) continue;
+        time_ignited[i] = JUST_NOW;
+        count++;
+    }
+    return count;
+}
+
+/// Leaves the number of new ignitions in every block's partial.
+static void mark_blocks(void *context, int begin, int end) {
+    BurnJob *job = context;
     for (int block = begin; block < end; block++) {
-        uint32_t first, last, count = 0;
+        uint32_t first, last, run, count = 0;
         burn_block(job, block, &first, &last);
-        for (uint32_t i = first; i < last; i++) {
-            if (time_ignited[i] != NEVER || temperature[i] < ignition[i] || !(flags[i] & SINGE_ALIVE)) continue;
-            time_ignited[i] = JUST_NOW;
-            count++;
+        for (; first < last; first = run) {
+            run = burn_run_end(first, last);
+            if (burn_is_hot(job, first, run)) count += mark_run(job, first, run);
         }
         job->partial[block] = count;
     }

@@ -21,6 +21,7 @@
 #include "burn/burn_job.h"
 
 #include <math.h>
+#include <string.h>
 
 /// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
 static float fall(float x, float k, float p) {
@@ -37,40 +38,47 @@ static float fall(float x, float k, float p) {
 
 /// One particle's new mass; NaN comes through.
 static float lower_mass(const Matter *matter, uint32_t i, float mass, float excess, float dt) {
-    float least = matter->mass_min[i], span = 1 - least;
-    float x = (mass - least) / span, k = matter->mass_rate[i] * dt * excess / span;
+    float least = field_at(matter->mass_min, i), span = 1 - least;
+    float x = (mass - least) / span, k = field_at(matter->mass_rate, i) * dt * excess / span;
     if (x <= 0 || k <= 0) return mass;
-    float lowered = mass - span * fall(x, k, matter->ash_exponent[i]);
+    float lowered = mass - span * fall(x, k, field_at(matter->ash_exponent, i));
     return lowered < least ? least : lowered;
 }
 
-static double lose_mass(BurnJob *job, uint32_t first, uint32_t last) {
+/// Adds the mass that particles [first, last) lose to *lost, kg.
+static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost) {
     const Matter *matter = &job->shell->matter;
     const float *temperature = job->state->heat.temperature;
     const uint8_t *flags = job->state->ablate.particle_flags;
     BurnState *burn = job->burn;
-    double lost = 0;
     for (uint32_t i = first; i < last; i++) {
         burn->burn_rate[i] = 0;
-        float excess = temperature[i] - matter->ignition_temperature[i];
+        float excess = temperature[i] - field_at(matter->ignition_temperature, i);
         if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
-        if (excess > matter->rate_ceiling[i]) excess = matter->rate_ceiling[i]; // NaN stays NaN
+        if (excess > field_at(matter->rate_ceiling, i)) excess = field_at(matter->rate_ceiling, i); // NaN stays NaN
         float before = burn->mass[i];
         float after = lower_mass(matter, i, before, excess, job->dt / job->thickening[matter->sheet[i]]);
         burn->mass[i] = after;
         burn->burn_rate[i] = (before - after) / job->h;
-        if (after < matter->mass_loss[i] && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
-        lost += ((double)before - (double)after) * (double)matter->mass[i];
+        if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
+        *lost += ((double)before - (double)after) * (double)matter->mass[i];
     }
-    return lost;
 }
 
 static void lose_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
     for (int block = begin; block < end; block++) {
-        uint32_t first, last;
+        uint32_t first, last, run;
+        double lost = 0;
         burn_block(job, block, &first, &last);
-        job->partial[block] = lose_mass(job, first, last);
+        for (; first < last; first = run) {
+            run = burn_run_end(first, last);
+            if (burn_is_hot(job, first, run))
+                lose_mass(job, first, run, &lost);
+            else
+                memset(job->burn->burn_rate + first, 0, (run - first) * sizeof *job->burn->burn_rate);
+        }
+        job->partial[block] = lost;
     }
 }
 

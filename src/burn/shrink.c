@@ -12,36 +12,73 @@
 /// A strong shrink factor must not turn a spring inside out.
 #define LEAST_RATIO 0.05f
 
-typedef struct ShrinkJob {
-    const BurnJob *burn;
-    SingeColour colour;
-} ShrinkJob;
+/// What a spring asks of an end.
+typedef struct SpringEnd {
+    float volume; ///< v of eq 5
+    float shrink; ///< s
+} SpringEnd;
 
-static float length_ratio(const Matter *matter, const float *mass, uint32_t a, uint32_t b) {
-    float volume_a = burn_volume_ratio(mass[a], matter->mass_min[a], matter->ash_density[a]);
-    float volume_b = burn_volume_ratio(mass[b], matter->mass_min[b], matter->ash_density[b]);
-    float shrink = 0.5f * (matter->shrink[a] + matter->shrink[b]);
-    float ratio = 1 - shrink * (1 - 0.5f * (volume_a + volume_b));
+static inline SpringEnd spring_end(const Matter *matter, const float *mass, uint32_t i) {
+    float volume = burn_volume_ratio(mass[i], field_at(matter->mass_min, i), field_at(matter->ash_density, i));
+    return (SpringEnd){volume, field_at(matter->shrink, i)};
+}
+
+static inline float length_ratio(SpringEnd a, SpringEnd b) {
+    float shrink = 0.5f * (a.shrink + b.shrink);
+    float ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));
     return ratio < LEAST_RATIO ? LEAST_RATIO : ratio;
 }
 
-static void shrink_springs(void *context, int begin, int end) {
-    const ShrinkJob *job = context;
-    const Shell *shell = job->burn->shell;
-    const SpringSet *springs = &shell->springs[job->colour];
-    const uint8_t *flags = job->burn->state->ablate.spring_flags[job->colour];
-    BurnState *burn = job->burn->burn;
-    for (int s = begin; s < end; s++) {
-        uint32_t a = springs->ends[s][0], b = springs->ends[s][1];
-        bool changed = burn->burn_rate[a] > 0 || burn->burn_rate[b] > 0;
-        if (!changed || !(flags[s] & SINGE_ALIVE)) continue;
-        burn->spring_length[job->colour][s] = springs->rest[s] * length_ratio(&shell->matter, burn->mass, a, b);
+static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b) {
+    if (job->state->ablate.spring_flags[colour][s] & SINGE_ALIVE)
+        job->burn->spring_length[colour][s] = job->shell->springs[colour].rest[s] * length_ratio(a, b);
+}
+
+/// The springs of a cell of which an end burns. One that lies in two cells is left to the first of them that sees an
+/// end of it burn: both see those of a blue spring, and each sees its own centre of a green one.
+static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool burns[4], bool centre_burns) {
+    const Shell *shell = job->shell;
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const float *burn_rate = job->burn->burn_rate, *mass = job->burn->mass;
+    SpringEnd corner[4], centre = spring_end(&shell->matter, mass, shell_centre(shell, cell));
+    for (int i = 0; i < 4; i++) corner[i] = spring_end(&shell->matter, mass, shell->cells[cell][i]);
+    for (int i = 0; i < 4; i++) {
+        uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
+        int next = (i + 1) & 3;
+        if (centre_burns | burns[i]) shrink_spring(job, SINGE_RED, springs->red[i], centre, corner[i]);
+        if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
+            shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next]);
+        if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))
+            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, mass, beyond));
+    }
+    for (int i = 0; i < 2; i++)
+        if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2]);
+}
+
+static void shrink_cells(void *context, int begin, int end) {
+    const BurnJob *job = context;
+    const float *burn_rate = job->burn->burn_rate;
+    for (int c = begin; c < end; c++) {
+        const uint32_t *corner = job->shell->cells[c];
+        bool centre = burn_rate[shell_centre(job->shell, (uint32_t)c)] > 0;
+        bool burns[4] = {burn_rate[corner[0]] > 0, burn_rate[corner[1]] > 0, burn_rate[corner[2]] > 0,
+                         burn_rate[corner[3]] > 0};
+        if (centre | burns[0] | burns[1] | burns[2] | burns[3]) shrink_burning_cell(job, (uint32_t)c, burns, centre);
     }
 }
 
 void burn_shrink(BurnJob *job, Pool *pool) {
+    pool_for(pool, (int)job->shell->cell_count, POOL_BLOCK, shrink_cells, job);
+}
+
+void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        ShrinkJob shrink = {job, (SingeColour)colour};
-        pool_for(pool, (int)job->shell->springs[colour].count, 4096, shrink_springs, &shrink);
+        const SpringSet *springs = &shell->springs[colour];
+        for (uint32_t s = 0; s < springs->count; s++) {
+            if (!(state->ablate.spring_flags[colour][s] & SINGE_ALIVE)) continue;
+            SpringEnd a = spring_end(&shell->matter, burn->mass, springs->ends[s][0]);
+            SpringEnd b = spring_end(&shell->matter, burn->mass, springs->ends[s][1]);
+            burn->spring_length[colour][s] = springs->rest[s] * length_ratio(a, b);
+        }
     }
 }

@@ -71,7 +71,7 @@ static void attach_write(Attachments *attachments, const Shell *shell, const Sta
             float diagonal = state->burn.spring_length[SINGE_YELLOW][shell->cell_springs[c].yellow[i]];
             sum -= 0.5f * diagonal * diagonal;
         }
-        float thickness = shell->matter.thickness[centre];
+        float thickness = field_at(shell->matter.thickness, centre);
         attachments->length[centre][k] = sqrtf(fmaxf(0, 0.25f * sum) + thickness * thickness);
     }
 }
@@ -79,7 +79,7 @@ static void attach_write(Attachments *attachments, const Shell *shell, const Sta
 /// Whether nothing in a sheet's mesh may stretch.
 static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        if (shell->matter.compliance[SINGE_BLUE][v] > 0) return false;
+        if (field_at(shell->matter.compliance[SINGE_BLUE], v) > 0) return false;
     return true;
 }
 

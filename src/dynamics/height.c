@@ -37,7 +37,7 @@ static void height_cell(const Height *job, uint32_t c) {
     for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]);
     Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
     Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
-    float enough = solver->height_min * job->shell->matter.thickness[centre];
+    float enough = solver->height_min * field_at(job->shell->matter.thickness, centre);
     float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
     if (height_is_enough(above, square, 2 * enough)) job->plan->height_wait[c] = HEIGHT_WAIT;
     if (height_is_enough(above, square, enough) || square == 0) return;

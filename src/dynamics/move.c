@@ -33,7 +33,8 @@ static Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad veloci
 static void move_range(void *task, int begin, int end) {
     const Move job = *(const Move *)task;
     DynamicsPlan *plan = job.plan;
-    const float *damping = job.shell->matter.damping, *gravity = plan->settings.gravity;
+    const Field damping = job.shell->matter.damping;
+    const float *gravity = plan->settings.gravity;
     float h = job.h, inverse_h = 1 / h;
     Quad fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
     for (int i = begin; i < end; i++) {
@@ -42,7 +43,7 @@ static void move_range(void *task, int begin, int end) {
         Quad place = quad_load(x), velocity = quad_load(v);
         if (job.closes) velocity += (place - quad_load(predicted)) * inverse_h;
         if (job.opens) {
-            velocity = (velocity + fall) * (1 / (1 + h * damping[i]));
+            velocity = (velocity + fall) * (1 / (1 + h * field_at(damping, (uint32_t)i)));
             if (plan->drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
             place += h * velocity;
             quad_store(x, place);

@@ -51,10 +51,12 @@ static void prepare_particles(void *task, int begin, int end) {
         float mass = matter->mass[i] * fmaxf(state->burn.mass[i], PREPARE_MASS_MIN);
         plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
         job->position[i][3] = plan->inverse_mass[i];
-        plan->soft[i] = 1 + (matter->char_weight[i] - 1) * shell_burn_progress(state->burn.mass[i], matter->mass_min[i]);
+        float progress = shell_burn_progress(state->burn.mass[i], field_at(matter->mass_min, (uint32_t)i));
+        plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
         vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        plan->drag[i] = 0.25f * plan->settings.air_density * matter->drag[i] * matter->area[i] / mass;
+        float drag = field_at(matter->drag, (uint32_t)i);
+        plan->drag[i] = 0.25f * plan->settings.air_density * drag * matter->area[i] / mass;
         vec_store(plan->air[i], wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time));
     }
 }
@@ -65,12 +67,13 @@ static void prepare_strands(void *task, int begin, int end) {
     StrandSet *set = &job->plan->strands.sets[job->colour];
     const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
     const float *target = job->state->burn.spring_length[job->colour];
-    const float *material = job->shell->matter.weight[job->colour], *soft = job->plan->soft;
+    const Field material = job->shell->matter.weight[job->colour];
+    const float *soft = job->plan->soft;
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
-            float weight = 0.25f * (material[a] + material[b]) * (soft[a] + soft[b]);
+            float weight = 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
             set->weight[slot] = flags[k] & SINGE_ALIVE ? weight : 0;
             set->length[slot] = target[k];
         }

@@ -17,11 +17,11 @@ enum { STRAND_FLOPS = 50, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 static void strands_comply(const Shell *shell, int colour, StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
-    const float *compliance = shell->matter.compliance[colour];
+    const Field compliance = shell->matter.compliance[colour];
     for (uint32_t s = 0; s < set->strand_count; s++) {
         float *slot = set->compliance + set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES)
-            *slot = 0.5f * (compliance[springs->ends[k][0]] + compliance[springs->ends[k][1]]);
+            *slot = 0.5f * (field_at(compliance, springs->ends[k][0]) + field_at(compliance, springs->ends[k][1]));
     }
 }
 

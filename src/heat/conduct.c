@@ -27,45 +27,95 @@
 
 enum { CONDUCT_ITERATIONS = 200, CONDUCT_SEED = 0x68656174 };
 
-/// sum c_ij (x_j - x_i)
-static inline float conduct_inflow(const HeatMatrix *matrix, const float *x, uint32_t i) {
-    float sum = 0, here = x[i];
-    for (uint32_t k = matrix->first[i]; k < matrix->first[i + 1]; k++)
-        sum += matrix->value[k] * (x[matrix->column[k]] - here);
+/// A number for each row of a slice; gcc's and clang's vectors, which every processor has in some way.
+typedef float HeatLanes __attribute__((vector_size(HEAT_ROWS * sizeof(float))));
+
+static inline HeatLanes conduct_load(const float *x) {
+    HeatLanes lanes;
+    memcpy(&lanes, x, sizeof lanes);
+    return lanes;
+}
+
+/// sum c_ij (x_j - x_i) of the rows i, i + 1 .. of a slice.
+static inline HeatLanes conduct_inflow(const HeatMatrix *matrix, const float *x, uint32_t i) {
+    const float *value = matrix->value + matrix->first[i / HEAT_ROWS];
+    const float *end = matrix->value + matrix->first[i / HEAT_ROWS + 1];
+    const uint32_t *column = matrix->column + matrix->first[i / HEAT_ROWS];
+    HeatLanes sum = {0}, here = conduct_load(x + i);
+    for (; value < end; value += HEAT_ROWS, column += HEAT_ROWS) {
+        HeatLanes there = {x[column[0]], x[column[1]], x[column[2]], x[column[3]]};
+        sum += conduct_load(value) * (there - here);
+    }
     return sum;
+}
+
+/// The end of the slice that begins at particle i, in a group that ends at `last`.
+static inline uint32_t conduct_slice_end(uint32_t i, uint32_t last) {
+    return last - i < HEAT_ROWS ? last : i + HEAT_ROWS;
+}
+
+
+static void conduct_start_group(const HeatPass *pass, uint32_t group, double *residual, double *whole) {
+    HeatPlan *plan = pass->plan;
+    float ambient = plan->settings.ambient_temperature;
+    uint32_t last = heat_group_last(plan, group), next;
+    for (uint32_t i = group * HEAT_GROUP; i < last; i = next) {
+        next = conduct_slice_end(i, last);
+        HeatLanes inflow = conduct_inflow(&plan->matrix, plan->star, i);
+        for (uint32_t row = 0; i < next; i++, row++) {
+            float r = plan->residual[i] = pass->dt * inflow[row];
+            float b = plan->measure[i] * (plan->star[i] - ambient), inverse = plan->matrix.inverse[i];
+            plan->correction[i] = plan->search[i] = 0;
+            *residual += (double)r * r * inverse;
+            *whole += (double)b * b * inverse;
+        }
+    }
 }
 
 static void conduct_start(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    float ambient = plan->settings.ambient_temperature;
     for (int block = begin; block < end; block++) {
         double residual = 0, whole = 0;
-        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
-            float diagonal = plan->measure[i] + pass->dt * plan->matrix.sum[i];
-            float inverse = diagonal > 0 && plan->alive[i] ? 1 / diagonal : 0;
-            float r = pass->dt * conduct_inflow(&plan->matrix, plan->star, i);
-            float b = plan->measure[i] * (plan->star[i] - ambient);
-            plan->inverse_diagonal[i] = inverse;
-            plan->residual[i] = r;
-            plan->correction[i] = 0;
-            plan->search[i] = 0;
-            residual += (double)r * r * inverse;
-            whole += (double)b * b * inverse;
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            plan->rest.awake[0][g] = heat_rest_reaches(&plan->rest, plan->rest.warm, g);
+            if (!plan->rest.awake[0][g]) continue;
+            conduct_start_group(pass, g, &residual, &whole);
         }
         plan->partial[block][0] = residual;
         plan->partial[block][1] = whole;
     }
 }
 
+/// The new direction, one ring of groups farther than before.
 static void conduct_direction(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    float *restrict search = plan->search;
-    const float *residual = plan->residual, *inverse = plan->inverse_diagonal;
-    uint32_t last = heat_block_end(plan, end - 1);
-    for (uint32_t i = (uint32_t)begin * POOL_BLOCK; i < last; i++)
-        search[i] = residual[i] * inverse[i] + pass->direction * search[i];
+    const uint8_t *before = plan->rest.awake[!pass->turn];
+    uint8_t *awake = plan->rest.awake[pass->turn];
+    float *restrict search = plan->search, *restrict residual = plan->residual, *restrict correction = plan->correction;
+    const float *restrict inverse = plan->matrix.inverse;
+    for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
+        awake[g] = heat_rest_reaches(&plan->rest, before, g);
+        uint32_t first = g * HEAT_GROUP, last = heat_group_last(plan, g);
+        if (before[g])
+            for (uint32_t i = first; i < last; i++) search[i] = residual[i] * inverse[i] + pass->direction * search[i];
+        else if (awake[g])
+            for (uint32_t i = first; i < last; i++) residual[i] = correction[i] = search[i] = 0;
+    }
+}
+
+static void conduct_product_group(const HeatPass *pass, uint32_t group, double *sum) {
+    HeatPlan *plan = pass->plan;
+    uint32_t last = heat_group_last(plan, group), next;
+    for (uint32_t i = group * HEAT_GROUP; i < last; i = next) {
+        next = conduct_slice_end(i, last);
+        HeatLanes inflow = conduct_inflow(&plan->matrix, plan->search, i);
+        for (uint32_t row = 0; i < next; i++, row++) {
+            plan->product[i] = plan->measure[i] * plan->search[i] - pass->dt * inflow[row];
+            *sum += (double)plan->product[i] * plan->search[i];
+        }
+    }
 }
 
 static void conduct_product(void *context, int begin, int end) {
@@ -73,10 +123,9 @@ static void conduct_product(void *context, int begin, int end) {
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double sum = 0;
-        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
-            float inflow = conduct_inflow(&plan->matrix, plan->search, i);
-            plan->product[i] = plan->measure[i] * plan->search[i] - pass->dt * inflow;
-            sum += (double)plan->product[i] * plan->search[i];
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            if (!plan->rest.awake[pass->turn][g]) continue;
+            conduct_product_group(pass, g, &sum);
         }
         plan->partial[block][0] = sum;
     }
@@ -87,10 +136,13 @@ static void conduct_advance(void *context, int begin, int end) {
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double sum = 0;
-        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
-            plan->correction[i] += pass->step_length * plan->search[i];
-            float r = plan->residual[i] -= pass->step_length * plan->product[i];
-            sum += (double)r * r * plan->inverse_diagonal[i];
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            if (!plan->rest.awake[pass->turn][g]) continue;
+            for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
+                plan->correction[i] += pass->step_length * plan->search[i];
+                float r = plan->residual[i] -= pass->step_length * plan->product[i];
+                sum += (double)r * r * plan->matrix.inverse[i];
+            }
         }
         plan->partial[block][0] = sum;
     }
@@ -99,8 +151,10 @@ static void conduct_advance(void *context, int begin, int end) {
 static void conduct_settle(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    uint32_t last = heat_block_end(plan, end - 1);
-    for (uint32_t i = (uint32_t)begin * POOL_BLOCK; i < last; i++) plan->star[i] += plan->correction[i];
+    for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
+        if (!plan->rest.awake[pass->turn][g]) continue;
+        for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) plan->star[i] += plan->correction[i];
+    }
 }
 
 /// A float next to x, the upper or the lower with the odds that make it right in the mean.
@@ -115,24 +169,40 @@ static inline float conduct_round(double x, uint32_t hash) {
     return (float)(x + unit * (((double)(hash >> 8) + 0.5) / 16777216.0 - 0.5));
 }
 
-static void conduct_finish(void *context, int begin, int end) {
-    const HeatPass *pass = context;
+/// The new temperatures of a group; adds the heat made there, and returns the first particle at fault or -1.
+static double conduct_finish_group(const HeatPass *pass, uint32_t group, double *made) {
     HeatPlan *plan = pass->plan;
     const float *temperature = pass->state->heat.temperature;
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
+    double bad = -1;
+    HeatLanes inflow = {0};
+    for (uint32_t i = group * HEAT_GROUP; i < heat_group_last(plan, group); i++) {
+        if (i % HEAT_ROWS == 0) inflow = conduct_inflow(&plan->matrix, plan->star, i);
+        plan->next[i] = temperature[i];
+        bool changes = inflow[i % HEAT_ROWS] != 0 || plan->delta[i] != 0;
+        if (bad < 0 && !changes && plan->alive[i] && !(temperature[i] > 0 && temperature[i] < INFINITY)) bad = i;
+        if (!changes || !plan->alive[i]) continue;
+        double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];
+        double change = plan->delta[i] + rise;
+        if (change != 0)
+            plan->next[i] = conduct_round(temperature[i] + change, random_hash(i, low, high, CONDUCT_SEED));
+        if (bad < 0 && !(plan->next[i] > 0 && plan->next[i] < INFINITY)) bad = i;
+        if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
+            *made += matter->capacity[i] * rise;
+    }
+    return bad;
+}
+
+static void conduct_finish(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double made = 0, bad = -1;
-        for (uint32_t i = (uint32_t)block * POOL_BLOCK; i < heat_block_end(plan, block); i++) {
-            plan->next[i] = temperature[i];
-            if (!plan->alive[i]) continue;
-            double rise = (double)pass->dt * conduct_inflow(&plan->matrix, plan->star, i) / plan->measure[i];
-            double change = plan->delta[i] + rise;
-            if (change != 0)
-                plan->next[i] = conduct_round(temperature[i] + change, random_hash(i, low, high, CONDUCT_SEED));
-            if (bad < 0 && !(plan->next[i] > 0 && plan->next[i] < INFINITY)) bad = i;
-            if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
-                made += matter->capacity[i] * rise;
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            if (!plan->rest.awake[pass->turn][g]) continue;
+            double fault = conduct_finish_group(pass, g, &made);
+            if (bad < 0) bad = fault;
         }
         plan->partial[block][0] = made;
         plan->partial[block][1] = bad;
@@ -145,7 +215,9 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     double residual = heat_sum(plan, 0), tolerance = plan->settings.tolerance;
     double enough = tolerance * tolerance * heat_sum(plan, 1);
     pass->direction = 0;
+    pass->turn = 0;
     for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough; k++) {
+        pass->turn = !pass->turn;
         heat_blocks(pass, conduct_direction);
         heat_blocks(pass, conduct_product);
         double curvature = heat_sum(plan, 0);

@@ -41,19 +41,21 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
         float T = temperature[i];
-        if (!plan->alive[i]) {
+        bool calm = T == ambient && burn_rate[i] == 0 && plan->flux[i] == 0 && plan->source_conductance[i] == 0 &&
+                    plan->source_temperature[i] == 0;
+        if (calm || !plan->alive[i]) {
             plan->star[i] = T, plan->delta[i] = 0;
             continue;
         }
-        float combustion = matter->heating[i] * burn_rate[i] * h;
+        float combustion = field_at(matter->heating, i) * burn_rate[i] * h;
         float T1 = T + combustion;
         float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
         float T2 = T1 + warmth * flux;
-        float floor_mass = matter->loss_mass_floor[i], burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
-        float radiation = matter->emissivity[i] * STEFAN_BOLTZMANN;
-        float exchange = matter->convection[i] + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
+        float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
+        float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
+        float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
         float rate = warmth * exchange / burnt * slower; // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
@@ -64,17 +66,67 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     }
 }
 
+/// Nothing of eq 1 happens at particles [first, last): all at the ambient temperature, and no source and no fire there.
+static bool heat_is_calm(const HeatPass *pass, uint32_t first, uint32_t last) {
+    const HeatPlan *plan = pass->plan;
+    const float *temperature = pass->state->heat.temperature, *burn_rate = pass->state->burn.burn_rate;
+    const float *flux = plan->flux, *conductance = plan->source_conductance, *tends = plan->source_temperature;
+    float ambient = plan->settings.ambient_temperature;
+    int busy = 0;
+    for (uint32_t i = first; i < last; i++)
+        busy |= (temperature[i] != ambient) | (flux[i] != 0) | (conductance[i] != 0) | (tends[i] != 0) |
+                (burn_rate[i] != 0);
+    return !busy;
+}
+
+/// Not all of the particles [first, last) that live are at the ambient temperature and stay there.
+static bool heat_is_warm(const HeatPlan *plan, uint32_t first, uint32_t last) {
+    float ambient = plan->settings.ambient_temperature;
+    int warm = 0;
+    for (uint32_t i = first; i < last; i++)
+        warm |= plan->alive[i] & ((plan->star[i] != ambient) | (plan->delta[i] != 0));
+    return warm;
+}
+
+static void heat_exchange_group(const HeatPass *pass, uint32_t group, double ledger[4]) {
+    HeatPlan *plan = pass->plan;
+    const uint16_t *sheet = pass->shell->matter.sheet;
+    uint32_t first = group * HEAT_GROUP, last = heat_group_last(plan, group);
+    plan->rest.warm[group] = 0;
+    if (heat_is_calm(pass, first, last)) {
+        for (uint32_t i = first; i < last; i++)
+            plan->star[i] = plan->settings.ambient_temperature, plan->delta[i] = 0;
+        return;
+    }
+    for (uint32_t i = first, run; i < last; i = run) {
+        for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
+        heat_exchange_run(pass, i, run, ledger);
+    }
+    plan->rest.warm[group] = heat_is_warm(plan, first, last);
+}
+
 static void heat_exchange(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    const uint16_t *sheet = pass->shell->matter.sheet;
     for (int block = begin; block < end; block++) {
         double *ledger = plan->partial[block];
         ledger[0] = ledger[1] = ledger[2] = 0;
-        uint32_t last = heat_block_end(plan, block);
-        for (uint32_t i = (uint32_t)block * POOL_BLOCK, run; i < last; i = run) {
-            for (run = i + 1; run < last && sheet[run] == sheet[i];) run++;
-            heat_exchange_run(pass, i, run, ledger);
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++)
+            heat_exchange_group(pass, g, ledger);
+    }
+}
+
+/// Takes the new temperatures over where anything may have changed.
+static void heat_take_over(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    const HeatPlan *plan = pass->plan;
+    float *restrict temperature = pass->heat->temperature, *restrict peak = pass->heat->temperature_peak;
+    const float *restrict next = plan->next;
+    for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
+        if (!plan->rest.awake[pass->turn][g]) continue;
+        for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
+            temperature[i] = next[i];
+            peak[i] = next[i] > peak[i] ? next[i] : peak[i];
         }
     }
 }
@@ -82,9 +134,10 @@ static void heat_exchange(void *context, int begin, int end) {
 SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
                       const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
                       HeatCounters *counters, SingeError *error) {
-    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .pool = pool, .h = h, .dt = h * plan->settings.pace};
+    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = pool, .h = h,
+                     .dt = h * plan->settings.pace};
     double made = 0;
-    heat_matrix_follow(plan, shell, &state->ablate);
+    heat_matrix_follow(plan, shell, &state->ablate, pass.dt);
 
     // eq 1: sources, combustion, losses
     heat_gather(&pass, sources, colliders, view);
@@ -94,11 +147,7 @@ SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, co
     // eq 2 and 3: diffusion
     TRY(heat_conduct(&pass, counters, &made, error));
 
-    for (uint32_t i = 0; i < plan->particles; i++) {
-        float T = plan->next[i];
-        heat->temperature[i] = T;
-        heat->temperature_peak[i] = T > heat->temperature_peak[i] ? T : heat->temperature_peak[i];
-    }
+    heat_blocks(&pass, heat_take_over);
     heat->heat_in += in + made;
     heat->heat_lost += lost;
     heat->heat_of_combustion += combustion;

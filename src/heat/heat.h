@@ -32,6 +32,7 @@ typedef struct HeatSettings {
     float tolerance;           ///< relative residual of the diffusion
     float pace;
     float up[3];               ///< unit, against gravity: where hot gas goes
+    size_t scratch_least;      ///< bytes
 } HeatSettings;
 
 /// Operators and scratch of the stage, built once.
@@ -40,6 +41,10 @@ typedef struct HeatPlan HeatPlan;
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
                              SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
+
+/// Memory that the stage needs while it runs, and that the caller may use from one heat_step to the next: at least
+/// settings.scratch_least bytes.
+void *heat_scratch(HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).
 float heat_thickening(const HeatPlan *plan, uint32_t sheet);

@@ -1,104 +1,190 @@
-// The matrix of the heat equation: rows of conductances, kept in step with what ablation removes.
+// The matrix of the heat equation: rows of conductances. Springs and particles go and never come back, so that an
+// entry loses its value when its spring does, and nothing of the springs need be kept.
 #include <string.h>
 
 #include "heat/plan.h"
 
-/// Counts entries per row into first[i + 1], or fills them when `fill` holds each row's next place.
-static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *fill) {
+/// Counts the entries of every row in `length`, or fills them in where `fill` is set.
+static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length, bool fill) {
     HeatMatrix *matrix = &plan->matrix;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
-            uint32_t spring = plan->spring_first[c] + k;
-            if (plan->conductance[spring] == 0) continue;
+            float conductance = plan->conductance[plan->spring_first[c] + k];
+            if (conductance == 0) continue;
             for (int end = 0; end < 2; end++) {
-                uint32_t row = shell->springs[c].ends[k][end];
-                if (!fill) {
-                    matrix->first[row + 1]++;
-                    continue;
-                }
-                matrix->column[fill[row]] = shell->springs[c].ends[k][!end];
-                matrix->spring[fill[row]++] = spring;
+                uint32_t row = shell->springs[c].ends[k][end], entry = length[row]++;
+                if (!fill) continue;
+                matrix->column[heat_entry(matrix, row, entry)] = shell->springs[c].ends[k][!end];
+                matrix->value[heat_entry(matrix, row, entry)] = conductance;
             }
         }
 }
 
-/// Values of one row. A spring conducts while it and both its ends are alive
-/// (bit 0 of their flags). Where an obtuse angle makes a
-/// conductance negative, it is safe only in the company of all the others at its ends: it goes with the first of them.
-static void matrix_row(HeatPlan *plan, uint32_t row) {
-    HeatMatrix *matrix = &plan->matrix;
-    float sum = 0;
-    for (uint32_t k = matrix->first[row]; k < matrix->first[row + 1]; k++) {
-        uint32_t spring = matrix->spring[k], other = matrix->column[k];
-        float c = plan->conductance[spring];
-        bool conducts = plan->spring_alive[spring] & plan->alive[row] & plan->alive[other] & 1 &&
-                        (c >= 0 || (plan->dead[row] == 0 && plan->dead[other] == 0));
-        matrix->value[k] = conducts ? c : 0;
-        sum += matrix->value[k];
+/// Lays out the slices, each as wide as its longest row.
+static void matrix_lay_out(HeatMatrix *matrix, uint32_t rows, const uint32_t *length) {
+    for (uint32_t slice = 0; slice < matrix->slices; slice++) {
+        uint32_t widest = 0;
+        for (uint32_t i = slice * HEAT_ROWS; i < rows && i < (slice + 1) * HEAT_ROWS; i++)
+            widest = length[i] > widest ? length[i] : widest;
+        matrix->first[slice + 1] = matrix->first[slice] + HEAT_ROWS * widest;
     }
-    matrix->sum[row] = sum;
+    matrix->entries = matrix->first[matrix->slices];
 }
 
-/// Rows of a particle and of all its neighbours.
-static void matrix_around(HeatPlan *plan, uint32_t row) {
-    matrix_row(plan, row);
-    for (uint32_t k = plan->matrix.first[row]; k < plan->matrix.first[row + 1]; k++)
-        matrix_row(plan, plan->matrix.column[k]);
+/// Every entry in its own column, rows that there are not in that of the last.
+static void matrix_fill_up(HeatMatrix *matrix, uint32_t rows) {
+    for (uint32_t slice = 0; slice < matrix->slices; slice++)
+        for (uint32_t e = matrix->first[slice]; e < matrix->first[slice + 1]; e++) {
+            uint32_t row = slice * HEAT_ROWS + (e - matrix->first[slice]) % HEAT_ROWS;
+            matrix->column[e] = row < rows ? row : rows - 1;
+        }
+}
+
+/// The inverse of a row's diagonal.
+static void matrix_invert(HeatPlan *plan, uint32_t row) {
+    HeatMatrix *matrix = &plan->matrix;
+    float sum = 0;
+    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) sum += matrix->value[heat_entry(matrix, row, k)];
+    float diagonal = plan->measure[row] + matrix->dt * sum;
+    matrix->inverse[row] = diagonal > 0 && plan->alive[row] ? 1 / diagonal : 0;
+}
+
+/// How many entries of a row are in a column: more than one where several springs join the same two particles.
+static uint32_t matrix_count(const HeatMatrix *matrix, uint32_t row, uint32_t column) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++)
+        count += matrix->column[heat_entry(matrix, row, k)] == column;
+    return count;
+}
+
+/// Lists the springs that share both ends with another one, in order, or only counts them.
+static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin *twins) {
+    uint32_t count = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        for (uint32_t k = 0; k < shell->springs[c].count; k++) {
+            const uint32_t *ends = shell->springs[c].ends[k];
+            uint32_t spring = plan->spring_first[c] + k;
+            uint32_t own = plan->conductance[spring] != 0;
+            if (matrix_count(&plan->matrix, ends[0], ends[1]) == own) continue;
+            if (twins) twins[count] = (HeatTwin){spring, plan->conductance[spring]};
+            count++;
+        }
+    return count;
 }
 
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell) {
     HeatMatrix *matrix = &plan->matrix;
-    uint32_t n = plan->particles, *fill;
-    if (!NEW(memory, matrix->first, (size_t)n + 1) || !NEW(memory, matrix->sum, n)) return SINGE_ERROR_MEMORY;
-    matrix_scatter(plan, shell, NULL);
-    for (uint32_t i = 0; i < n; i++) matrix->first[i + 1] += matrix->first[i];
-    matrix->entries = matrix->first[n];
-    if (!NEW(memory, matrix->column, matrix->entries) || !NEW(memory, matrix->spring, matrix->entries) ||
-        !NEW(memory, matrix->value, matrix->entries) || !NEW(memory, fill, n))
-        return SINGE_ERROR_MEMORY;
-    memcpy(fill, matrix->first, n * sizeof *fill);
-    matrix_scatter(plan, shell, fill);
-    FREE(memory, fill, n);
+    uint32_t n = plan->particles, *length = NULL;
+    matrix->slices = n / HEAT_ROWS + (n % HEAT_ROWS > 0);
+    bool ok = NEW(memory, matrix->first, (size_t)matrix->slices + 1) && NEW(memory, matrix->inverse, n) &&
+              NEW(memory, length, n);
+    if (ok) {
+        matrix_scatter(plan, shell, length, false);
+        matrix_lay_out(matrix, n, length);
+        ok = NEW(memory, matrix->column, matrix->entries) && NEW(memory, matrix->value, matrix->entries);
+    }
+    if (ok) {
+        memset(length, 0, n * sizeof *length);
+        matrix_fill_up(matrix, n);
+        matrix_scatter(plan, shell, length, true);
+    }
+    FREE(memory, length, n);
+    if (!ok) return SINGE_ERROR_MEMORY;
     memset(plan->spring_alive, 1, plan->springs);
     for (uint32_t i = 0; i < n; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
-    for (uint32_t i = 0; i < n; i++) matrix_row(plan, i);
+    matrix->twin_count = matrix_twins(plan, shell, NULL);
+    if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
+    matrix_twins(plan, shell, matrix->twins);
     return SINGE_OK;
 }
 
 void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     HeatMatrix *matrix = &plan->matrix;
-    FREE(memory, matrix->first, (size_t)plan->particles + 1);
-    FREE(memory, matrix->sum, plan->particles);
+    FREE(memory, matrix->first, (size_t)matrix->slices + 1);
+    FREE(memory, matrix->inverse, plan->particles);
     FREE(memory, matrix->column, matrix->entries);
-    FREE(memory, matrix->spring, matrix->entries);
     FREE(memory, matrix->value, matrix->entries);
+    FREE(memory, matrix->twins, matrix->twin_count);
 }
 
-void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate) {
-    // flags first, rows after: a row looks at the flags of its neighbours
-    for (int pass = 0; pass < 2; pass++) {
-        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
-            const uint8_t *flags = ablate->spring_flags[c];
-            uint8_t *known = plan->spring_alive + plan->spring_first[c];
-            for (uint32_t k = 0; k < shell->springs[c].count; k++) {
-                // bit 1 marks a change between the two passes
-                if (pass == 0 && (flags[k] & SINGE_ALIVE) != known[k]) {
-                    known[k] ^= 1;
-                    for (int end = 0; end < 2; end++) plan->dead[shell->springs[c].ends[k][end]] += known[k] ? -1 : 1;
-                    known[k] |= 2;
-                } else if (pass == 1 && known[k] & 2) {
-                    known[k] &= 1;
-                    for (int end = 0; end < 2; end++) matrix_around(plan, shell->springs[c].ends[k][end]);
-                }
-            }
+/// The spring among those that are not alone between their ends, or NULL.
+static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
+    uint32_t low = 0, high = matrix->twin_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (matrix->twins[middle].spring < spring) low = middle + 1;
+        else high = middle;
+    }
+    return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
+}
+
+/// Empties an entry of a spring that is gone. Twins are told apart by their values; equal ones need not be.
+static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32_t spring) {
+    const HeatTwin *twin = matrix_twin(matrix, spring);
+    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
+        uint32_t entry = heat_entry(matrix, row, k);
+        if (matrix->column[entry] != column || (twin && matrix->value[entry] != twin->conductance)) continue;
+        matrix->value[entry] = 0;
+        return;
+    }
+}
+
+/// Where an obtuse angle makes a conductance negative, it is safe only in the company of all the others at its ends: it
+/// goes with the first of them. What a dead particle still has goes as well.
+static void matrix_cut_unsafe(HeatPlan *plan, uint32_t row) {
+    HeatMatrix *matrix = &plan->matrix;
+    bool alive = plan->alive[row];
+    for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
+        uint32_t entry = heat_entry(matrix, row, k), other = matrix->column[entry];
+        if (matrix->value[entry] >= 0 && alive) continue;
+        matrix->value[entry] = 0;
+        for (uint32_t j = 0; j < heat_row_width(matrix, other); j++) {
+            uint32_t back = heat_entry(matrix, other, j);
+            if (matrix->column[back] == row && (matrix->value[back] < 0 || !alive)) matrix->value[back] = 0;
         }
-        for (uint32_t i = 0; i < plan->particles; i++) {
-            bool alive = ablate->particle_flags[i] & SINGE_ALIVE && plan->measure[i] > 0 && shell->matter.area[i] > 0;
-            if (pass == 0 && alive != plan->alive[i]) plan->alive[i] = alive | 2;
-            else if (pass == 1 && plan->alive[i] & 2) {
-                plan->alive[i] &= 1;
-                matrix_around(plan, i);
-            }
+        matrix_invert(plan, other);
+    }
+    matrix_invert(plan, row);
+}
+
+static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t spring) {
+    plan->spring_alive[spring] = 0;
+    for (int end = 0; end < 2; end++) matrix_cut(&plan->matrix, ends[end], ends[!end], spring);
+    for (int end = 0; end < 2; end++) matrix_cut_unsafe(plan, ends[end]);
+}
+
+/// Whether any of particles [first, last) has died since.
+static bool matrix_lost_any(const uint8_t *known, const uint8_t *flags, uint32_t first, uint32_t last) {
+    uint8_t lost = 0;
+    for (uint32_t i = first; i < last; i++) lost |= known[i] & (flags[i] ^ SINGE_ALIVE);
+    return lost & SINGE_ALIVE;
+}
+
+void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt) {
+    enum { LOOK = 1024 }; // at once, for a loss is rare
+    uint32_t count = plan->particles, last;
+    if (plan->matrix.dt != dt) { // the first step, or a step of another length
+        plan->matrix.dt = dt;
+        for (uint32_t i = 0; i < count; i++) matrix_invert(plan, i);
+    }
+    for (uint32_t first = 0; first < count; first = last) {
+        last = count - first < LOOK ? count : first + LOOK;
+        if (!matrix_lost_any(plan->alive, ablate->particle_flags, first, last)) continue;
+        for (uint32_t i = first; i < last; i++) {
+            if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
+            plan->alive[i] = 0;
+            matrix_cut_unsafe(plan, i);
+        }
+    }
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        const uint8_t *flags = ablate->spring_flags[c], *known = plan->spring_alive + plan->spring_first[c];
+        count = shell->springs[c].count;
+        for (uint32_t first = 0; first < count; first = last) {
+            last = count - first < LOOK ? count : first + LOOK;
+            if (!matrix_lost_any(known, flags, first, last)) continue;
+            for (uint32_t k = first; k < last; k++)
+                if (known[k] && !(flags[k] & SINGE_ALIVE))
+                    matrix_lose_spring(plan, shell->springs[c].ends[k], plan->spring_first[c] + k);
         }
     }
 }

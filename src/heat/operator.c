@@ -81,15 +81,15 @@ static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColo
     bool surface = shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE;
     float end[2];
     for (int k = 0; k < 2; k++)
-        end[k] = matter->diffusivity[ends[k]] * (surface ? matter->capacity_ratio[ends[k]] : 1);
+        end[k] = field_at(matter->diffusivity, ends[k]) * (surface ? field_at(matter->capacity_ratio, ends[k]) : 1);
     return 0.5f * (end[0] + end[1]) * plan->thickening[sheet];
 }
 
 /// Exchange between the layers, as it is at both particles in the mean, 1/s.
 static float operator_rate(const HeatPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
     const Matter *matter = &shell->matter;
-    float mean = 0.5f * (matter->layer_exchange[a] * matter->capacity_ratio[a] +
-                         matter->layer_exchange[b] * matter->capacity_ratio[b]);
+    float mean = 0.5f * (field_at(matter->layer_exchange, a) * field_at(matter->capacity_ratio, a) +
+                         field_at(matter->layer_exchange, b) * field_at(matter->capacity_ratio, b));
     return mean / plan->thickening[matter->sheet[a]];
 }
 
@@ -125,7 +125,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
             conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)diagonal[k];
     Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
     for (int k = 0; k < 4; k++) {
-        uint32_t other = springs->neighbour[k];
+        uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE || springs->green[k] == SHELL_NONE) continue;
         operator_corners(shell, other, y);
         Vec d = vec_sub(vec_scale(vec_add(vec_add(y[0], y[1]), vec_add(y[2], y[3])), 0.25f), middle);
@@ -191,7 +191,8 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
             continue;
         }
         for (uint32_t i = 0; i < shell->particle_count; i++)
-            if (shell->matter.sheet[i] == s) plan->measure[i] = shell->matter.area[i] * shell->matter.capacity_ratio[i];
+            if (shell->matter.sheet[i] == s)
+                plan->measure[i] = shell->matter.area[i] * field_at(shell->matter.capacity_ratio, i);
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             operator_cell(plan, shell, c);
             operator_exchange(plan, shell, c);

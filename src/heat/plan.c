@@ -11,11 +11,11 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, count = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
-        diffusivity += matter->diffusivity[i];
-        rate += matter->mass_rate[i];
-        heating += matter->heating[i];
-        ignition += matter->ignition_temperature[i];
-        ceiling += matter->rate_ceiling[i];
+        diffusivity += field_at(matter->diffusivity, i);
+        rate += field_at(matter->mass_rate, i);
+        heating += field_at(matter->heating, i);
+        ignition += field_at(matter->ignition_temperature, i);
+        ceiling += field_at(matter->rate_ceiling, i);
         count++;
     }
     if (count == 0) return 1;
@@ -24,16 +24,24 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     return heat_thickening_for(sheet->material.thickening, &front, ambient, sheet->cell_size);
 }
 
+static bool plan_allocate_scratch(Memory *memory, HeatPlan *plan) {
+    float **arrays[] = {&plan->flux, &plan->source_conductance, &plan->source_temperature, &plan->star, &plan->delta,
+                        &plan->correction, &plan->residual, &plan->search, &plan->product, &plan->next};
+    enum { ARRAYS = sizeof arrays / sizeof *arrays };
+    size_t slices = plan->particles / HEAT_ROWS + 1, stride = slices * HEAT_ROWS; // whole slices can be read
+    size_t needed = ARRAYS * stride * sizeof(float), least = plan->settings.scratch_least;
+    plan->scratch_size = needed > least ? needed : least;
+    if (!(plan->scratch = memory_new(memory, plan->scratch_size, 1))) return false;
+    for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
+    return true;
+}
+
 static bool plan_allocate(Memory *memory, HeatPlan *plan) {
     size_t n = plan->particles, springs = plan->springs;
     return NEW(memory, plan->thickening, plan->sheets) && NEW(memory, plan->measure, n) &&
            NEW(memory, plan->conductance, springs) && NEW(memory, plan->spring_alive, springs) &&
-           NEW(memory, plan->alive, n) && NEW(memory, plan->dead, n) && NEW(memory, plan->flux, n) &&
-           NEW(memory, plan->source_conductance, n) && NEW(memory, plan->source_temperature, n) &&
+           NEW(memory, plan->alive, n) && plan_allocate_scratch(memory, plan) &&
            NEW(memory, plan->plume.power, PLUME_CELLS) && NEW(memory, plan->plume.rising, PLUME_CELLS) &&
-           NEW(memory, plan->star, n) && NEW(memory, plan->delta, n) && NEW(memory, plan->correction, n) &&
-           NEW(memory, plan->residual, n) && NEW(memory, plan->search, n) && NEW(memory, plan->product, n) &&
-           NEW(memory, plan->inverse_diagonal, n) && NEW(memory, plan->next, n) &&
            NEW(memory, plan->partial, (size_t)plan->blocks);
 }
 
@@ -72,6 +80,8 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
         heat_operator(plan, shell);
         heat_plume_frame(&plan->plume, settings->up);
         result = heat_matrix_create(memory, plan, shell);
+        FREE(memory, plan->conductance, plan->springs);
+        if (!result) result = heat_rest_create(memory, plan);
     }
     if (result) heat_plan_free(memory, plan);
     else *out = plan;
@@ -81,28 +91,20 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 void heat_plan_free(Memory *memory, HeatPlan *plan) {
     if (!plan) return;
     size_t n = plan->particles, springs = plan->springs;
+    heat_rest_free(memory, plan);
     heat_matrix_free(memory, plan);
     FREE(memory, plan->thickening, plan->sheets);
     FREE(memory, plan->measure, n);
     FREE(memory, plan->conductance, springs);
     FREE(memory, plan->spring_alive, springs);
     FREE(memory, plan->alive, n);
-    FREE(memory, plan->dead, n);
-    FREE(memory, plan->flux, n);
-    FREE(memory, plan->source_conductance, n);
-    FREE(memory, plan->source_temperature, n);
+    memory_free(memory, (void *)&plan->scratch, plan->scratch_size, 1);
     FREE(memory, plan->plume.power, PLUME_CELLS);
     FREE(memory, plan->plume.rising, PLUME_CELLS);
-    FREE(memory, plan->star, n);
-    FREE(memory, plan->delta, n);
-    FREE(memory, plan->correction, n);
-    FREE(memory, plan->residual, n);
-    FREE(memory, plan->search, n);
-    FREE(memory, plan->product, n);
-    FREE(memory, plan->inverse_diagonal, n);
-    FREE(memory, plan->next, n);
     FREE(memory, plan->partial, (size_t)plan->blocks);
     FREE(memory, plan, 1);
 }
+
+void *heat_scratch(HeatPlan *plan) { return plan->scratch; }
 
 float heat_thickening(const HeatPlan *plan, uint32_t sheet) { return plan->thickening[sheet]; }

@@ -7,15 +7,50 @@
 /// Cells of the plume's grid, at most.
 enum { PLUME_CELLS = 1 << 16 };
 
-/// The heat equation's matrix in rows: entry k of row i is a spring's conductance to particle column[k].
-/// `value` is 0 where the spring conducts no more; conductances are without the time step.
+/// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
+enum { HEAT_GROUP = 64 };
+
+/// A spring that shares both its ends with another one that conducts.
+typedef struct HeatTwin {
+    uint32_t spring;   ///< in the numbering of all colours
+    float conductance;
+} HeatTwin;
+
+/// Rows of the matrix that lie interleaved.
+enum { HEAT_ROWS = 4 };
+
+/// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
+/// spring conducts no more; conductances are without the time step. HEAT_ROWS rows lie interleaved, so that a processor
+/// can work on all of them at once (ELLPACK by slices): entry k of row i is heat_entry(matrix, i, k). Shorter rows are
+/// filled up with entries of value 0 in their own column.
 typedef struct HeatMatrix {
-    uint32_t *first;  ///< [particles + 1]
-    uint32_t *column, *spring; ///< [entries]
+    uint32_t *first;  ///< [slices + 1]
+    uint32_t *column; ///< [entries]
     float *value;     ///< [entries]
-    float *sum;       ///< [particles] of a row's values
-    uint32_t entries;
+    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
+    float dt;         ///< s, of `inverse`
+    uint32_t slices, entries;
+    HeatTwin *twins;  ///< hardly ever any
+    uint32_t twin_count;
 } HeatMatrix;
+
+/// Entries of every row in the slice of row i, and where entry k of row i lies.
+static inline uint32_t heat_row_width(const HeatMatrix *matrix, uint32_t i) {
+    return (matrix->first[i / HEAT_ROWS + 1] - matrix->first[i / HEAT_ROWS]) / HEAT_ROWS;
+}
+static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t k) {
+    return matrix->first[i / HEAT_ROWS] + HEAT_ROWS * k + i % HEAT_ROWS;
+}
+
+/// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
+typedef struct HeatRest {
+    uint32_t groups;
+    uint32_t *first;   ///< [groups + 1] the groups that conduct with group g are near[first[g]] up to
+    uint32_t *near;    ///< near[first[g + 1]], less itself; all where there would be too many to list
+    uint32_t near_count;
+    uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
+    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
+} HeatRest;
 
 /// Hot gas in upright columns (plume.c). Cell (x, y, z) is x + nx (y + ny z), z against gravity.
 typedef struct PlumeGrid {
@@ -36,23 +71,26 @@ struct HeatPlan {
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
-    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built
     uint8_t *spring_alive; ///< [springs] as the matrix has it
     uint8_t *alive;        ///< [particles] as the matrix has it
-    uint16_t *dead;        ///< [particles] springs at it that are gone
     HeatMatrix matrix;
+    HeatRest rest;
+
+    void *scratch;         ///< the arrays below, but for the plume
+    size_t scratch_size;
 
     // sources, per particle
     float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
-    PlumeGrid plume;
 
     // solver, per particle
     float *star;           ///< T* after sources and losses, K
     float *delta;          ///< T* - T, K
     float *correction;     ///< T - T* of the diffusion, K
-    float *residual, *search, *product, *inverse_diagonal;
+    float *residual, *search, *product;
     float *next;           ///< the new temperature, K
     double (*partial)[4];  ///< [blocks]
+    PlumeGrid plume;
 };
 
 /// What a step's passes read.
@@ -60,11 +98,13 @@ typedef struct HeatPass {
     HeatPlan *plan;
     const Shell *shell;
     const State *state;
+    HeatState *heat;
     Pool *pool;
     float h;  ///< s of scene time
     float dt; ///< s of fire
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
+    int turn;          ///< which of rest.awake holds
 } HeatPass;
 
 /// Fills plan->conductance and plan->measure (operator.c).
@@ -73,8 +113,14 @@ void heat_operator(HeatPlan *plan, const Shell *shell);
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
-/// Makes the matrix follow what ablation removed since the last call.
-void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate);
+/// Makes the matrix follow what ablation removed since the last call, and the time step.
+void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
+
+/// Lists which groups conduct with which (rest.c).
+SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
+void heat_rest_free(Memory *memory, HeatPlan *plan);
+/// Whether the group or one near it is in `set`.
+bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
 
 /// Sums all sources into the plan's arrays (source.c, plume.c).
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
@@ -93,6 +139,17 @@ double heat_sum(const HeatPlan *plan, int column);
 static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
     uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
     return end < plan->particles ? end : plan->particles;
+}
+/// The groups of a block are [heat_group_first, heat_group_end).
+static inline uint32_t heat_group_first(int block) { return (uint32_t)block * (POOL_BLOCK / HEAT_GROUP); }
+static inline uint32_t heat_group_end(const HeatPlan *plan, int block) {
+    uint32_t end = heat_group_first(block + 1);
+    return end < plan->rest.groups ? end : plan->rest.groups;
+}
+/// The particles of a group are [group * HEAT_GROUP, heat_group_last).
+static inline uint32_t heat_group_last(const HeatPlan *plan, uint32_t group) {
+    uint32_t last = (group + 1) * HEAT_GROUP;
+    return last < plan->particles ? last : plan->particles;
 }
 
 #endif

@@ -94,7 +94,8 @@ static void plume_deposit(PlumeGrid *grid, const HeatPass *pass, float share) {
     const float *burn_rate = pass->state->burn.burn_rate;
     for (uint32_t i = 0; i < pass->plan->particles; i++) {
         if (!(burn_rate[i] > 0) || !pass->plan->alive[i]) continue;
-        float power = matter->capacity[i] * matter->heating[i] * burn_rate[i] * share / pass->plan->settings.pace;
+        float heat = matter->capacity[i] * field_at(matter->heating, i);
+        float power = heat * burn_rate[i] * share / pass->plan->settings.pace;
         float weight;
         PlumePlace place = plume_place(grid, pass->state->dynamics.position[i]);
         for (int k = 0; k < 4; k++) {

@@ -9,8 +9,9 @@
 // the opposite side of the cell, a red one at the centre into that of the opposite corner, and at a vertex
 // each into the one opposite in the fan of cells, where there is one.
 #include "shell/family.h"
-#include "shell/measure.h"
 #include "shell/half_edge.h"
+#include "shell/matter.h"
+#include "shell/measure.h"
 #include "shell/strand.h"
 
 #include <string.h>
@@ -33,61 +34,18 @@ static SingeResult shell_count(const SheetSource *sources, uint32_t source_count
     return SINGE_OK;
 }
 
-/// The per-particle float arrays of Matter: one a parameter, and two more. Mass and capacity hold grammage and specific
-/// heat until measure_particles has the areas.
-enum { MATTER_FLOATS = PARAM_COUNT + 2 };
-
-static void matter_fields(Matter *matter, float **fields[MATTER_FLOATS]) {
-    float **list[MATTER_FLOATS] = {
-        [PARAM_THICKNESS] = &matter->thickness,
-        [PARAM_DIFFUSIVITY] = &matter->diffusivity,
-        [PARAM_TEMPERATURE] = &matter->temperature,
-        [PARAM_IGNITION] = &matter->ignition_temperature,
-        [PARAM_HEATING] = &matter->heating,
-        [PARAM_MASS_RATE] = &matter->mass_rate,
-        [PARAM_ASH_EXPONENT] = &matter->ash_exponent,
-        [PARAM_MASS_MIN] = &matter->mass_min,
-        [PARAM_MASS_LOSS] = &matter->mass_loss,
-        [PARAM_ASH_DENSITY] = &matter->ash_density,
-        [PARAM_SHRINK] = &matter->shrink,
-        [PARAM_GRAMMAGE] = &matter->mass,
-        [PARAM_SPECIFIC_HEAT] = &matter->capacity,
-        [PARAM_LAYER_EXCHANGE] = &matter->layer_exchange,
-        [PARAM_CONVECTION] = &matter->convection,
-        [PARAM_EMISSIVITY] = &matter->emissivity,
-        [PARAM_LOSS_MASS_FLOOR] = &matter->loss_mass_floor,
-        [PARAM_RATE_CEILING] = &matter->rate_ceiling,
-        [PARAM_CHAR_WEIGHT] = &matter->char_weight,
-        [PARAM_DRAG] = &matter->drag,
-        [PARAM_DAMPING] = &matter->damping,
-        [PARAM_COUNT] = &matter->area,
-        [PARAM_COUNT + 1] = &matter->capacity_ratio,
-    };
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        list[PARAM_WEIGHT + colour] = &matter->weight[colour];
-        list[PARAM_COMPLIANCE + colour] = &matter->compliance[colour];
-    }
-    memcpy(fields, list, sizeof list);
-}
-
 static bool shell_alloc(Memory *memory, Shell *shell) {
-    float **fields[MATTER_FLOATS];
-    matter_fields(&shell->matter, fields);
-    bool done = NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
-                NEW(memory, shell->rest_position, shell->particle_count) &&
-                NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
-                NEW(memory, shell->matter.sheet, shell->particle_count) &&
-                NEW(memory, shell->cell_order, shell->cell_count) &&
-                NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
-                NEW(memory, shell->fan, (size_t)4 * shell->cell_count);
-    for (int f = 0; f < MATTER_FLOATS && done; f++) done = NEW(memory, *fields[f], shell->particle_count);
-    return done;
+    return NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
+           NEW(memory, shell->rest_position, shell->particle_count) &&
+           NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
+           NEW(memory, shell->matter.sheet, shell->particle_count) &&
+           NEW(memory, shell->cell_order, shell->cell_count) &&
+           NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
+           NEW(memory, shell->fan, (size_t)4 * shell->cell_count);
 }
 
 void shell_free(Memory *memory, Shell *shell) {
-    float **fields[MATTER_FLOATS];
-    matter_fields(&shell->matter, fields);
-    for (int f = 0; f < MATTER_FLOATS; f++) FREE(memory, *fields[f], shell->particle_count);
+    matter_free(memory, shell);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strand_free(memory, &shell->springs[colour]);
     FREE(memory, shell->cells, shell->cell_count);
     FREE(memory, shell->cell_springs, shell->cell_count);
@@ -105,14 +63,7 @@ void shell_free(Memory *memory, Shell *shell) {
 /// Copies one sheet to its ranges, which begin at sheet->vertex_first and cell_first.
 static void place_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
     const Sheet *sheet = &shell->sheets[index];
-    uint32_t total = sheet->vertex_count + sheet->cell_count, centre = shell_centre(shell, sheet->cell_first);
-    float **fields[MATTER_FLOATS];
-    matter_fields(&shell->matter, fields);
-    for (int p = 0; p < PARAM_COUNT; p++) {
-        const float *values = source->params + (size_t)p * total;
-        for (uint32_t v = 0; v < sheet->vertex_count; v++) (*fields[p])[sheet->vertex_first + v] = values[v];
-        for (uint32_t c = 0; c < sheet->cell_count; c++) (*fields[p])[centre + c] = values[sheet->vertex_count + c];
-    }
+    uint32_t centre = shell_centre(shell, sheet->cell_first);
     for (uint32_t v = 0; v < sheet->vertex_count; v++) {
         uint32_t p = sheet->vertex_first + v;
         for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
@@ -143,7 +94,8 @@ static void place_sheets(Shell *shell, const SheetSource *sources) {
 }
 
 /// Ends of springs in the order of the numbers that cell_springs holds before the strands are known.
-static void list_ends(const Shell *shell, int colour, LooseSprings *loose) {
+static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
+    const Shell *shell = mesh->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const uint32_t *corner = shell->cells[c], centre = shell_centre(shell, c);
         const CellSprings *springs = &shell->cell_springs[c];
@@ -153,9 +105,9 @@ static void list_ends(const Shell *shell, int colour, LooseSprings *loose) {
                 ends = loose->ends[springs->red[i]], ends[0] = centre, ends[1] = a;
             } else if (colour == SINGE_BLUE) {
                 ends = loose->ends[springs->blue[i]], ends[0] = a < b ? a : b, ends[1] = a < b ? b : a;
-            } else if (colour == SINGE_GREEN && springs->neighbour[i] != SHELL_NONE && c < springs->neighbour[i]) {
+            } else if (colour == SINGE_GREEN && springs->green[i] != SHELL_NONE && c < half_edge_across(mesh, c, i)) {
                 ends = loose->ends[springs->green[i]];
-                ends[0] = centre, ends[1] = shell_centre(shell, springs->neighbour[i]);
+                ends[0] = centre, ends[1] = shell_centre(shell, half_edge_across(mesh, c, i));
             } else if (colour == SINGE_YELLOW && i < 2) {
                 ends = loose->ends[springs->yellow[i]], ends[0] = a, ends[1] = corner[i + 2];
             }
@@ -202,15 +154,16 @@ static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *lo
     }
 }
 
-static void join_in_cells(const Shell *shell, int colour, LooseSprings *loose) {
+static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose) {
+    const Shell *shell = mesh->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const CellSprings *springs = &shell->cell_springs[c];
         for (int i = 0; i < 2; i++) {
             if (colour == SINGE_RED)
                 strand_join(loose, 2 * springs->red[i], 2 * springs->red[i + 2]);
             else if (springs->green[i] != SHELL_NONE && springs->green[i + 2] != SHELL_NONE)
-                strand_join(loose, 2 * springs->green[i] + (c > springs->neighbour[i]),
-                            2 * springs->green[i + 2] + (c > springs->neighbour[i + 2]));
+                strand_join(loose, 2 * springs->green[i] + (c > half_edge_across(mesh, c, i)),
+                            2 * springs->green[i + 2] + (c > half_edge_across(mesh, c, i + 2)));
         }
     }
 }
@@ -236,9 +189,9 @@ static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *s
     if (NEW(memory, loose.ends, count) && NEW(memory, loose.mate, (size_t)2 * count) && NEW(memory, number, count) &&
         NEW(memory, ends, (size_t)mesh->fan_longest + 1)) {
         for (uint32_t e = 0; e < 2 * count; e++) loose.mate[e] = SHELL_NONE;
-        list_ends(shell, colour, &loose);
+        list_ends(mesh, colour, &loose);
         if (colour != SINGE_GREEN) join_at_vertices(mesh, colour, &loose, ends);
-        if (colour == SINGE_GREEN || colour == SINGE_RED) join_in_cells(shell, colour, &loose);
+        if (colour == SINGE_GREEN || colour == SINGE_RED) join_in_cells(mesh, colour, &loose);
         result = strand_build(memory, shell->particle_count, &loose, &shell->springs[colour], number, error);
         if (result == SINGE_OK) renumber_cells(shell, colour, number);
     } else {
@@ -303,12 +256,14 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     *shell = (Shell){0};
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
-    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)))
+    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
+        !matter_create(memory, shell, sources))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);
     if (result == SINGE_OK) result = build_springs(memory, shell, error);
     if (result == SINGE_OK) {
         measure_particles(shell);
+        matter_weigh(shell, sources);
         result = measure_springs(shell, error);
     }
     if (result != SINGE_OK) shell_free(memory, shell);

@@ -51,10 +51,9 @@ static SingeResult match(const uint32_t *order, Shell *shell, HalfEdges *mesh, S
             CellSprings *first = &shell->cell_springs[a / 4], *second = &shell->cell_springs[b / 4];
             second->blue[b & 3] = mesh->edge_count;
             first->green[a & 3] = second->green[b & 3] = mesh->shared_count++;
-            first->neighbour[a & 3] = b / 4, second->neighbour[b & 3] = a / 4;
         } else {
             mesh->twin[a] = SHELL_NONE;
-            shell->cell_springs[a / 4].green[a & 3] = shell->cell_springs[a / 4].neighbour[a & 3] = SHELL_NONE;
+            shell->cell_springs[a / 4].green[a & 3] = SHELL_NONE;
         }
         mesh->edge_count++;
     }

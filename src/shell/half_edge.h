@@ -18,7 +18,7 @@ typedef struct HalfEdges {
 } HalfEdges;
 
 /// Matches the sides of the cells, checks that they form a manifold that is turned one way, and numbers
-/// edges: fills blue, green (one for each shared edge) and neighbour of shell->cell_springs.
+/// edges: fills blue and green (one for each shared edge) of shell->cell_springs.
 SingeResult half_edge_build(Memory *memory, Shell *shell, HalfEdges *mesh, SingeError *error);
 void half_edge_free(Memory *memory, HalfEdges *mesh);
 
@@ -28,6 +28,11 @@ static inline uint32_t half_edge_previous(uint32_t half) { return (half & ~3u) |
 /// The half-edge that leaves the same vertex one cell further counter-clockwise, or SHELL_NONE.
 static inline uint32_t half_edge_turn(const HalfEdges *mesh, uint32_t half) {
     return mesh->twin[half_edge_previous(half)];
+}
+
+/// The cell across side i of a cell that has one there.
+static inline uint32_t half_edge_across(const HalfEdges *mesh, uint32_t cell, int i) {
+    return mesh->twin[4 * cell + (uint32_t)i] / 4;
 }
 
 /// True where the cells around the vertex close into a circle.

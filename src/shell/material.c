@@ -102,18 +102,19 @@ float shell_sample_picture(const SingePicture *picture, float u, float v) {
 }
 
 /// What a parameter is evaluated on.
-typedef struct Field {
+typedef struct ParamField {
     const SingeParam *param;
     const float *attribute; ///< [vertex_count] or NULL
     const SheetSource *source;
-} Field;
+} ParamField;
 
 static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, const char *what, SingeError *error) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s %s", source->sheet.name, rule->name,
                      what);
 }
 
-static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, Field *field, SingeError *error) {
+static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field,
+                                   SingeError *error) {
     const char *name = field->param->attribute;
     if (!name) return field_fail(field->source, rule, "names no attribute", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)
@@ -124,7 +125,7 @@ static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *ru
     return SINGE_OK;
 }
 
-static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, Field *field, SingeError *error) {
+static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
     const SingeParam *param = field->param;
     if (param->field == SINGE_FIELD_NONE) return SINGE_OK;
     if (!isfinite(param->value) || !isfinite(param->to)) // no line leads there
@@ -147,7 +148,7 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, F
 }
 
 /// The parameter at the mean of `count` vertices (1, or a cell's 4).
-static float field_value(const Field *field, const uint32_t *vertices, int count) {
+static float field_value(const ParamField *field, const uint32_t *vertices, int count) {
     const SingeParam *param = field->param;
     if (param->field == SINGE_FIELD_NONE) return param->value;
     double uv[2] = {0}, place[3] = {0}, f = 0;
@@ -164,10 +165,11 @@ static float field_value(const Field *field, const uint32_t *vertices, int count
     return (float)((1 - f) * (double)param->value + f * (double)param->to);
 }
 
-static SingeResult evaluate(const Field *field, const ParamRule *rule, SheetSource *source, SingeError *error) {
+/// Evaluates a rule's parameter into values[particles].
+static SingeResult evaluate(const ParamField *field, const ParamRule *rule, float *values, SingeError *error) {
+    const SheetSource *source = field->source;
     const Sheet *sheet = &source->sheet;
     uint32_t total = sheet->vertex_count + sheet->cell_count;
-    float *values = source->params + (size_t)rule->param * total;
     uint32_t begin = rule->places & AT_VERTICES ? 0 : sheet->vertex_count;
     uint32_t end = rule->places & AT_CENTRES ? total : sheet->vertex_count;
     for (uint32_t i = begin; i < end; i++) {
@@ -182,13 +184,27 @@ static SingeResult evaluate(const Field *field, const ParamRule *rule, SheetSour
     return SINGE_OK;
 }
 
-SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, SingeError *error) {
+/// Keeps one value where all are the same to the bit.
+static void keep_values(Memory *memory, SheetSource *source, int param) {
+    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
+    float **values = &source->values[param];
+    source->value[param] = (*values)[0];
+    if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
+}
+
+SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error) {
+    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
     for (int r = 0; r < RULE_COUNT; r++) {
         const ParamRule *rule = &param_rules[r];
+        float **values = &source->values[rule->param];
         const void *param = (const char *)&def->material + rule->offset;
-        Field field = {.param = param, .source = source};
+        ParamField field = {.param = param, .source = source};
+        if (!*values && !NEW(memory, *values, total))
+            return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
-        TRY(evaluate(&field, rule, source, error));
+        TRY(evaluate(&field, rule, *values, error));
+        // the layers' rules of one parameter follow each other
+        if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
     }
     return SINGE_OK;
 }

@@ -1,11 +1,9 @@
-// Rest geometry: where the centres lie, and what area, mass and heat capacity each particle has.
+// Rest geometry: where the centres lie, and what area each particle has.
 //
 //   centre    x_c = (x_0 + x_1 + x_2 + x_3)/4 + t n,   n = (x_2 - x_0) x (x_3 - x_1), normalised
 //   area      A_c = sum of the triangles (x_i, x_i+1, mean) [m2]; A_v = half of each triangle at v
-//   mass      m = (grammage/2) A [kg], heat capacity = m c_p [J/K]
 //
-// Each layer carries half of the sheet, so its areas sum to the sheet's area and its masses to half the
-// sheet's mass. For rectangles A_v is the usual quarter of each cell around.
+// The areas of each layer sum to the sheet's area. For rectangles A_v is the usual quarter of each cell around.
 #include "shell/measure.h"
 
 #include <math.h>
@@ -69,28 +67,6 @@ CellShape cell_shape(const float *const corners[4]) {
     return shape;
 }
 
-/// Masses and capacities of the particles [first, last), which hold grammage and specific heat until now (bcs.c).
-static void weigh_range(Matter *matter, uint32_t first, uint32_t last, double mean) {
-    for (uint32_t p = first; p < last; p++) {
-        float grammage = matter->mass[p], specific_heat = matter->capacity[p];
-        matter->capacity_ratio[p] = (float)((double)grammage * (double)specific_heat / mean);
-        matter->mass[p] = grammage / 2 * matter->area[p];
-        matter->capacity[p] = matter->mass[p] * specific_heat;
-    }
-}
-
-static void weigh_sheet(const Shell *shell, const Sheet *sheet, Matter *matter) {
-    const uint32_t range[2][2] = {{sheet->vertex_first, sheet->vertex_first + sheet->vertex_count},
-                                  {shell_centre(shell, sheet->cell_first),
-                                   shell_centre(shell, sheet->cell_first + sheet->cell_count)}};
-    double sum = 0;
-    for (int layer = 0; layer < 2; layer++)
-        for (uint32_t p = range[layer][0]; p < range[layer][1]; p++)
-            sum += (double)matter->mass[p] * (double)matter->capacity[p];
-    for (int layer = 0; layer < 2; layer++)
-        weigh_range(matter, range[layer][0], range[layer][1], sum / (sheet->vertex_count + sheet->cell_count));
-}
-
 void measure_particles(Shell *shell) {
     Matter *matter = &shell->matter;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
@@ -98,13 +74,12 @@ void measure_particles(Shell *shell) {
         for (int i = 0; i < 4; i++) corners[i] = shell->rest_position[shell->cells[c][i]];
         CellShape shape = cell_shape(corners);
         uint32_t centre = shell_centre(shell, c);
-        double thickness = (double)matter->thickness[centre];
+        double thickness = (double)field_at(matter->thickness, centre);
         for (int k = 0; k < 3; k++)
             shell->rest_position[centre][k] = (float)(shape.centre[k] + thickness * shape.normal[k]);
         matter->area[centre] = (float)shape.area;
         for (int i = 0; i < 4; i++) matter->area[shell->cells[c][i]] += (float)shape.corner_area[i];
     }
-    for (uint32_t i = 0; i < shell->sheet_count; i++) weigh_sheet(shell, &shell->sheets[i], matter);
 }
 
 /// The k-th smallest of the sides of a sheet's cells, digit by digit: positive floats are in the order
@@ -116,7 +91,7 @@ static float select_length(const Shell *shell, const Sheet *sheet, uint64_t k) {
         uint64_t bins[256] = {0};
         for (uint32_t c = 0; c < 4 * sheet->cell_count; c++) {
             const CellSprings *springs = &shell->cell_springs[sheet->cell_first + c / 4];
-            uint32_t cell = sheet->cell_first + c / 4, other = springs->neighbour[c & 3], bits;
+            uint32_t cell = sheet->cell_first + c / 4, other = shell_neighbour(shell, cell, c & 3), bits;
             if (other != SHELL_NONE && other < cell) continue; // once an edge
             memcpy(&bits, &blue->rest[springs->blue[c & 3]], sizeof bits);
             if (shift == 24 || bits >> (shift + 8) == prefix >> (shift + 8)) bins[bits >> shift & 255]++;
@@ -134,7 +109,7 @@ static float median_edge(const Shell *shell, const Sheet *sheet) {
     uint64_t edges = 0;
     for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
         for (int i = 0; i < 4; i++) {
-            uint32_t other = shell->cell_springs[c].neighbour[i];
+            uint32_t other = shell_neighbour(shell, c, i);
             edges += other == SHELL_NONE || other > c;
         }
     }

@@ -15,7 +15,7 @@ typedef struct CellShape {
 
 CellShape cell_shape(const float *const corners[4]);
 
-/// Fills rest positions of the centres, areas, masses and capacities; corners are in place.
+/// Fills rest positions of the centres and areas; corners are in place.
 void measure_particles(Shell *shell);
 
 /// Fills the rest lengths of all springs and each sheet's cell size. Fails with SINGE_ERROR_MESH when

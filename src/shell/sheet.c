@@ -121,16 +121,14 @@ static SingeResult check_cells(const SingeSheetDef *def, const char *name, Singe
 /// The cell's particle and those of its corners weigh about as much as the cell would with their grammage.
 static bool mass_fits(const SheetSource *source, uint32_t cell) {
     const uint32_t *corners = source->cells[cell], vertices = source->sheet.vertex_count;
-    size_t total = (size_t)vertices + source->sheet.cell_count;
-    const float *grammage = source->params + PARAM_GRAMMAGE * total;
-    const float *heat = source->params + PARAM_SPECIFIC_HEAT * total;
     const float *p[4];
     for (int i = 0; i < 4; i++) p[i] = source->position[corners[i]];
     double area = cell_shape(p).area;
     for (int i = 0; i < 5; i++) {
         uint32_t particle = i < 4 ? corners[i] : vertices + cell;
-        double mass = area * (double)grammage[particle];
-        if (!in_float(mass) || !in_float(mass * (double)heat[particle])) return false;
+        double mass = area * (double)sheet_param(source, PARAM_GRAMMAGE, particle);
+        if (!in_float(mass) || !in_float(mass * (double)sheet_param(source, PARAM_SPECIFIC_HEAT, particle)))
+            return false;
     }
     return true;
 }
@@ -144,12 +142,9 @@ static SingeResult check_masses(const SheetSource *source, SingeError *error) {
 }
 
 static bool source_alloc(Memory *memory, SheetSource *source) {
-    size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
-    source->params = NULL;
     return NEW(memory, source->position, source->sheet.vertex_count) &&
            NEW(memory, source->cells, source->sheet.cell_count) &&
-           NEW(memory, source->uv, source->sheet.vertex_count) &&
-           (source->params = memory_new(memory, total, PARAM_COUNT * sizeof(float)));
+           NEW(memory, source->uv, source->sheet.vertex_count);
 }
 
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
@@ -177,7 +172,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     memcpy(source->position, def.positions, sizeof *source->position * def.vertex_count);
     memcpy(source->cells, def.cells, sizeof *source->cells * def.cell_count);
     if (def.uv) memcpy(source->uv, def.uv, sizeof *source->uv * def.vertex_count);
-    SingeResult result = material_evaluate(&def, source, error);
+    SingeResult result = material_evaluate(memory, &def, source, error);
     if (result == SINGE_OK) result = check_masses(source, error);
     if (result != SINGE_OK) sheet_source_free(memory, source);
     return result;
@@ -188,6 +183,6 @@ void sheet_source_free(Memory *memory, SheetSource *source) {
     FREE(memory, source->position, vertices);
     FREE(memory, source->cells, cells);
     FREE(memory, source->uv, vertices);
-    memory_free(memory, (void *)&source->params, vertices + cells, PARAM_COUNT * sizeof(float));
+    for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, source->values[p], vertices + cells);
     memset(source, 0, sizeof *source);
 }

@@ -7,9 +7,9 @@
 /// Checks the numbers and choices that are one for the sheet.
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error);
 
-/// Evaluates every parameter at every particle into source->params and checks its range; the source's
+/// Evaluates every parameter at every particle into the source and checks its range; the source's
 /// mesh, uv and sheet are in place.
-SingeResult material_evaluate(const SingeSheetDef *def, SheetSource *source, SingeError *error);
+SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
 
 /// The parameters of a material that may vary over the sheet, one after the other; NULL behind the last.
 SingeParam *material_param(SingeMaterialDef *material, int index);

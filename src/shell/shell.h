@@ -6,7 +6,7 @@
 #define SHELL_SHELL_H
 
 #include "base/error.h"
-#include "base/memory.h"
+#include "shell/field.h"
 #include "singe/sim.h"
 
 #define SHELL_NONE UINT32_MAX
@@ -28,13 +28,12 @@ typedef struct SpringSet {
     uint32_t longest; ///< springs in the longest strand
 } SpringSet;
 
-/// The springs and neighbours of a cell with corners 0..3; side i joins corner i and (i + 1) % 4.
+/// The springs of a cell with corners 0..3; side i joins corner i and (i + 1) % 4.
 typedef struct CellSprings {
-    uint32_t red[4];       ///< centre to corner i
-    uint32_t blue[4];      ///< along side i
-    uint32_t green[4];     ///< across side i, or SHELL_NONE at the boundary
-    uint32_t yellow[2];    ///< corners 0-2, corners 1-3
-    uint32_t neighbour[4]; ///< cell across side i, or SHELL_NONE
+    uint32_t red[4];    ///< centre to corner i
+    uint32_t blue[4];   ///< along side i
+    uint32_t green[4];  ///< across side i, or SHELL_NONE at the boundary
+    uint32_t yellow[2]; ///< corners 0-2, corners 1-3
 } CellSprings;
 
 /// Material of each particle (its own layer: half the sheet's mass). Area, mass and capacity of a vertex
@@ -43,28 +42,28 @@ typedef struct Matter {
     float *area;               ///< m2 at rest
     float *mass;               ///< kg, initial
     float *capacity;           ///< J/K, of the unburnt particle
-    float *capacity_ratio;     ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
-    float *thickness;          ///< m
-    float *diffusivity;        ///< m2/s
-    float *layer_exchange;     ///< 1/s
-    float *convection;         ///< W/(m2 K)
-    float *emissivity;
-    float *loss_mass_floor;
-    float *ignition_temperature; ///< K
-    float *heating;            ///< K per mass fraction
-    float *mass_rate;          ///< 1/(K s)
-    float *rate_ceiling;       ///< K, may be infinite
-    float *ash_exponent;
-    float *mass_min;
-    float *mass_loss;
-    float *ash_density;
-    float *shrink;             ///< of its own layer
-    float *weight[SINGE_COLOUR_COUNT];
-    float *compliance[SINGE_COLOUR_COUNT]; ///< m/N
-    float *char_weight;
-    float *drag;
-    float *damping;            ///< 1/s
-    float *temperature;        ///< K, initial
+    Field capacity_ratio;      ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
+    Field thickness;           ///< m
+    Field diffusivity;         ///< m2/s
+    Field layer_exchange;      ///< 1/s
+    Field convection;          ///< W/(m2 K)
+    Field emissivity;
+    Field loss_mass_floor;
+    Field ignition_temperature; ///< K
+    Field heating;             ///< K per mass fraction
+    Field mass_rate;           ///< 1/(K s)
+    Field rate_ceiling;        ///< K, may be infinite
+    Field ash_exponent;
+    Field mass_min;
+    Field mass_loss;
+    Field ash_density;
+    Field shrink;              ///< of its own layer
+    Field weight[SINGE_COLOUR_COUNT];
+    Field compliance[SINGE_COLOUR_COUNT]; ///< m/N
+    Field char_weight;
+    Field drag;
+    Field damping;             ///< 1/s
+    Field temperature;         ///< K, initial
     uint16_t *sheet;
 } Matter;
 
@@ -94,18 +93,7 @@ typedef struct Shell {
     uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
 } Shell;
 
-/// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
-/// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.
-typedef struct SheetSource {
-    Sheet sheet;
-    float (*position)[3];  ///< [vertex_count]
-    uint32_t (*cells)[4];  ///< [cell_count], of this sheet's vertices
-    float (*uv)[2];        ///< [vertex_count], zero without
-    /// Evaluated parameters: [PARAM_COUNT][vertex_count + cell_count], vertices first.
-    float *params;
-} SheetSource;
-
-/// The parameters that vary over a sheet, in the order of SheetSource.params.
+/// The parameters that vary over a sheet, in the order of SheetSource.value.
 typedef enum ShellParam {
     PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEATING, PARAM_MASS_RATE,
     PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY, PARAM_SHRINK,
@@ -115,6 +103,22 @@ typedef enum ShellParam {
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
     PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT
 } ShellParam;
+
+/// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
+/// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.
+typedef struct SheetSource {
+    Sheet sheet;
+    float (*position)[3];  ///< [vertex_count]
+    uint32_t (*cells)[4];  ///< [cell_count], of this sheet's vertices
+    float (*uv)[2];        ///< [vertex_count], zero without
+    float value[PARAM_COUNT];   ///< each parameter, where it has one value for the sheet
+    float *values[PARAM_COUNT]; ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
+} SheetSource;
+
+/// A parameter at a particle of the sheet: its vertices, then its cells.
+static inline float sheet_param(const SheetSource *source, int param, uint32_t i) {
+    return source->values[param] ? source->values[param][i] : source->value[param];
+}
 
 /// Checks a sheet's Def, copies its mesh (sheet.c) and evaluates its material (material.c). Errors name the
 /// sheet's own vertex or cell.
@@ -176,6 +180,7 @@ typedef struct State {
     DynamicsState dynamics;
     void *arena;   ///< all arrays above lie in one block
     size_t arena_size;
+    size_t basic_size; ///< of the arena's start: all but the springs' lengths, which follow from the rest
 } State;
 
 /// Events of one step; capacity is fixed, what exceeds it is dropped and counted.
@@ -204,6 +209,14 @@ void state_copy(const Shell *shell, State *to, const State *from);
 /// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
+
+/// The cell across side i, at the other end of the green spring; SHELL_NONE at the boundary.
+static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i) {
+    uint32_t spring = shell->cell_springs[cell].green[i], centre = shell_centre(shell, cell);
+    if (spring == SHELL_NONE) return SHELL_NONE;
+    const uint32_t *ends = shell->springs[SINGE_GREEN].ends[spring];
+    return (ends[0] == centre ? ends[1] : ends[0]) - shell->vertex_count;
+}
 
 /// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
 static inline float shell_burn_progress(float mass, float mass_min) {

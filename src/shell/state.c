@@ -14,8 +14,8 @@ static void *take(char *base, size_t *used, size_t count, size_t element_size) {
 
 #define TAKE(pointer, count) ((pointer) = take(base, &used, (count), sizeof *(pointer)))
 
-/// Points the arrays into the block at `base` and returns the block's size.
-static size_t lay_out(const Shell *shell, State *state, char *base) {
+/// Points the arrays into the block at `base` and returns the block's size; *basic is that of all but the lengths.
+static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basic) {
     size_t used = 0, particles = shell->particle_count;
     TAKE(state->dynamics.position, particles + 1);
     TAKE(state->dynamics.velocity, particles);
@@ -30,16 +30,17 @@ static size_t lay_out(const Shell *shell, State *state, char *base) {
     TAKE(state->ablate.particle_flags, particles);
     TAKE(state->ablate.cell_flags, shell->cell_count);
     TAKE(state->dynamics.pinned, particles);
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->ablate.spring_flags[colour], shell->springs[colour].count);
-    }
+    *basic = used;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
     return used;
 }
 
 void state_rebase(const Shell *shell, State *state, void *arena) {
     state->arena = arena;
-    lay_out(shell, state, arena);
+    state->arena_size = lay_out(shell, state, arena, &state->basic_size);
 }
 
 void state_copy(const Shell *shell, State *to, const State *from) {
@@ -69,7 +70,7 @@ static void start_particles(const Shell *shell, State *state) {
             state->dynamics.position[p][k] = shell->rest_position[p][k];
             state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
         }
-        state->heat.temperature[p] = state->heat.temperature_peak[p] = shell->matter.temperature[p];
+        state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
         state->burn.mass[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
@@ -83,7 +84,7 @@ enum { LEAD = SLICE };
 
 SingeResult state_create(Memory *memory, const Shell *shell, State *state) {
     *state = (State){0};
-    state->arena_size = lay_out(shell, state, NULL);
+    state->arena_size = lay_out(shell, state, NULL, &state->basic_size);
     char *block = memory_new(memory, state->arena_size + LEAD, 1);
     if (!block) {
         *state = (State){0};

@@ -153,7 +153,7 @@ static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t
                       uint32_t particle) {
     if (listed[particle]) return true;
     // centres lie a thickness off the mesh, where points are given
-    float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : shell->matter.thickness[particle]);
+    float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : field_at(shell->matter.thickness, particle));
     for (uint32_t k = 0; k < def->point_count; k++)
         if (nearest[k] == particle ||
             (def->radius > 0 && pin_distance2(shell, particle, def->points + 3 * (size_t)k) <= reach * reach))

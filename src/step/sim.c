@@ -113,8 +113,8 @@ static void sim_unbuild(SingeSim *sim) {
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
-    FREE(memory, sim->events.items, sim->events.capacity);
-    memory_free(memory, (void *)&sim->backup, sim->state.arena_size, 1);
+    sim->events = (EventList){0};
+    memory_free(memory, (void *)&sim->backup, sim->state.basic_size, 1);
     state_free(memory, &sim->state);
     shell_free(memory, &sim->shell);
 }
@@ -162,7 +162,7 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
         return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
     if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
     if (sim->sheet_count == sim->sheet_capacity) {
-        uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 4;
+        uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 1;
         if (!memory_grow(&sim->memory, &sim->sheets, sim->sheet_capacity, grown, sizeof *sim->sheets))
             return sim_fail(sim, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory");
         sim->sheet_capacity = grown;
@@ -185,17 +185,20 @@ SingeResult sim_build(SingeSim *sim) {
     Shell *shell = &sim->shell;
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
 
-    HeatSettings heat = {
-        .ambient_temperature = def->ambient_temperature, .tolerance = def->heat_tolerance, .pace = def->pace};
+    // a particle ignites once, a hole has a cell of its own and so has every piece
+    size_t events = shell->particle_count + 2 * (size_t)shell->cell_count;
+    HeatSettings heat = {.ambient_temperature = def->ambient_temperature,
+                         .tolerance = def->heat_tolerance,
+                         .pace = def->pace,
+                         .scratch_least = events * sizeof *sim->events.items};
     sim_up(def->gravity, heat.up);
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,
                                  .instructions = def->instructions,
                                  .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
-    sim->events.capacity = 0;
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
-    ok = ok && (sim->backup = memory_new(memory, sim->state.arena_size, 1)) != NULL;
+    ok = ok && (sim->backup = memory_new(memory, sim->state.basic_size, 1)) != NULL;
     SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
     if (result && result != SINGE_ERROR_MEMORY) return result;
     ok = !result;
@@ -205,11 +208,9 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
-    // a particle ignites once and opens at most one hole; a piece has at least one particle
-    size_t events = 3 * (size_t)shell->particle_count;
-    ok = ok && NEW(memory, sim->events.items, events);
     if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "commit", -1, "out of memory");
-    sim->events.capacity = events;
+    // events come after the heat stage and are gone when the next one begins
+    sim->events = (EventList){.items = heat_scratch(sim->heat), .capacity = events};
     for (uint32_t s = 0; s < shell->sheet_count; s++) sim->thickening[s] = heat_thickening(sim->heat, s);
     return SINGE_OK;
 }

@@ -29,7 +29,7 @@ struct SingeSim {
     // what changes
     State state;
     double heat_start; ///< J, enthalpy at the start
-    void *backup;      ///< the state's arena before the step
+    void *backup;      ///< the state's basic part before the step
     EventList events;
     SingeTimers timers;
     bool heat_warned;  ///< that the diffusion ran out of iterations

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 2 };
+enum { SNAPSHOT_VERSION = 3 };
 
 typedef struct SnapshotHeader {
     char magic[8];      ///< "SINGESIM"
@@ -52,10 +52,15 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
     uint32_t vertices = source->sheet.vertex_count, cells = source->sheet.cell_count;
     if (!snapshot_array(stream, memory, &source->position, vertices, sizeof *source->position) ||
         !snapshot_array(stream, memory, &source->cells, cells, sizeof *source->cells) ||
-        !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv) ||
-        !snapshot_array(stream, memory, &source->params, PARAM_COUNT * ((size_t)vertices + cells),
-                        sizeof *source->params))
+        !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv))
         return false;
+    for (int p = 0; p < PARAM_COUNT; p++) {
+        uint8_t varies = source->values[p] != NULL;
+        STREAM(stream, source->value[p]);
+        STREAM(stream, varies);
+        if (varies && !snapshot_array(stream, memory, &source->values[p], (size_t)vertices + cells, sizeof(float)))
+            return false;
+    }
     for (uint32_t c = 0; stream->mode == STREAM_READ && c < cells; c++)
         for (int i = 0; i < 4; i++) stream->failed |= source->cells[c][i] >= vertices;
     return !stream->failed;

@@ -61,12 +61,13 @@ SingeResult singe_sim_step(SingeSim *sim) {
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
     State before = sim->state;
     SingeTimers timers = sim->timers;
-    memcpy(sim->backup, sim->state.arena, sim->state.arena_size);
+    memcpy(sim->backup, sim->state.arena, sim->state.basic_size);
     SingeResult result = step_stages(sim);
     if (result) {
         sim->state = before;
         sim->timers = timers;
-        memcpy(sim->state.arena, sim->backup, sim->state.arena_size);
+        memcpy(sim->state.arena, sim->backup, sim->state.basic_size);
+        burn_restore_lengths(&sim->shell, &sim->state, &sim->state.burn);
         sim->events.count = 0;
         return result;
     }

@@ -88,6 +88,12 @@ static inline BurningSheet *burning_sheet(uint32_t nx, uint32_t ny, float cell, 
     return burning_sheets(1, nx, ny, cell, material, 0);
 }
 
+/// A field of the sheet with a value at every particle, for a test to set.
+static inline float *burning_sheet_vary(BurningSheet *b, Field *field) {
+    assert_true(field_vary(&b->memory, field, b->shell.particle_count));
+    return field->values;
+}
+
 static inline void burning_sheet_free(BurningSheet *b) {
     state_free(&b->memory, &b->state);
     shell_free(&b->memory, &b->shell);

@@ -108,7 +108,7 @@ static void no_step_passes_the_least_mass(void **unused) {
             material.ash_exponent = singe_param(exponents[e]);
             BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
             heat_all(b, 1500);
-            float least = b->shell.matter.mass_min[0], before = 1;
+            float least = field_at(b->shell.matter.mass_min, 0), before = 1;
             for (int n = 0; n < 30; n++) {
                 assert_int_equal(step(b, NULL, steps[s], 1, 1), SINGE_OK);
                 float mass = b->state.burn.mass[0];
@@ -191,7 +191,8 @@ static double shrunk_ratio(float mass_a, float mass_b, float shrink_a, float shr
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(2, 1, 0.01f, &material);
     uint32_t s = blue_between(&b->shell, 0, 1);
-    b->shell.matter.shrink[0] = shrink_a, b->shell.matter.shrink[1] = shrink_b;
+    float *shrink = burning_sheet_vary(b, &b->shell.matter.shrink);
+    shrink[0] = shrink_a, shrink[1] = shrink_b;
     b->state.heat.temperature[0] = 500 + 1000 * (1 - mass_a);
     b->state.heat.temperature[1] = 500 + 1000 * (1 - mass_b);
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);

@@ -117,7 +117,7 @@ static void test_inverted_cells_are_mended(void **unused) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
-    double thickness = (double)bench.shell.matter.thickness[shell_centre(&bench.shell, 0)];
+    double thickness = (double)field_at(bench.shell.matter.thickness, shell_centre(&bench.shell, 0));
     for (uint32_t c = 0; c < bench.shell.cell_count; c += 9) // the diagonal: centres pushed through their corners
         bench.state.dynamics.position[shell_centre(&bench.shell, c)][2] -= (float)(1.5 * thickness);
     prepare(&bench);
@@ -188,7 +188,7 @@ static void test_char_weight_by_attribute(void **unused) {
         (SingeParam){.value = 0.2f, .to = 0.8f, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "along"};
     bench_open(&bench, quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        bench.state.burn.mass[i] = bench.shell.matter.mass_min[i];
+        bench.state.burn.mass[i] = field_at(bench.shell.matter.mass_min, i);
     prepare(&bench);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         for (uint32_t k = 0; k < bench.shell.springs[colour].count; k++) {

@@ -275,7 +275,7 @@ static void running_out_of_memory_is_clean(void **unused) {
                                            : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source,
                                                            &rig.error);
             if (!result) {
-                assert_true(n >= (what == 0 ? 20 : what == 1 ? 2 : 1));
+                assert_true(n >= (what == 0 ? 12 : what == 1 ? 2 : 1));
                 heat_plan_free(&memory, plan);
                 source_free(&memory, &rig.shell, &source);
                 assert_int_equal(memory.held, 0);

@@ -36,7 +36,7 @@ static Front burn_strip(float size, const SingeMaterialDef *material) {
                                    &rig.error), SINGE_OK);
         for (uint32_t i = 0; i < shell->particle_count; i++) {
             if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
-            if (state->burn.mass[i] < shell->matter.mass_loss[i]) rig_remove(&rig, i);
+            if (state->burn.mass[i] < field_at(shell->matter.mass_loss, i)) rig_remove(&rig, i);
             else if (place > first) front.hottest = fmax(front.hottest, (double)state->heat.temperature[i]);
         }
         before = place;

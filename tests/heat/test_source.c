@@ -182,8 +182,10 @@ static void plume_heats_what_is_above(void **unused) {
         rig_open(&rig, &def);
         for (int column = 0; column < 40; column++)
             for (int row = 29; row < 31; row++) rig.state.burn.burn_rate[rig_centre(&rig, column, row)] = 1;
+        Field *heating = &rig.shell.matter.heating;
+        assert_true(field_vary(&rig.memory, heating, rig.shell.particle_count));
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-            rig.shell.matter.heating[i] = shell_is_corner(&rig.shell, i) ? 0 : 2400;
+            heating->values[i] = shell_is_corner(&rig.shell, i) ? 0 : 2400;
         SingeSourceDef source = singe_default_source();
         source.kind = SINGE_SOURCE_PLUME;
         rig_source(&rig, &source);

@@ -96,7 +96,7 @@ enum { VARYING = sizeof varying / sizeof varying[0] };
 
 /// Particle i of parameter p: vertices, then cells.
 static float param_at(const SheetSource *source, int p, uint32_t i) {
-    return source->params[(size_t)p * (source->sheet.vertex_count + source->sheet.cell_count) + i];
+    return sheet_param(source, p, i);
 }
 
 /// The list above is whole: the material knows no other parameter, and every array of the shell's is one of them.
@@ -142,17 +142,17 @@ static void test_numbers(void **state) {
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     const Matter *matter = &shell.matter;
-    const float *others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
+    const Field others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
                              matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping};
-    const float *fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
+    const Field fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
                              matter->heating, matter->mass_rate, matter->ash_exponent, matter->mass_min,
                              matter->mass_loss, matter->ash_density};
     for (uint32_t p = 0; p < shell.particle_count; p++) {
-        for (int k = 0; k < 10; k++) assert_true(fields[k][p] == 0.01f * (float)(k + 1));
-        assert_true(matter->shrink[p] == (p < 9 ? 1.25f : 0.75f));
-        for (int k = 0; k < 4; k++) assert_true(matter->weight[k][p] == 0.5f + 0.1f * (float)k);
-        for (int k = 0; k < 8; k++) assert_true(others[k][p] == 0.2f + 0.01f * (float)k);
-        for (int k = 0; k < 4; k++) assert_true(matter->compliance[k][p] == 0.3f + 0.1f * (float)k);
+        for (int k = 0; k < 10; k++) assert_true(field_at(fields[k], p) == 0.01f * (float)(k + 1));
+        assert_true(field_at(matter->shrink, p) == (p < 9 ? 1.25f : 0.75f));
+        for (int k = 0; k < 4; k++) assert_true(field_at(matter->weight[k], p) == 0.5f + 0.1f * (float)k);
+        for (int k = 0; k < 8; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
+        for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
     for (int k = 0; k < 10; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
     shell_free(&memory, &shell);
@@ -337,10 +337,10 @@ static void test_mass_varies(void **state) {
         float mass = param_at(&source, PARAM_GRAMMAGE, p) / 2 * shell.matter.area[p];
         assert_true(shell.matter.mass[p] == mass);
         assert_true(shell.matter.capacity[p] == mass * param_at(&source, PARAM_SPECIFIC_HEAT, p));
-        ratio += (double)shell.matter.capacity_ratio[p] / shell.particle_count;
+        ratio += (double)field_at(shell.matter.capacity_ratio, p) / shell.particle_count;
         double per_area = (double)(shell.matter.capacity[p] / shell.matter.area[p]);
         assert_float_equal(per_area / (double)(shell.matter.capacity[0] / shell.matter.area[0]),
-                           shell.matter.capacity_ratio[p] / shell.matter.capacity_ratio[0], 1e-5);
+                           field_at(shell.matter.capacity_ratio, p) / field_at(shell.matter.capacity_ratio, 0), 1e-5);
     }
     assert_float_equal(ratio, 1, 1e-6);
     assert_true(shell.matter.mass[4] > 3.9f * shell.matter.mass[0]);

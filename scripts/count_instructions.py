@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Counts the instructions of each stage of a step under valgrind and holds them against bench/instructions.csv.
+
+Counts do not depend on what else the machine does, so a stage that got slower shows where times are too noisy. A stage
+may be up to 10 % off its baseline, either way: one that got faster must not get slower again unseen, so the baseline
+has to follow. --update writes it anew.
+
+Exit status: 0 within the bound, 1 outside, 77 where it cannot be told: valgrind is missing, or the baseline is of
+another compiler, processor or build.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+STAGES = ["heat", "burn", "ablate", "dynamics"]
+BOUND = 0.10
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+BASELINE = os.path.join(ROOT, "bench", "instructions.csv")
+
+
+def skip(reason):
+    print(f"count_instructions: skipped: {reason}")
+    sys.exit(77)
+
+
+def inclusive(path, functions):
+    """Instructions spent in calls of the named functions, from callgrind's file: each call is a line `calls=` under
+    the callee's name, and the last number of the line after it is what the call cost. Names are written once, as
+    `(id) name`, and then as `(id)`."""
+    names, callee, called, costs = {}, None, False, dict.fromkeys(functions, 0)
+    with open(path, encoding="utf-8", errors="replace") as file:
+        for line in file:
+            named = re.match(r"c?fn=\((\d+)\)(?: (.*))?", line)
+            if named:
+                name = names.setdefault(named[1], named[2])
+                if line.startswith("cfn="):
+                    callee = name
+            elif called:
+                if callee in costs:
+                    costs[callee] += int(line.split()[-1])
+                called = False
+            called = line.startswith("calls=")
+    return costs
+
+
+def measure(program):
+    """Instructions a step, by stage."""
+    with tempfile.TemporaryDirectory() as folder:
+        counts = os.path.join(folder, "counts")
+        run = subprocess.run(
+            ["valgrind", "--tool=callgrind", "--toggle-collect=measured_steps", f"--callgrind-out-file={counts}", program],
+            capture_output=True, text=True, check=False)
+        steps = re.search(r"^steps (\d+)$", run.stdout, re.M)
+        if "lacks the instructions" in run.stderr:
+            skip("this processor has no x86-64-v3")
+        if run.returncode or not steps:
+            sys.exit(f"count_instructions: {program} failed under valgrind:\n{run.stdout}{run.stderr}")
+        costs = inclusive(counts, [f"{stage}_step" for stage in STAGES])
+    return {stage: costs[f"{stage}_step"] // int(steps[1]) for stage in STAGES}
+
+
+def read_baseline():
+    with open(BASELINE, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    rows = [line.split(",") for line in lines if line and not line.startswith("#")][1:]
+    return lines[0].removeprefix("# "), {stage: int(count) for stage, count in rows}
+
+
+def write_baseline(kind, counts):
+    with open(BASELINE, "w", encoding="utf-8") as file:
+        file.write(f"# {kind}\nstage,instructions\n")
+        file.writelines(f"{stage},{counts[stage]}\n" for stage in STAGES)
+
+
+def compare(counts, baseline):
+    """Prints a table and returns how many stages are out of bounds."""
+    out = 0
+    print(f"{'stage':10} {'instructions':>14} {'baseline':>14} {'change':>8}")
+    for stage in STAGES:
+        change = counts[stage] / baseline[stage] - 1
+        print(f"{stage:10} {counts[stage]:14,} {baseline[stage]:14,} {change:+8.1%}")
+        out += abs(change) > BOUND
+    if out:
+        print("More than 10 % off. If that is meant, write the new baseline:\n"
+              "    python3 scripts/count_instructions.py --update")
+    return out
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=os.path.join(ROOT, "build", "bench", "singe_bench_instructions"))
+    parser.add_argument("--kind", default="GNU 12, x86_64, Release", help="compiler, processor and build of the program")
+    parser.add_argument("--update", action="store_true", help="write the baseline")
+    options = parser.parse_args()
+    if not shutil.which("valgrind"):
+        skip("valgrind is not installed")
+    if options.update:
+        write_baseline(options.kind, measure(options.program))
+        print(f"wrote {os.path.relpath(BASELINE)}")
+        return 0
+    kind, baseline = read_baseline()
+    if kind != options.kind:
+        skip(f"the baseline is of {kind}, this is {options.kind}")
+    return 1 if compare(measure(options.program), baseline) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

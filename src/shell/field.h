@@ -1,0 +1,28 @@
+// A parameter over the particles of a shell: most are one number for all, and then take no more room than that.
+#ifndef SHELL_FIELD_H
+#define SHELL_FIELD_H
+
+#include "base/memory.h"
+
+/// How many particles in a row field_run gives.
+enum { FIELD_RUN = 256 };
+
+typedef struct Field {
+    float *values; ///< one a particle, or FIELD_RUN times the same
+    uint32_t mask; ///< UINT32_MAX, or 0 where the field is uniform
+} Field;
+
+static inline float field_at(Field field, uint32_t particle) { return field.values[particle & field.mask]; }
+
+/// The values of particles first, first + 1 .. up to FIELD_RUN of them: a loop over these is the same for both kinds,
+/// and a compiler can vectorise it.
+static inline const float *field_run(Field field, uint32_t first) { return field.values + (first & field.mask); }
+
+/// A uniform field. False when out of memory.
+bool field_create(Memory *memory, Field *field, float value);
+/// Gives each of `count` particles a value of its own, at first the one that all had. False when out of memory.
+bool field_vary(Memory *memory, Field *field, uint32_t count);
+/// `count` particles are the shell's. A zeroed field is allowed.
+void field_free(Memory *memory, Field *field, uint32_t count);
+
+#endif
