@@ -27,8 +27,11 @@ typedef struct Strands {
 bool strands_create(Memory *memory, const Shell *shell, int room_count, StrandSolve *solve, Strands *strands);
 void strands_free(Memory *memory, Strands *strands);
 
+typedef struct Paper Paper;
+
 struct DynamicsPlan {
     DynamicsSettings settings;
+    Paper *paper;            ///< of the methods other than strand, else NULL
     // per particle, refreshed at every step
     float *inverse_mass;     ///< 1/kg; 0 for what is pinned or gone
     float *drag;             ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
@@ -66,6 +69,11 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 
 /// Internal friction of both layers over a step of h seconds (smooth.c).
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h, DynamicsState *dynamics);
+
+/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their softness.
+static inline float dynamics_weight(const float *material, const float *soft, uint32_t a, uint32_t b) {
+    return 0.25f * (material[a] + material[b]) * (soft[a] + soft[b]);
+}
 
 /// Contact and friction with the colliders in plan->colliders (contact.c). Returns the number of contacts.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
