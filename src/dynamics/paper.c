@@ -144,7 +144,8 @@ void paper_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, P
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         job.colour = (SingeColour)c;
         pool_for(pool, (int)shell->springs[c].count, POOL_BLOCK, paper_fill_springs, &job);
-        job.group->regularisation = (double)paper->solver.regularisation[c];
+        bool plain = paper->solver.method == SINGE_SOLVER_ALL_AT_ONCE; // the floor would make it converge
+        job.group->regularisation = plain ? 0 : (double)paper->solver.regularisation[c];
         if (paper_one_system(paper->solver.method)) job.offset += shell->springs[c].count;
         else job.group++;
     }
