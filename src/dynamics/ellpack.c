@@ -103,3 +103,16 @@ void ellpack_assemble(Network *network, uint32_t group, Pool *pool) {
     Assemble job = {network, &network->groups[group]};
     pool_for(pool, (int)job.group->padded, POOL_BLOCK, ellpack_assemble_range, &job);
 }
+
+void ellpack_dense(const Network *network, uint32_t group_index, double *dense) {
+    const SpringGroup *group = &network->groups[group_index];
+    const double *scale = network->scale;
+    for (size_t row = 0; row < group->count; row++) {
+        if (scale[row] == 0) continue;
+        size_t slice = row / NETWORK_LANES, end = NETWORK_LANES * group->slice_first[slice + 1];
+        dense[row * group->count + row] += 1 / (scale[row] * scale[row]);
+        for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < end; e += NETWORK_LANES)
+            if (network->value[e] != 0)
+                dense[row * group->count + group->column[e]] += network->value[e] / (scale[row] * scale[group->column[e]]);
+    }
+}

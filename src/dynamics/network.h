@@ -91,6 +91,8 @@ double network_rows(Network *network, uint32_t group, Pool *pool);
 
 /// Values of the matrix from the gradients and scales (ellpack.c).
 void ellpack_assemble(Network *network, uint32_t group, Pool *pool);
+/// The assembled matrix with its diagonal, not scaled, added to `dense` of [count][count] zeros (ellpack.c).
+void ellpack_dense(const Network *network, uint32_t group, double *dense);
 /// Counts and lists the pattern of a group (ellpack.c). False when out of memory.
 bool ellpack_create(Memory *memory, SpringGroup *group);
 void ellpack_free(Memory *memory, SpringGroup *group);
