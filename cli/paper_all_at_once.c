@@ -25,7 +25,7 @@ static SingeResult set_print(SingeNetwork *network, uint32_t set, const char *na
     }
     if (!result) {
         while (rank < count && values[rank] > zero_share * values[0]) rank++;
-        printf("%-7s %11zu %6zu %9zu   %.4f ", name, rows, rank, rows - rank, values[0] / values[0]);
+        printf("%-7s %11zu %6zu %9zu   1 ", name, rows, rank, rows - rank);
         for (size_t i = rank > SMALLEST ? rank - SMALLEST : 0; i < rank; i++) printf(" %.2e", values[i] / values[0]);
         printf("\n");
     }
@@ -52,36 +52,21 @@ static SingeResult ranks_print(const SingeSim *sim, SingeNetwork *all, SingeNetw
 typedef struct Contender {
     SingeNetwork *network;
     uint32_t sets;
-    bool broken;
-    uint32_t iterations; ///< of the last step
 } Contender;
 
-/// One projection step; the error after it, unless it broke down.
-static double contender_step(Contender *contender) {
-    double errors[SINGE_COLOUR_COUNT];
-    contender->iterations = 0;
-    for (uint32_t set = 0; set < contender->sets && !contender->broken; set++) {
-        SingeNetworkReport report = {0};
-        contender->broken = singe_network_project(contender->network, set, &report) != SINGE_OK;
-        contender->iterations += report.iterations;
-    }
-    paper_errors(contender->network, contender->sets, errors);
-    double square = 0;
-    for (uint32_t set = 0; set < contender->sets; set++) square += errors[set] * errors[set];
-    return sqrt(square);
-}
-
-static void contender_print(Contender *contender, int step) {
+/// Takes a projection step, but for step 0, and prints the error after it.
+static void contender_print(const Contender *contender, int step) {
     double errors[SINGE_COLOUR_COUNT], square = 0;
-    if (step > 0) {
-        double error = contender_step(contender);
-        if (contender->broken) printf("  %-10s %5u", "broke down", contender->iterations);
-        else printf("  %-10.3g %5u", error, contender->iterations);
-        return;
+    uint32_t iterations = 0;
+    bool broken = false;
+    for (uint32_t set = 0; set < contender->sets && step > 0; set++) {
+        SingeNetworkReport report = {0};
+        if (singe_network_project(contender->network, set, &report)) broken = true;
+        iterations += report.iterations;
     }
     paper_errors(contender->network, contender->sets, errors);
     for (uint32_t set = 0; set < contender->sets; set++) square += errors[set] * errors[set];
-    printf("  %-10.3g %5s", sqrt(square), "");
+    printf("  %-9.3g %5u%-12s", sqrt(square), iterations, broken ? " broke down" : "");
 }
 
 static SingeResult all_at_once_run(const SingeSim *sim, SingeError *error) {
@@ -96,10 +81,10 @@ static SingeResult all_at_once_run(const SingeSim *sim, SingeError *error) {
     if (!result) result = ranks_print(sim, contenders[0].network, contenders[1].network);
     if (!result) {
         printf("\nerror |C| of all springs in m after each projection step, and iterations of conjugate gradients (at "
-               "most %d a system)\n\n"
-               "step  all at once         colour after colour  all at once, with a floor\n"
-               "                                               of %g on the diagonal\n",
-               singe_default_network().iterations, floor);
+               "most %u a system)\n\n"
+               "step  all at once                  colour after colour          all at once, with a floor\n"
+               "                                                                of %g on the diagonal\n",
+               singe_network_set_size(contenders[0].network, 0), floor);
         for (int step = 0; step <= STEPS; step++) {
             printf("%4d", step);
             for (int i = 0; i < COUNT; i++) contender_print(&contenders[i], step);

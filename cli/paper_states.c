@@ -117,6 +117,7 @@ SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, d
         def.spring_count = springs, def.ends = ends[0], def.lengths = lengths;
         def.set_count = one_set ? 1 : SINGE_COLOUR_COUNT, def.sets = sets;
         def.regularisation = regularisation;
+        if (one_set) def.iterations = (int)springs;
         result = singe_network_create(&def, network, error);
     } else {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};

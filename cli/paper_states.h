@@ -20,7 +20,8 @@ SINGE_NODISCARD SingeResult paper_sim(PaperState state, int cells, const SingeSo
                                       SingeSim **sim, SingeError *error);
 
 /// The springs of a sheet as a network in its present positions, or where they are after eq 8 and 9. A set is a colour
-/// in the order red, green, blue, yellow, or with `one_set` all of them are one.
+/// in the order red, green, blue, yellow, or with `one_set` all of them are one, whose conjugate gradients end after as
+/// many iterations as there are unknowns.
 SINGE_NODISCARD SingeResult paper_network(const SingeSim *sim, PaperState state, bool one_set, double regularisation,
                                           SingeNetwork **network, SingeError *error);
 

@@ -112,6 +112,7 @@ static SingeSolverDef method_solver(SingeSolverMethod method) {
     def.substeps = method == SINGE_SOLVER_MASS_SPRING ? 200 : 1;
     def.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
     def.smoothing = def.height_min = 0; // the paper has neither
+    def.attachments = false;
     memcpy(def.order, order, sizeof order);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) def.regularisation[colour] = 1e-4f;
     return def;
