@@ -51,7 +51,7 @@ static SingeResult make_one(const char *path, SingeError *error) {
     return folder_fail(path, "make the folder", reason, error);
 }
 
-static SingeResult make_all(const char *path, SingeError *error) {
+SingeResult folder_make(const char *path, SingeError *error) {
     char *copy = text_format("%s", path);
     SingeResult result = SINGE_OK;
     for (char *p = copy + 1; *p && !result; p++) {
@@ -67,7 +67,7 @@ static SingeResult make_all(const char *path, SingeError *error) {
 
 SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error) {
     static const char *const inner[] = {"ply", "frames"};
-    SingeResult result = make_all(folder->path, error);
+    SingeResult result = folder_make(folder->path, error);
     for (int i = 0; i < 1 + pictures && !result; i++) {
         char *path = text_format("%s/%s", folder->path, inner[i]);
         result = make_one(path, error);

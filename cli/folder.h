@@ -18,6 +18,9 @@ typedef struct Folder {
 Folder folder_name(const char *path, const char *name);
 void folder_free(Folder *folder);
 
+/// Makes a folder and those above it. `path` is not empty.
+SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
+
 /// Makes the folder, those above it, ply/ and, for `pictures`, frames/ in it.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error);
 

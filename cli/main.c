@@ -15,6 +15,7 @@ static const struct {
     {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
     {"render", command_render, "draws a cache's pictures and video again"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
+    {"paper", command_paper, "computes the paper's tables and figures about its solver"},
     {"scene-doc", command_scene_doc, NULL},
 };
 
@@ -40,7 +41,7 @@ static int finish(int code) {
 
 int main(int argc, char **argv) {
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render or bench\nsee: singe --help\n", stderr);
+        fputs("singe: error: needs a command: run, check, render, bench or paper\nsee: singe --help\n", stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

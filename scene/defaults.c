@@ -76,6 +76,11 @@ bool default_pin(SceneArena *arena, void *object) {
     return true;
 }
 
+void chosen_solver(void *object) {
+    SingeSolverDef *solver = object;
+    singe_init_solver_method(solver, sizeof *solver, solver->method);
+}
+
 bool default_noise(SceneArena *arena, void *object) {
     (void)arena;
     *(SingeNoise *)object = singe_param(0).noise;

@@ -112,7 +112,14 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_FILE: add(buffer, size, "the name of a file"); break;
     case ROW_ENUM: add_names(buffer, size, row->names); break;
     case ROW_ORDER: add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
-    case ROW_MAP: add(buffer, size, "a map (key: value)"); break;
+    case ROW_MAP:
+        add(buffer, size, "a map (key: value)");
+        for (int i = 0; row->sub && row->sub->choice && i < row->sub->row_count; i++)
+            if (strcmp(row->sub->rows[i].key, row->sub->choice) == 0) {
+                add(buffer, size, " or ");
+                add_names(buffer, size, row->sub->rows[i].names);
+            }
+        break;
     case ROW_LIST: add(buffer, size, "a list of maps"); break;
     case ROW_POINTS: add(buffer, size, "a list of points [x, y, z], at least one"); break;
     case ROW_INDICES: add(buffer, size, "a list of whole numbers, at least one"); break;

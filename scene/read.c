@@ -165,11 +165,30 @@ static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node
 
 // ---- maps
 
+static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object);
+
+static const SchemaRow *choice_row(const Schema *schema) {
+    const SchemaRow *row = schema->rows;
+    while (strcmp(row->key, schema->choice) != 0)
+        row++;
+    return row;
+}
+
+// The choice that the other defaults of an object follow.
+static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
+    uint32_t before = message_total(reader->messages);
+    read_row(reader, choice_row(schema), node, object);
+    if (message_total(reader->messages) == before)
+        schema->chosen(object);
+}
+
 static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
     if (row->extra)
         *(bool *)at(object, row->extra) = true;
     if (node->kind == NODE_MAP)
         schema_read(reader, row->sub, node, at(object, row->offset));
+    else if (row->sub->choice && node->kind == NODE_VALUE)
+        read_choice(reader, row->sub, node, at(object, row->offset));
     else
         value_wrong(reader, node, row);
 }
@@ -271,6 +290,10 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         given |= 1;
         // with an unknown kind, only the keys that no kind has are wrong
         kind = message_total(reader->messages) == before ? schema_kind(schema, object) : ~0u;
+    }
+    if (schema->choice && (first = node_find(map, schema->choice))) {
+        read_choice(reader, schema, first, object);
+        given |= 1ull << (choice_row(schema) - schema->rows);
     }
     for (const Node *child = map->first; child; child = child->next)
         if (child != first && !arena_failed(reader->arena))

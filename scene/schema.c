@@ -25,6 +25,9 @@ static const char *const operator_names[] = {
 static const char *const source_names[] = {
     [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_PICTURE] = "picture", [SINGE_SOURCE_SPOT] = "spot",
     [SINGE_SOURCE_PLUME] = "plume", NULL};
+static const char *const method_names[] = {
+    [SINGE_SOLVER_STRAND] = "strand", [SINGE_SOLVER_PAPER] = "paper", [SINGE_SOLVER_PAPER_LITERAL] = "paper-literal",
+    [SINGE_SOLVER_ALL_AT_ONCE] = "all-at-once", [SINGE_SOLVER_MASS_SPRING] = "mass-spring", NULL};
 static const char *const collider_names[] = {
     [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
     [SINGE_COLLIDER_CAPSULE] = "capsule", NULL};
@@ -304,12 +307,25 @@ static const Schema schema_wind = {
     .title = "the wind", .size = sizeof(SingeWindDef), ROWS(wind_rows), .doc = "The air's motion."};
 
 static const SchemaRow solver_rows[] = {
+    {"method", ROW_ENUM, DIM_NONE, AT(SingeSolverDef, method), .names = method_names,
+     .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; all "
+            "colours in one system; or Hooke's law. The defaults below are those of `strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(1, 1000),
-     .doc = "projections a step; more is stiffer and slower"},
+     .doc = "parts of a step; more is stiffer and slower"},
+    {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
+     .doc = "of all colours, a substep"},
     {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),
      .doc = "of the springs' colours, each once; the last is held best"},
     {"regularisation", ROW_MAP, DIM_NONE, AT(SingeSolverDef, regularisation), .sub = &schema_regularisation,
      .doc = "by colour of spring"},
+    {"attachments", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, attachments),
+     .doc = "`strand`: holds what hangs from a pin within its distance of it in the sheet"},
+    {"early_exit", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, early_exit),
+     .doc = "`paper`, `paper-literal`, `all-at-once`: stops where the error is below `tolerance` of the lengths"},
+    {"tolerance", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, tolerance), WITHIN(1e-12, 1),
+     .doc = "the same: of the conjugate gradients and the early exit"},
+    {"stiffness", ROW_FLOAT, DIM_STIFFNESS, AT(SingeSolverDef, stiffness), WITHIN(1e-6, 1e9),
+     .doc = "`mass-spring`: of every spring"},
     {"smoothing", ROW_FLOAT, DIM_RATE, AT(SingeSolverDef, smoothing), WITHIN(0, 1e6),
      .doc = "internal friction: rate at which second differences of velocity along strands are lost"},
     {"smoothing_length", ROW_FLOAT, DIM_LENGTH, AT(SingeSolverDef, smoothing_length), WITHIN(0, 1000),
@@ -322,7 +338,11 @@ static const SchemaRow solver_rows[] = {
 static const Schema schema_solver = {.title = "the solver",
                                      .size = sizeof(SingeSolverDef),
                                      ROWS(solver_rows),
-                                     .doc = "How springs are kept at their lengths."};
+                                     .choice = "method",
+                                     .chosen = chosen_solver,
+                                     .doc = "How springs are kept at their lengths. Only the name of a method will do: "
+                                            "`solver: paper`. Keys that are not given suit the method "
+                                            "([equations.md](equations.md#the-papers-solver))."};
 
 static const SchemaRow camera_rows[] = {
     {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4),

@@ -68,6 +68,10 @@ typedef struct Schema {
     const SchemaRow *rows;
     int row_count;
     size_t kind_offset; ///< of the enum that `kinds` are bits of; the row is called "kind"
+    /// The key of a choice that is read before the others, and what it makes of the object's defaults. A bare word in
+    /// the map's stead is that choice. NULL: none.
+    const char *choice;
+    void (*chosen)(void *object);
     /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks what one row cannot see.
@@ -120,6 +124,8 @@ bool default_source(SceneArena *arena, void *object);
 bool default_collider(SceneArena *arena, void *object);
 bool default_pin(SceneArena *arena, void *object);
 bool default_noise(SceneArena *arena, void *object);
+/// What suits the solver's method.
+void chosen_solver(void *object);
 
 /// The candidate nearest to a mistyped word, or NULL when none is near. (nearest.c)
 typedef struct Nearest {

@@ -27,6 +27,7 @@ typedef enum Dimension {
     DIM_RATE,
     DIM_RATE_PER_KELVIN,
     DIM_COMPLIANCE,
+    DIM_STIFFNESS,
     DIM_FRAME_RATE,
     DIM_COUNT
 } Dimension;

@@ -3,6 +3,7 @@
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
 #include "base/clock.h"
+#include "dynamics/paper.h"
 #include "dynamics/plan.h"
 
 #include <string.h>
@@ -32,7 +33,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     }
     StrandSolve *solve = strand_choose(settings->instructions);
     if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, solve, &plan->strands) ||
-        !attach_create(memory, shell, &plan->attachments)) {
+        !attach_create(memory, shell, &plan->attachments) ||
+        (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -42,6 +44,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
 
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;
+    paper_free(memory, plan->paper);
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->drag, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
@@ -122,6 +125,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     const SingeSolverDef *solver = &plan->settings.solver;
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
+    if (plan->paper) paper_prepare(plan, shell, state, pool);
     dynamics_move(plan, shell, pool, h_sub, false, true, dynamics);
     for (int substep = 0; substep < solver->substeps; substep++) {
         double before = state->time + (double)h * substep / solver->substeps;
@@ -129,6 +133,11 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         uint32_t collider_count = dynamics_place_colliders(plan, colliders, before, after);
 
         dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        if (plan->paper) {
+            TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));
+            if (substep + 1 < solver->substeps) dynamics_move(plan, shell, pool, h_sub, false, true, dynamics);
+            continue;
+        }
         double start = clock_seconds();
         for (int projection = 0; projection < solver->projections; projection++)
             dynamics_project(plan, shell, &state->ablate, pool, h_sub, dynamics, counters);

@@ -30,8 +30,11 @@ typedef struct Strands {
 bool strands_create(Memory *memory, const Shell *shell, int room_count, StrandSolve *solve, Strands *strands);
 void strands_free(Memory *memory, Strands *strands);
 
+typedef struct Paper Paper;
+
 struct DynamicsPlan {
     DynamicsSettings settings;
+    Paper *paper;            ///< of the methods other than strand, else NULL
     // per particle, refreshed at every step
     float *inverse_mass;     ///< 1/kg; 0 for what is pinned or gone
     float *drag;             ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
@@ -74,6 +77,11 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
 
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);
+
+/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their softness.
+static inline float dynamics_weight(Field material, const float *soft, uint32_t a, uint32_t b) {
+    return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
+}
 
 /// Contact and friction with the colliders in plan->colliders (contact.c). Returns the number of contacts.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);

@@ -73,8 +73,7 @@ static void prepare_strands(void *task, int begin, int end) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
-            float weight = 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
-            set->weight[slot] = flags[k] & SINGE_ALIVE ? weight : 0;
+            set->weight[slot] = flags[k] & SINGE_ALIVE ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
         }
     }

@@ -109,8 +109,10 @@ static SingeSolverDef method_solver(SingeSolverMethod method) {
     if (method == SINGE_SOLVER_STRAND) return def;
     const SingeColour order[] = {SINGE_RED, SINGE_GREEN, SINGE_BLUE, SINGE_YELLOW};
     def.method = method;
-    def.substeps = method == SINGE_SOLVER_MASS_SPRING ? 20 : 1;
+    def.substeps = method == SINGE_SOLVER_MASS_SPRING ? 200 : 1;
     def.projections = method == SINGE_SOLVER_MASS_SPRING ? 1 : 7;
+    def.smoothing = def.height_min = 0; // the paper has neither
+    def.attachments = false;
     memcpy(def.order, order, sizeof order);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) def.regularisation[colour] = 1e-4f;
     return def;

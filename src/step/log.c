@@ -32,6 +32,26 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
                 index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
 }
 
+/// The stopping rules of the methods that iterate (docs/equations.md).
+static void sim_log_solver(const SingeSim *sim) {
+    const SingeSolverDef *solver = &sim->def.solver;
+    double tolerance = (double)solver->tolerance;
+    const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
+    if (solver->method == SINGE_SOLVER_STRAND) return;
+    if (solver->method == SINGE_SOLVER_MASS_SPRING) {
+        sim_log(sim, SINGE_LOG_INFO, "solver: mass-spring, %g N/m, %d substeps", (double)solver->stiffness,
+                solver->substeps);
+    } else if (solver->early_exit) {
+        sim_log(sim, SINGE_LOG_INFO,
+                "solver: up to %d projections a substep, ending when no %s has an error above %g of its lengths; "
+                "conjugate gradients to a residual of %g, or to that error",
+                solver->projections, each, tolerance, tolerance);
+    } else {
+        sim_log(sim, SINGE_LOG_INFO, "solver: %d projections a substep; conjugate gradients to a residual of %g",
+                solver->projections, tolerance);
+    }
+}
+
 void sim_log_commit(const SingeSim *sim) {
     SingeCensus census = singe_sim_census(sim);
     uint32_t springs = 0, strands = 0;
@@ -39,6 +59,7 @@ void sim_log_commit(const SingeSim *sim) {
     sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", census.particles, springs, strands,
             1e-6 * (double)census.memory);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
+    sim_log_solver(sim);
 }
 
 void sim_log_unconverged(SingeSim *sim) {

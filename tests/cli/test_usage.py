@@ -11,7 +11,7 @@ class Usage(Case):
     def test_help_and_version(self):
         self.assertIn("usage: singe COMMAND", self.singe("--help")[0])
         self.assertEqual(self.singe("--version")[0], "singe 0.1.0\n")
-        for command, word in ("run", "--resume"), ("check", "--threads"), ("render", "--sheet"):
+        for command, word in ("run", "--resume"), ("check", "--threads"), ("render", "--sheet"), ("paper", "table1"):
             out, _ = self.singe(command, "--help")
             self.assertIn(f"usage: singe {command}", out)
             self.assertIn(word, out)
@@ -35,6 +35,9 @@ class Usage(Case):
             (["render", "x", "--frames", "5-2"], "expected A-B"),
             (["render", "x", "--sheet", "4"], "such as 4x2"),
             (["render", "x", "--set", "pace=2"], "only preview."),
+            (["paper"], "needs WHAT"),
+            (["paper", "table3"], "did you mean 'table1'?"),
+            (["paper", "fig8", "-o", ""], "needs a folder"),
             (["scene-doc", "x"], "one argument too many"),
         ):
             with self.subTest(args=args):

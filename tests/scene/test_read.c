@@ -264,8 +264,41 @@ static void test_set(void **state) {
     scene_free(scene);
 }
 
+// The solver's method, alone or with keys: what is not given suits the method, in any order of the keys.
+static void test_solver_method(void **state) {
+    (void)state;
+    static const char sheet[] = "sheets: [{grid: {size: [1, 1], cells: [1, 1]}}]\n";
+    static const struct {
+        const char *text, *set;
+        SingeSolverMethod method;
+        int projections;
+    } cases[] = {
+        {"", NULL, SINGE_SOLVER_STRAND, 1},
+        {"solver: paper\n", NULL, SINGE_SOLVER_PAPER, 7},
+        {"solver: {projections: 3, method: paper-literal}\n", NULL, SINGE_SOLVER_PAPER_LITERAL, 3},
+        {"solver: {method: all-at-once, tolerance: 1e-5}\n", NULL, SINGE_SOLVER_ALL_AT_ONCE, 7},
+        {"solver: {projections: 2}\n", "solver=mass-spring", SINGE_SOLVER_MASS_SPRING, 1},
+        {"solver: {projections: 2}\n", "solver.method=paper", SINGE_SOLVER_PAPER, 2},
+        {"", "solver.method=paper", SINGE_SOLVER_PAPER, 7},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "%s%s", sheet, cases[i].text);
+        Scene *scene = good_scene(text, &cases[i].set, cases[i].set != NULL);
+        const SingeSolverDef *solver = &scene->sim.solver;
+        SingeSolverDef standard;
+        singe_init_solver_method(&standard, sizeof standard, cases[i].method);
+        assert_int_equal(solver->method, cases[i].method);
+        assert_int_equal(solver->projections, cases[i].projections);
+        assert_int_equal(solver->substeps, standard.substeps);
+        assert_memory_equal(solver->order, standard.order, sizeof standard.order);
+        scene_free(scene);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_solver_method),
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
         cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),
         cmocka_unit_test(test_set),       cmocka_unit_test(test_all_vary),

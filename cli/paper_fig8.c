@@ -1,0 +1,112 @@
+// Fig 8: the error |C| of each colour and their sum, over the projection steps of successive fast projection, in two
+// states: a sheet that swings (at 0.4 s) and one that shrinks (at 0.1 s). And in how many states of either run the
+// sum rises in a projection step, which the paper says it never does.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/folder.h"
+#include "cli/paper.h"
+#include "cli/paper_plot.h"
+#include "cli/paper_states.h"
+#include "formats/formats.h"
+
+enum { CELLS = 20, STEPS = 20, COUNTED = 7, LINES = SINGE_COLOUR_COUNT + 1 };
+
+typedef struct Fig8 {
+    double error[LINES][STEPS + 1]; ///< of red, green, blue, yellow and their sum, before and after each step
+} Fig8;
+
+typedef struct Fig8Run {
+    PaperState state;
+    int shown, last; ///< simulation steps: whose state the figure shows, and that are counted
+} Fig8Run;
+
+static const Fig8Run runs[] = {{PAPER_SWING, 200, 250}, {PAPER_SHRINK, 50, 200}};
+
+/// Projects `steps` times and notes the errors.
+static SingeResult fig8_project(const SingeSim *sim, PaperState state, int steps, Fig8 *fig, SingeError *error) {
+    SingeNetwork *network;
+    double errors[SINGE_COLOUR_COUNT];
+    SingeResult result = paper_network(sim, state, false, singe_default_network().regularisation, &network, error);
+    if (result) return result;
+    for (int step = 0; step <= steps && !result; step++) {
+        for (uint32_t set = 0; step > 0 && set < SINGE_COLOUR_COUNT && !result; set++)
+            result = singe_network_project(network, set, NULL);
+        fig->error[SINGE_COLOUR_COUNT][step] = paper_errors(network, SINGE_COLOUR_COUNT, errors);
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++) fig->error[c][step] = errors[c];
+    }
+    if (result) *error = (SingeError){.code = result, .element = -1};
+    singe_network_destroy(network);
+    return result;
+}
+
+static bool fig8_rises(const Fig8 *fig, int steps) {
+    const double *sum = fig->error[SINGE_COLOUR_COUNT];
+    for (int step = 0; step < steps; step++)
+        if (sum[step + 1] > sum[step]) return true;
+    return false;
+}
+
+static SingeResult fig8_write(const char *folder, const char *state, const Fig8 *fig, SingeError *error) {
+    static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
+    static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
+    char path[4096], title[80], *csv = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&csv, &size);
+    if (!file) return *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1}, error->code;
+    fprintf(file, "step,red,green,blue,yellow,sum\n");
+    for (int step = 0; step <= STEPS; step++) {
+        fprintf(file, "%d", step);
+        for (int l = 0; l < LINES; l++) fprintf(file, ",%.9g", fig->error[l][step]);
+        fputc('\n', file);
+    }
+    fclose(file);
+    snprintf(path, sizeof path, "%s/fig8-%s.csv", folder, state);
+    SingeResult result = file_write(path, csv, size, error);
+    free(csv);
+    if (result) return result;
+    printf("%s\n", path);
+    PlotLine lines[LINES];
+    for (int l = 0; l < LINES; l++) lines[l] = (PlotLine){names[l], inks[l], fig->error[l]};
+    snprintf(path, sizeof path, "%s/fig8-%s.svg", folder, state);
+    snprintf(title, sizeof title, "Error of each colour: %s, %d springs", state, 10 * CELLS * CELLS);
+    result = plot_write(path, title, lines, LINES, STEPS + 1, error);
+    if (!result) printf("%s\n", path);
+    return result;
+}
+
+static SingeResult fig8_run(const Fig8Run *run, const PaperOptions *options, SingeError *error) {
+    SingeSolverDef solver = singe_default_solver();
+    singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
+    SingeSim *sim;
+    Fig8 shown = {0}, counted;
+    int rises = 0, last_rise = 0;
+    SingeResult result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
+    if (result) return result;
+    for (int step = 0; step <= run->last && !result; step++) {
+        if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
+        if (!result) result = fig8_project(sim, run->state, COUNTED, &counted, error);
+        if (!result && fig8_rises(&counted, COUNTED)) rises++, last_rise = step;
+        if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
+    }
+    singe_sim_destroy(sim);
+    if (result) return result;
+    const char *name = paper_state_names[run->state];
+    const double *sum = shown.error[SINGE_COLOUR_COUNT];
+    printf("%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d, and %s\n", name,
+           run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS,
+           fig8_rises(&shown, STEPS) ? "rises in one of them" : "never rises");
+    printf("%s, all states up to %g s: the sum rises in one of the first %d steps in %d of %d", name,
+           run->last * (double)PAPER_TIME_STEP, COUNTED, rises, run->last + 1);
+    if (rises) printf(", last at %g s", last_rise * (double)PAPER_TIME_STEP);
+    printf("\n");
+    return fig8_write(options->folder, name, &shown, error);
+}
+
+ExitCode paper_fig8(const PaperOptions *options) {
+    SingeError error = {0};
+    SingeResult result = folder_make(options->folder, &error);
+    for (size_t i = 0; i < sizeof runs / sizeof *runs && !result; i++) result = fig8_run(&runs[i], options, &error);
+    return result ? paper_fail(&error) : EXIT_GOOD;
+}

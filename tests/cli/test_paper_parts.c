@@ -1,0 +1,124 @@
+// What `singe paper` rests on: singular values against known ones, the ranks of section 7.1, and the errors of Fig 8 on
+// its two states.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "cli/paper_states.h"
+#include "cli/singular.h"
+
+static void test_singular_values(void **unused) {
+    (void)unused;
+    // a product of two rotations with diag(3, 2, 1e-9) between them, and a row that is twice another
+    const double c = cos(0.7), s = sin(0.7);
+    const double matrix[] = {3 * c, -2 * s, 0, 3 * s, 2 * c, 0, 0, 0, 1e-9}, twice[] = {1, 2, 3, 4, 2, 4, 6, 8};
+    double values[3];
+    assert_int_equal(singular_values(matrix, 3, 3, values), 0);
+    assert_true(fabs(values[0] - 3) < 1e-14 && fabs(values[1] - 2) < 1e-14 && fabs(values[2] / 1e-9 - 1) < 1e-12);
+    assert_int_equal(singular_values(twice, 2, 4, values), 0);
+    assert_true(fabs(values[0] - sqrt(150)) < 1e-13 && values[1] < 1e-14);
+    assert_int_equal(singular_values(twice, 4, 2, values), 0);
+    assert_true(values[1] > 0.1); // read as four rows of two it has rank 2
+}
+
+static SingeSim *sheet(PaperState state, int cells, int steps) {
+    SingeSolverDef solver = singe_default_solver();
+    singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
+    SingeSim *sim;
+    SingeError error;
+    assert_int_equal(paper_sim(state, cells, &solver, 1, &sim, &error), SINGE_OK);
+    for (int step = 0; step < steps; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
+    return sim;
+}
+
+/// The sum of all colours' errors never rises: Fig 8, on the states that `singe paper fig8` draws.
+static void test_sum_never_rises(void **unused) {
+    (void)unused;
+    const int steps[] = {[PAPER_SWING] = 200, [PAPER_SHRINK] = 50};
+    for (int state = 0; state < PAPER_STATE_COUNT; state++) {
+        SingeSim *sim = sheet((PaperState)state, 20, steps[state]);
+        SingeNetwork *network;
+        SingeError error;
+        double errors[SINGE_COLOUR_COUNT];
+        assert_int_equal(paper_network(sim, (PaperState)state, false, 1e-4, &network, &error), SINGE_OK);
+        double before = paper_errors(network, SINGE_COLOUR_COUNT, errors), first = before;
+        for (int step = 0; step < 20; step++) {
+            for (uint32_t set = 0; set < SINGE_COLOUR_COUNT; set++)
+                assert_int_equal(singe_network_project(network, set, NULL), SINGE_OK);
+            double now = paper_errors(network, SINGE_COLOUR_COUNT, errors);
+            assert_true(now <= before);
+            before = now;
+        }
+        print_message("%s: %.3g to %.3g m\n", paper_state_names[state], first, before);
+        assert_true(before < 0.7 * first);
+        singe_network_destroy(network);
+        singe_sim_destroy(sim);
+    }
+}
+
+static size_t rank(SingeNetwork *network, uint32_t set, size_t columns) {
+    size_t rows = singe_network_set_size(network, set), count = rows < columns ? rows : columns, found = 0;
+    double *jacobian = malloc(rows * columns * sizeof *jacobian), *values = malloc(count * sizeof *values);
+    singe_network_jacobian(network, set, jacobian);
+    assert_int_equal(singular_values(jacobian, rows, columns, values), 0);
+    while (found < count && values[found] > 1e-10 * values[0]) found++;
+    free(jacobian), free(values);
+    return found;
+}
+
+/// Section 7.1: all springs in one system have more constraints than rank; every colour has full rank.
+static void test_ranks(void **unused) {
+    (void)unused;
+    SingeSim *sim = sheet(PAPER_SWING, 5, 100);
+    SingeNetwork *all, *colours;
+    SingeError error;
+    assert_int_equal(paper_network(sim, PAPER_SWING, true, 0, &all, &error), SINGE_OK);
+    assert_int_equal(paper_network(sim, PAPER_SWING, false, 1e-4, &colours, &error), SINGE_OK);
+    size_t columns = 3 * (size_t)singe_sim_view(sim).particle_count;
+    assert_int_equal(singe_network_set_size(all, 0), 10 * 5 * 5);
+    assert_true(rank(all, 0, columns) <= columns - 6); // two of the particles are held
+    for (uint32_t set = 0; set < SINGE_COLOUR_COUNT; set++)
+        assert_int_equal(rank(colours, set, columns), singe_network_set_size(colours, set));
+    singe_network_destroy(all);
+    singe_network_destroy(colours);
+    singe_sim_destroy(sim);
+}
+
+/// And so they diverge where the colours, one after another, converge.
+static void test_all_at_once_diverges(void **unused) {
+    (void)unused;
+    SingeSim *sim = sheet(PAPER_SWING, 8, 200);
+    for (int one = 0; one < 2; one++) {
+        SingeNetwork *network;
+        SingeError error;
+        uint32_t sets = one ? 1 : SINGE_COLOUR_COUNT;
+        double errors[SINGE_COLOUR_COUNT], before, after;
+        SingeResult result = paper_network(sim, PAPER_SWING, one, one ? 0 : 1e-4, &network, &error);
+        assert_int_equal(result, SINGE_OK);
+        before = paper_errors(network, sets, errors);
+        for (int step = 0; step < 7; step++)
+            for (uint32_t set = 0; set < sets && !result; set++) result = singe_network_project(network, set, NULL);
+        after = paper_errors(network, sets, errors);
+        print_message("%s: %.2e to %.2e m%s\n", one ? "all at once" : "in turn", before, after,
+                      result ? ", broken down" : "");
+        if (one) assert_true(result == SINGE_ERROR_DIVERGED || !(after < 2 * before));
+        else assert_true(result == SINGE_OK && after < before);
+        singe_network_destroy(network);
+    }
+    singe_sim_destroy(sim);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_singular_values),
+        cmocka_unit_test(test_sum_never_rises),
+        cmocka_unit_test(test_ranks),
+        cmocka_unit_test(test_all_at_once_diverges),
+    };
+    return cmocka_run_group_tests_name("paper parts", tests, NULL, NULL);
+}
