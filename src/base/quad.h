@@ -16,6 +16,8 @@ static inline Quad quad_all(float a) { return (Quad){a, a, a, a}; }
 static inline Quad quad_select(QuadMask mask, Quad yes, Quad no) {
     return (Quad)((mask & (QuadMask)yes) | (~mask & (QuadMask)no));
 }
+static inline Quad quad_min(Quad a, Quad b) { return quad_select(a < b, a, b); }
+static inline Quad quad_max(Quad a, Quad b) { return quad_select(a > b, a, b); }
 static inline Quad quad_sqrt(Quad a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
 
 /// Four rows become four columns.

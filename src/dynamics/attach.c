@@ -40,7 +40,8 @@ static bool attach_may_hold(const State *state, uint32_t v) {
     return state->dynamics.pinned[v] && (state->ablate.particle_flags[v] & SINGE_ALIVE);
 }
 
-/// The held vertex that is farthest, at rest, from the sources found so far; the first one for none.
+/// The held vertex that is farthest, at rest, from the sources found so far; the first one for none. None where it is
+/// nearer than a tenth of the way between the first two: it would hardly hold anything else.
 static uint32_t attach_farthest(const Shell *shell, const State *state, const Sheet *sheet, const uint32_t *source,
                                 int count) {
     uint32_t farthest = SHELL_NONE;
@@ -54,7 +55,9 @@ static uint32_t attach_farthest(const Shell *shell, const State *state, const Sh
         }
         if (nearest > most) farthest = v, most = nearest;
     }
-    return farthest;
+    if (count < 2 || farthest == SHELL_NONE) return farthest;
+    Vec first = vec_sub(vec_load(shell->rest_position[source[1]]), vec_load(shell->rest_position[source[0]]));
+    return most < 0.01f * vec_dot(first, first) ? SHELL_NONE : farthest;
 }
 
 /// Distances of a sheet's centres from those of its corners, as in the plane: with the mean m of the corners,
@@ -130,12 +133,11 @@ typedef struct Attach {
 /// How far apart a sheet's sources are, in space and over what the sheet reaches between them.
 typedef struct Spread {
     int count;
+    bool tight; ///< two are farther apart than the sheet reaches
     float apart[ATTACH_SOURCES][ATTACH_SOURCES], ratio[ATTACH_SOURCES][ATTACH_SOURCES];
 } Spread;
 
-/// Returns whether two sources are farther apart than the sheet reaches.
-static bool attach_spread(const Attach *job, const uint32_t *source, Spread *spread) {
-    bool tight = false;
+static void attach_spread(const Attach *job, const uint32_t *source, Spread *spread) {
     *spread = (Spread){0};
     while (spread->count < ATTACH_SOURCES && source[spread->count] != SHELL_NONE) spread->count++;
     for (int p = 0; p < spread->count; p++)
@@ -143,38 +145,42 @@ static bool attach_spread(const Attach *job, const uint32_t *source, Spread *spr
             Vec way = vec_sub(vec_load(job->position[source[p]]), vec_load(job->position[source[q]]));
             spread->apart[p][q] = vec_length(way);
             spread->ratio[p][q] = p == q ? 1 : spread->apart[p][q] / job->attachments->length[source[p]][q];
-            tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
+            spread->tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
         }
-    return tight;
 }
 
 /// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
 /// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
-/// most f and so far that the spheres overlap by a margin.
-static void attach_stretch(const Spread *spread, const float *length, float *stretched) {
+/// most f and so far that the spheres overlap by a margin. `length` is by source, of four particles.
+static void attach_stretch(const Spread *spread, Quad length[ATTACH_SOURCES]) {
     const float margin = 1.15f;
-    for (int p = 0; p < spread->count; p++) {
-        float factor = 1;
-        for (int q = 0; q < spread->count; q++) {
-            float enough = margin * spread->apart[p][q] / (length[p] + length[q]);
-            factor = fmaxf(factor, enough < spread->ratio[p][q] ? enough : spread->ratio[p][q]);
+    Quad factor[ATTACH_SOURCES];
+    for (int p = 0; p < spread->count; p++) factor[p] = quad_all(1);
+    for (int p = 0; p < spread->count; p++)
+        for (int q = 0; q < p; q++) {
+            Quad enough = margin * spread->apart[p][q] / (length[p] + length[q]);
+            enough = quad_min(enough, quad_all(spread->ratio[p][q]));
+            factor[p] = quad_max(factor[p], enough);
+            factor[q] = quad_max(factor[q], enough);
         }
-        stretched[p] = factor * length[p];
-    }
+    for (int p = 0; p < spread->count; p++) length[p] *= factor[p];
 }
 
-/// Four particles, source after source, without branches.
-static void attach_four(const Attach *job, const uint32_t *source, int count, int first) {
+/// Up to four particles, source after source, without branches.
+static void attach_four(const Attach *job, const uint32_t *source, const Spread *spread, int first, int count) {
     float *position = job->position[first];
-    Quad x[4], length[4]; // by particle, then by coordinate and by source
-    for (int i = 0; i < 4; i++) {
+    Quad x[4] = {{0}}, length[4] = {{0}}; // by particle, then by coordinate and by source
+    int32_t pieces[4] = {-1, -1, -1, -1};
+    for (int i = 0; i < count; i++) {
         x[i] = quad_load(position + 4 * i);
         length[i] = quad_load(job->attachments->length[first + i]);
+        pieces[i] = job->piece[first + i];
     }
     quad_transpose(x);
     quad_transpose(length);
-    QuadMask piece = quad_load_ints(job->piece + first), free = x[3] > 0;
-    for (int k = 0; k < count; k++) {
+    if (spread->tight) attach_stretch(spread, length);
+    QuadMask piece = quad_load_ints(pieces), free = x[3] > 0;
+    for (int k = 0; k < spread->count; k++) {
         const float *anchor = job->position[source[k]];
         if (anchor[3] > 0) continue; // no longer held
         Quad dx = x[0] - anchor[0], dy = x[1] - anchor[1], dz = x[2] - anchor[2];
@@ -186,26 +192,14 @@ static void attach_four(const Attach *job, const uint32_t *source, int count, in
         x[2] = quad_select(far, anchor[2] + dz * factor, x[2]);
     }
     quad_transpose(x);
-    for (int i = 0; i < 4; i++) quad_store(position + 4 * i, x[i]);
-}
-
-/// One particle, where sources are too far apart for the sheet or where less than four are left.
-static void attach_one(const Attach *job, const uint32_t *source, const Spread *spread, int i) {
-    float *x = job->position[i], length[ATTACH_SOURCES];
-    attach_stretch(spread, job->attachments->length[i], length);
-    for (int k = 0; k < spread->count; k++) {
-        if (x[3] == 0 || job->piece[i] != job->piece[source[k]] || job->position[source[k]][3] > 0) continue;
-        Vec anchor = vec_load(job->position[source[k]]), way = vec_sub(vec_load(x), anchor);
-        float square = vec_dot(way, way), most = length[k] * length[k];
-        if (square > most) vec_store(x, vec_mad(anchor, way, sqrtf(most / square)));
-    }
+    for (int i = 0; i < count; i++) quad_store(position + 4 * i, x[i]);
 }
 
 static void attach_sheet(const Attach *job, const uint32_t *source, int begin, int end) {
     Spread spread;
-    bool tight = attach_spread(job, source, &spread);
-    for (; !tight && begin + 4 <= end; begin += 4) attach_four(job, source, spread.count, begin);
-    for (; begin < end; begin++) attach_one(job, source, &spread, begin);
+    attach_spread(job, source, &spread);
+    for (; begin + 4 <= end; begin += 4) attach_four(job, source, &spread, begin, 4);
+    if (begin < end) attach_four(job, source, &spread, begin, end - begin);
 }
 
 static void attach_range(void *task, int begin, int end) {

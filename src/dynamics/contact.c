@@ -28,12 +28,6 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     return moving;
 }
 
-static bool contact_is_near(const MovingCollider *collider, Vec x) {
-    Vec way = vec_sub(x, collider->after.position);
-    return collider->def->kind == SINGE_COLLIDER_PLANE ? vec_dot(way, collider->normal) < collider->reach
-                                                       : vec_dot(way, way) < collider->reach * collider->reach;
-}
-
 static bool contact_particle(const MovingCollider *collider, Vec previous, float *position) {
     const SingeColliderDef *def = collider->def;
     Vec x = vec_load(position), local = pose_unapply(&collider->after, x), local_normal;
@@ -53,16 +47,20 @@ static bool contact_particle(const MovingCollider *collider, Vec previous, float
 }
 
 static double contact_range(void *task, int begin, int end) {
-    Contact *job = task;
+    const Contact job = *(const Contact *)task;
+    float(*position)[4] = job.dynamics->position;
     double contacts = 0;
-    for (int i = begin; i < end; i++) {
-        float *x = job->dynamics->position[i];
-        if (x[3] == 0) continue;
-        for (uint32_t c = 0; c < job->collider_count; c++) {
-            const MovingCollider *collider = &job->plan->colliders[c];
-            if (!contact_is_near(collider, vec_load(x))) continue;
-            Vec previous = vec_mad(vec_load(job->plan->predicted[i]), vec_load(job->dynamics->velocity[i]), -job->h);
-            contacts += contact_particle(collider, previous, x);
+    for (uint32_t c = 0; c < job.collider_count; c++) {
+        const MovingCollider collider = job.plan->colliders[c];
+        bool plane = collider.def->kind == SINGE_COLLIDER_PLANE;
+        float reach = plane ? collider.reach : collider.reach * collider.reach;
+        for (int i = begin; i < end; i++) {
+            float *x = position[i];
+            Vec way = vec_sub(vec_load(x), collider.after.position);
+            float far = plane ? vec_dot(way, collider.normal) : vec_dot(way, way);
+            if (far >= reach || x[3] == 0) continue;
+            Vec previous = vec_mad(vec_load(job.plan->predicted[i]), vec_load(job.dynamics->velocity[i]), -job.h);
+            contacts += contact_particle(&collider, previous, x);
         }
     }
     return contacts;

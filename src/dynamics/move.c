@@ -23,11 +23,10 @@ typedef struct Move {
 } Move;
 
 /// Drag on a velocity that gravity and damping have been at.
-static Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad velocity) {
-    Vec normal = vec_load(plan->normal[i]), air = vec_load(plan->air[i]);
-    float slip = vec_dot(vec_sub((Vec){velocity[0], velocity[1], velocity[2]}, air), normal);
-    float k = h * plan->drag[i] * fabsf(slip), change = -slip * k / (1 + k);
-    return velocity + change * (Quad){normal.x, normal.y, normal.z, 0};
+static inline Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad velocity) {
+    Quad normal = quad_load(plan->normal[i]), slips = (velocity - quad_load(plan->air[i])) * normal;
+    float slip = slips[0] + slips[1] + slips[2], k = h * plan->drag[i] * fabsf(slip);
+    return velocity - slip * k / (1 + k) * normal;
 }
 
 static void move_range(void *task, int begin, int end) {

@@ -48,15 +48,17 @@ static void prepare_particles(void *task, int begin, int end) {
     const Matter *matter = &job->shell->matter;
     for (int i = begin; i < end; i++) {
         bool alive = state->ablate.particle_flags[i] & SINGE_ALIVE;
-        float mass = matter->mass[i] * fmaxf(state->burn.mass[i], PREPARE_MASS_MIN);
+        float left = state->burn.mass[i];
+        float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
         plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
         job->position[i][3] = plan->inverse_mass[i];
         float progress = shell_burn_progress(state->burn.mass[i], field_at(matter->mass_min, (uint32_t)i));
         plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
+        float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
+        plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
+        if (drag == 0) continue;
         vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        float drag = field_at(matter->drag, (uint32_t)i);
-        plan->drag[i] = 0.25f * plan->settings.air_density * drag * matter->area[i] / mass;
         vec_store(plan->air[i], wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time));
     }
 }

@@ -12,6 +12,7 @@
 // it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
 // second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched. Where the nodes
 // are not in line or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
+#include "base/quad.h"
 #include "dynamics/plan.h"
 
 #include <math.h>
@@ -21,22 +22,20 @@ typedef struct Smooth {
     const SpringSet *set;
     const uint8_t *flags; ///< of the springs
     float (*velocity)[4];
+    const float (*position)[4]; ///< fourth: inverse mass
     uint32_t first_strand;
     float share;
 } Smooth;
 
-static void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c) {
-    const float *w = job->plan->inverse_mass;
-    float weight = w[a] + 4 * w[b] + w[c];
+static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint32_t c) {
+    float wa = job->position[a][3], wb = job->position[b][3], wc = job->position[c][3];
+    float weight = wa + 4 * wb + wc;
     if (weight <= 0) return;
-    float *va = job->velocity[a], *vb = job->velocity[b], *vc = job->velocity[c];
-    float share = job->share / weight;
-    for (int k = 0; k < 3; k++) {
-        float j = share * (va[k] - 2 * vb[k] + vc[k]);
-        va[k] -= w[a] * j;
-        vb[k] += 2 * w[b] * j;
-        vc[k] -= w[c] * j;
-    }
+    Quad va = quad_load(job->velocity[a]), vb = quad_load(job->velocity[b]), vc = quad_load(job->velocity[c]);
+    Quad j = (job->share / weight) * (va - 2 * vb + vc);
+    quad_store(job->velocity[a], va - wa * j);
+    quad_store(job->velocity[b], vb + 2 * wb * j);
+    quad_store(job->velocity[c], vc - wc * j);
 }
 
 /// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.
@@ -82,6 +81,7 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
                       set,
                       ablate->spring_flags[layers[layer]],
                       dynamics->velocity,
+                      (const float(*)[4])dynamics->position,
                       0,
                       1 - expf(-plan->settings.solver.smoothing * h)};
         for (uint32_t f = 0; f < set->family_count; f++) {
