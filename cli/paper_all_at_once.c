@@ -9,7 +9,7 @@
 #include "cli/paper_states.h"
 #include "cli/singular.h"
 
-enum { CELLS = 8, WARM_STEPS = 200, STEPS = 7, SMALLEST = 4 };
+enum { CELLS = 6, WARM_STEPS = 200, STEPS = 7, SMALLEST = 4 };
 
 static const double zero_share = 1e-10; // of the largest singular value: below it one is 0
 

@@ -224,6 +224,12 @@ static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counte
     return SINGE_OK;
 }
 
+static void paper_hooke(Paper *paper, Pool *pool, float h, const DynamicsState *dynamics, DynamicsCounters *counters) {
+    mass_spring_project(&paper->network, (double)paper->solver.stiffness, (const float(*)[4])dynamics->velocity,
+                        (double)h, pool, counters);
+    counters->springs += paper->network.groups[0].count;
+}
+
 SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                           Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
     Paper *paper = plan->paper;
@@ -237,16 +243,11 @@ SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateSt
                                              .inverse_h2 = 1 / ((double)h * (double)h)};
     pool_for(pool, particles, POOL_BLOCK, paper_begin, &exchange);
     bool solved = true;
-    for (int projection = 0; projection < solver->projections && (solved || !solver->early_exit); projection++) {
+    int most = solver->method == SINGE_SOLVER_MASS_SPRING ? 1 : solver->projections; // forces act once a substep
+    for (int projection = 0; projection < most && (solved || !solver->early_exit); projection++) {
         double start = clock_seconds();
-        if (solver->method == SINGE_SOLVER_MASS_SPRING) {
-            mass_spring_project(&paper->network, (double)solver->stiffness, (const float(*)[4])dynamics->velocity,
-                                (double)h, pool, counters);
-            counters->springs += paper->network.groups[0].count;
-            projection = solver->projections; // forces act once a substep
-        } else {
-            TRY(paper_step(paper, pool, counters, &solved, error));
-        }
+        if (solver->method == SINGE_SOLVER_MASS_SPRING) paper_hooke(paper, pool, h, dynamics, counters);
+        else TRY(paper_step(paper, pool, counters, &solved, error));
         counters->seconds += clock_seconds() - start;
         if (collider_count == 0) continue;
         pool_for(pool, particles, POOL_BLOCK, paper_put, &exchange);

@@ -41,7 +41,7 @@ class Paper(Case):
 
     def test_all_at_once(self):
         out, _ = self.singe("paper", "all-at-once", timeout=600)
-        self.assertIn("640 constraints, 429 degrees of freedom", out)
+        self.assertIn("360 constraints, 249 degrees of freedom", out)
 
     def test_scene_with_the_method(self):
         small = self.write_scene("small.yaml", frames=3, steps=1, cells=6)
