@@ -7,9 +7,10 @@
 // A strand passes a pull on only to the other end of itself within a projection, so that on a fine sheet most of
 // the load at a pin would be carried by stretch; these carry it at once.
 //
-// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
-// are those of the springs' targets, over the cells that are left; they are measured again as these change. What
-// has come free of a source is let go at once. A sheet whose mesh may stretch by its compliance has none.
+// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Ways lead
+// over cells that have not begun to burn: char shrinks and stretches, and a length that grows shorter would jerk
+// what hangs on it. So lengths only ever grow, as the fire cuts ways off; they are measured again from time to time.
+// What has come free of a source is let go at once. A sheet whose mesh may stretch by its compliance has none.
 #include "dynamics/attach.h"
 
 #include "base/quad.h"
@@ -18,9 +19,13 @@
 /// Steps between two measurements while a sheet burns: a search costs as much as several steps.
 enum { ATTACH_PERIOD = 32 };
 
+/// Of a source that is not held any more: no particle's.
+enum { ATTACH_NO_PIECE = -2 };
+
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
     *attachments = (Attachments){0};
     bool done = NEW(memory, attachments->source, shell->sheet_count) &&
+                NEW(memory, attachments->spread, shell->sheet_count) &&
                 NEW(memory, attachments->length, shell->particle_count) &&
                 NEW(memory, attachments->distance, shell->vertex_count) &&
                 geodesic_create(memory, shell->vertex_count, &attachments->search);
@@ -31,6 +36,7 @@ bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments)
 
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
     FREE(memory, attachments->source, shell->sheet_count);
+    FREE(memory, attachments->spread, shell->sheet_count);
     FREE(memory, attachments->length, shell->particle_count);
     FREE(memory, attachments->distance, shell->vertex_count);
     geodesic_free(memory, shell->vertex_count, &attachments->search);
@@ -62,7 +68,7 @@ static uint32_t attach_farthest(const Shell *shell, const State *state, const Sh
 
 /// Distances of a sheet's centres from those of its corners, as in the plane: with the mean m of the corners,
 /// mean |c_i - p|^2 = |m - p|^2 + mean |c_i - m|^2, and the last is an eighth of the diagonals' squares.
-static void attach_write(Attachments *attachments, const Shell *shell, const State *state, const Sheet *sheet, int k) {
+static void attach_write(Attachments *attachments, const Shell *shell, const Sheet *sheet, int k) {
     const float *distance = attachments->distance;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
         attachments->length[v][k] = distance[v];
@@ -71,7 +77,7 @@ static void attach_write(Attachments *attachments, const Shell *shell, const Sta
         float sum = 0;
         for (int i = 0; i < 4; i++) sum += distance[shell->cells[c][i]] * distance[shell->cells[c][i]];
         for (int i = 0; i < 2; i++) {
-            float diagonal = state->burn.spring_length[SINGE_YELLOW][shell->cell_springs[c].yellow[i]];
+            float diagonal = shell->springs[SINGE_YELLOW].rest[shell->cell_springs[c].yellow[i]];
             sum -= 0.5f * diagonal * diagonal;
         }
         float thickness = field_at(shell->matter.thickness, centre);
@@ -97,7 +103,7 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
             if (!more) continue;
             geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            attach_write(attachments, shell, state, sheet, k);
+            attach_write(attachments, shell, sheet, k);
         }
     }
 }
@@ -123,36 +129,27 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
         }
 }
 
-typedef struct Attach {
-    const Attachments *attachments;
-    const Shell *shell;
-    const int32_t *piece;
-    float (*position)[4];
-} Attach;
-
-/// How far apart a sheet's sources are, in space and over what the sheet reaches between them.
-typedef struct Spread {
-    int count;
-    bool tight; ///< two are farther apart than the sheet reaches
-    float apart[ATTACH_SOURCES][ATTACH_SOURCES], ratio[ATTACH_SOURCES][ATTACH_SOURCES];
-} Spread;
-
-static void attach_spread(const Attach *job, const uint32_t *source, Spread *spread) {
-    *spread = (Spread){0};
-    while (spread->count < ATTACH_SOURCES && source[spread->count] != SHELL_NONE) spread->count++;
-    for (int p = 0; p < spread->count; p++)
-        for (int q = 0; q < spread->count; q++) {
-            Vec way = vec_sub(vec_load(job->position[source[p]]), vec_load(job->position[source[q]]));
-            spread->apart[p][q] = vec_length(way);
-            spread->ratio[p][q] = p == q ? 1 : spread->apart[p][q] / job->attachments->length[source[p]][q];
+/// Where a sheet's sources are now, how far apart, and how that compares with what the sheet reaches between them.
+static void attach_spread(const Attachments *attachments, const AblateState *ablate, const float (*position)[4],
+                          const uint32_t *source, AttachSpread *spread) {
+    *spread = (AttachSpread){0};
+    for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++, spread->count++) {
+        bool held = position[source[p]][3] == 0;
+        spread->piece[p] = held ? ablate->piece[source[p]] : ATTACH_NO_PIECE;
+        vec_store(spread->place[p], vec_load(position[source[p]]));
+        for (int q = 0; q < p; q++) {
+            float apart = vec_length(vec_sub(vec_load(spread->place[p]), vec_load(spread->place[q])));
+            spread->apart[p][q] = apart;
+            spread->ratio[p][q] = apart / attachments->length[source[p]][q];
             spread->tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
         }
+    }
 }
 
 /// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
 /// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
 /// most f and so far that the spheres overlap by a margin. `length` is by source, of four particles.
-static void attach_stretch(const Spread *spread, Quad length[ATTACH_SOURCES]) {
+static void attach_stretch(const AttachSpread *spread, Quad length[ATTACH_SOURCES]) {
     const float margin = 1.15f;
     Quad factor[ATTACH_SOURCES];
     for (int p = 0; p < spread->count; p++) factor[p] = quad_all(1);
@@ -166,11 +163,18 @@ static void attach_stretch(const Spread *spread, Quad length[ATTACH_SOURCES]) {
     for (int p = 0; p < spread->count; p++) length[p] *= factor[p];
 }
 
+typedef struct Attach {
+    const Attachments *attachments;
+    const Shell *shell;
+    const int32_t *piece;
+    float (*position)[4];
+} Attach;
+
 /// Up to four particles, source after source, without branches.
-static void attach_four(const Attach *job, const uint32_t *source, const Spread *spread, int first, int count) {
+static void attach_four(const Attach *job, const AttachSpread *spread, int first, int count) {
     float *position = job->position[first];
     Quad x[4] = {{0}}, length[4] = {{0}}; // by particle, then by coordinate and by source
-    int32_t pieces[4] = {-1, -1, -1, -1};
+    int32_t pieces[4] = {0};
     for (int i = 0; i < count; i++) {
         x[i] = quad_load(position + 4 * i);
         length[i] = quad_load(job->attachments->length[first + i]);
@@ -181,11 +185,10 @@ static void attach_four(const Attach *job, const uint32_t *source, const Spread 
     if (spread->tight) attach_stretch(spread, length);
     QuadMask piece = quad_load_ints(pieces), free = x[3] > 0;
     for (int k = 0; k < spread->count; k++) {
-        const float *anchor = job->position[source[k]];
-        if (anchor[3] > 0) continue; // no longer held
+        const float *anchor = spread->place[k];
         Quad dx = x[0] - anchor[0], dy = x[1] - anchor[1], dz = x[2] - anchor[2];
         Quad square = dx * dx + dy * dy + dz * dz, most = length[k] * length[k];
-        QuadMask far = (square > most) & free & (piece == job->piece[source[k]]);
+        QuadMask far = (square > most) & free & (piece == spread->piece[k]);
         Quad factor = quad_sqrt(quad_select(far, most / square, quad_all(1)));
         x[0] = quad_select(far, anchor[0] + dx * factor, x[0]);
         x[1] = quad_select(far, anchor[1] + dy * factor, x[1]);
@@ -195,31 +198,30 @@ static void attach_four(const Attach *job, const uint32_t *source, const Spread 
     for (int i = 0; i < count; i++) quad_store(position + 4 * i, x[i]);
 }
 
-static void attach_sheet(const Attach *job, const uint32_t *source, int begin, int end) {
-    Spread spread;
-    attach_spread(job, source, &spread);
-    for (; begin + 4 <= end; begin += 4) attach_four(job, source, &spread, begin, 4);
-    if (begin < end) attach_four(job, source, &spread, begin, end - begin);
-}
-
 static void attach_range(void *task, int begin, int end) {
     const Attach *job = task;
     const Shell *shell = job->shell;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
-        const uint32_t *source = job->attachments->source[s];
-        if (source[0] == SHELL_NONE) continue;
+        const AttachSpread *spread = &job->attachments->spread[s];
+        if (spread->count == 0) continue;
         int first[2] = {(int)sheet->vertex_first, (int)shell_centre(shell, sheet->cell_first)};
         int last[2] = {first[0] + (int)sheet->vertex_count, first[1] + (int)sheet->cell_count};
-        for (int layer = 0; layer < 2; layer++)
-            attach_sheet(job, source, first[layer] > begin ? first[layer] : begin, last[layer] < end ? last[layer] : end);
+        for (int layer = 0; layer < 2; layer++) {
+            int i = first[layer] > begin ? first[layer] : begin, stop = last[layer] < end ? last[layer] : end;
+            for (; i < stop; i += 4) attach_four(job, spread, i, stop - i < 4 ? stop - i : 4);
+        }
     }
 }
 
-void attach_project(const Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
+void attach_project(Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics) {
     bool any = false;
-    for (uint32_t s = 0; s < shell->sheet_count; s++) any |= attachments->source[s][0] != SHELL_NONE;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        attach_spread(attachments, ablate, (const float(*)[4])dynamics->position, attachments->source[s],
+                      &attachments->spread[s]);
+        any |= attachments->spread[s].count > 0;
+    }
     if (!any) return;
     Attach job = {attachments, shell, ablate->piece, dynamics->position};
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, attach_range, &job);

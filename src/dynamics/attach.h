@@ -8,10 +8,21 @@
 
 enum { ATTACH_SOURCES = 4 };
 
+/// A sheet's sources in a substep.
+typedef struct AttachSpread {
+    int count;
+    bool tight; ///< two are farther apart than the sheet reaches
+    float place[ATTACH_SOURCES][3]; ///< m
+    int32_t piece[ATTACH_SOURCES];
+    float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
+    float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
+} AttachSpread;
+
 /// Held vertices of a sheet, far from each other, and every particle's distance from them.
 typedef struct Attachments {
     uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
     float (*length)[ATTACH_SOURCES];    ///< [particles] m, INFINITY where nothing holds
+    AttachSpread *spread;               ///< [sheets] scratch of a substep
     float *distance;                    ///< [vertices] scratch
     Geodesic search;
     // what they were measured for
@@ -27,7 +38,7 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
 
 /// Puts what is too far from a source back on the sphere around it.
-void attach_project(const Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
+void attach_project(Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
 /// Sources and lengths are part of a snapshot: they are those of an earlier step.
