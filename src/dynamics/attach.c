@@ -1,11 +1,12 @@
 // Long-range attachments (Kim, Chentanez and Mueller-Fischer, Long range attachments, 2012). On an inextensible
-// sheet the distance in space between two particles never exceeds the geodesic distance L along the sheet. For
-// every particle i and held vertex p, where |x_i - x_p| > L_ip,
+// sheet the distance in space between two vertices never exceeds the geodesic distance L along the sheet. For
+// every vertex i and held vertex p, where |x_i - x_p| > L_ip,
 //
 //   x_i <- x_p + (x_i - x_p) L_ip / |x_i - x_p|.
 //
 // A strand passes a pull on only to the other end of itself within a projection, so that on a fine sheet most of
-// the load at a pin would be carried by stretch; these carry it at once.
+// the load at a pin would be carried by stretch; these carry it at once. Centres lie off the mesh, farther away on
+// the outside of a bend: they are not attached, or a sheet would not bend.
 //
 // Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Ways lead
 // over cells that have not begun to burn: char shrinks and stretches, and a length that grows shorter would jerk
@@ -26,7 +27,7 @@ bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments)
     *attachments = (Attachments){0};
     bool done = NEW(memory, attachments->source, shell->sheet_count) &&
                 NEW(memory, attachments->spread, shell->sheet_count) &&
-                NEW(memory, attachments->length, shell->particle_count) &&
+                NEW(memory, attachments->length, shell->vertex_count) &&
                 NEW(memory, attachments->distance, shell->vertex_count) &&
                 geodesic_create(memory, shell->vertex_count, &attachments->search);
     for (uint32_t s = 0; done && s < shell->sheet_count; s++)
@@ -37,7 +38,7 @@ bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments)
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
     FREE(memory, attachments->source, shell->sheet_count);
     FREE(memory, attachments->spread, shell->sheet_count);
-    FREE(memory, attachments->length, shell->particle_count);
+    FREE(memory, attachments->length, shell->vertex_count);
     FREE(memory, attachments->distance, shell->vertex_count);
     geodesic_free(memory, shell->vertex_count, &attachments->search);
 }
@@ -66,25 +67,6 @@ static uint32_t attach_farthest(const Shell *shell, const State *state, const Sh
     return most < 0.01f * vec_dot(first, first) ? SHELL_NONE : farthest;
 }
 
-/// Distances of a sheet's centres from those of its corners, as in the plane: with the mean m of the corners,
-/// mean |c_i - p|^2 = |m - p|^2 + mean |c_i - m|^2, and the last is an eighth of the diagonals' squares.
-static void attach_write(Attachments *attachments, const Shell *shell, const Sheet *sheet, int k) {
-    const float *distance = attachments->distance;
-    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        attachments->length[v][k] = distance[v];
-    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
-        uint32_t centre = shell_centre(shell, c);
-        float sum = 0;
-        for (int i = 0; i < 4; i++) sum += distance[shell->cells[c][i]] * distance[shell->cells[c][i]];
-        for (int i = 0; i < 2; i++) {
-            float diagonal = shell->springs[SINGE_YELLOW].rest[shell->cell_springs[c].yellow[i]];
-            sum -= 0.5f * diagonal * diagonal;
-        }
-        float thickness = field_at(shell->matter.thickness, centre);
-        attachments->length[centre][k] = sqrtf(fmaxf(0, 0.25f * sum) + thickness * thickness);
-    }
-}
-
 /// Whether nothing in a sheet's mesh may stretch.
 static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
@@ -103,7 +85,8 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
             if (!more) continue;
             geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            attach_write(attachments, shell, sheet, k);
+            for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+                attachments->length[v][k] = attachments->distance[v];
         }
     }
 }
@@ -121,7 +104,7 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
     STREAM(stream, attachments->topology);
     STREAM(stream, attachments->mass_burnt);
     stream_data(stream, attachments->source, shell->sheet_count * sizeof *attachments->source);
-    stream_data(stream, attachments->length, shell->particle_count * sizeof *attachments->length);
+    stream_data(stream, attachments->length, shell->vertex_count * sizeof *attachments->length);
     for (uint32_t s = 0; stream->mode == STREAM_READ && s < shell->sheet_count; s++)
         for (int k = 0; k < ATTACH_SOURCES; k++) {
             uint32_t source = attachments->source[s][k];
@@ -205,12 +188,9 @@ static void attach_range(void *task, int begin, int end) {
         const Sheet *sheet = &shell->sheets[s];
         const AttachSpread *spread = &job->attachments->spread[s];
         if (spread->count == 0) continue;
-        int first[2] = {(int)sheet->vertex_first, (int)shell_centre(shell, sheet->cell_first)};
-        int last[2] = {first[0] + (int)sheet->vertex_count, first[1] + (int)sheet->cell_count};
-        for (int layer = 0; layer < 2; layer++) {
-            int i = first[layer] > begin ? first[layer] : begin, stop = last[layer] < end ? last[layer] : end;
-            for (; i < stop; i += 4) attach_four(job, spread, i, stop - i < 4 ? stop - i : 4);
-        }
+        int first = (int)sheet->vertex_first, last = first + (int)sheet->vertex_count;
+        int i = first > begin ? first : begin, stop = last < end ? last : end;
+        for (; i < stop; i += 4) attach_four(job, spread, i, stop - i < 4 ? stop - i : 4);
     }
 }
 
@@ -224,5 +204,5 @@ void attach_project(Attachments *attachments, const Shell *shell, const AblateSt
     }
     if (!any) return;
     Attach job = {attachments, shell, ablate->piece, dynamics->position};
-    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, attach_range, &job);
+    pool_for(pool, (int)shell->vertex_count, POOL_BLOCK, attach_range, &job);
 }

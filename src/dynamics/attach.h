@@ -18,10 +18,10 @@ typedef struct AttachSpread {
     float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
 } AttachSpread;
 
-/// Held vertices of a sheet, far from each other, and every particle's distance from them.
+/// Held vertices of a sheet, far from each other, and every vertex's distance from them.
 typedef struct Attachments {
     uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
-    float (*length)[ATTACH_SOURCES];    ///< [particles] m, INFINITY where nothing holds
+    float (*length)[ATTACH_SOURCES];    ///< [vertices] m, INFINITY where nothing holds
     AttachSpread *spread;               ///< [sheets] scratch of a substep
     float *distance;                    ///< [vertices] scratch
     Geodesic search;

@@ -107,13 +107,13 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
                      i);
 }
 
-/// One projection of all colours. The attachments come before the last, which is held best: so it mends what they
-/// disturb.
+/// One projection of all colours. The attachments come first, for the load, and before the last colour, which is held
+/// best: so it mends what they disturb.
 static void dynamics_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                              DynamicsState *dynamics, DynamicsCounters *counters) {
     const SingeSolverDef *solver = &plan->settings.solver;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
-        if (i == SINGE_COLOUR_COUNT - 1 && solver->attachments)
+        if ((i == 0 || i == SINGE_COLOUR_COUNT - 1) && solver->attachments)
             attach_project(&plan->attachments, shell, ablate, pool, dynamics);
         strand_project(plan, solver->order[i], pool, h, dynamics, counters);
     }

@@ -15,6 +15,10 @@
 /// Substeps.
 enum { HEIGHT_WAIT = 5 };
 
+/// The most that is mended at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
+/// would else be thrown about.
+static const float HEIGHT_MOST = 0.05f;
+
 typedef struct Height {
     DynamicsPlan *plan;
     const Shell *shell;
@@ -41,7 +45,8 @@ static void height_cell(const Height *job, uint32_t c) {
     float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
     if (height_is_enough(above, square, 2 * enough)) job->plan->height_wait[c] = HEIGHT_WAIT;
     if (height_is_enough(above, square, enough) || square == 0) return;
-    float length = sqrtf(square), missing = enough - above / length;
+    float length = sqrtf(square), missing = enough - above / length, most = HEIGHT_MOST * sqrtf(length);
+    if (missing > most) missing = most;
     float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
     float weight = x[centre][3] + (w[0] + w[1] + w[2] + w[3]) / 16;
     if (weight <= 0) return;

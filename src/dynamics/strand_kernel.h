@@ -31,7 +31,7 @@ typedef struct Row {
 } Row;
 
 /// y above.
-#define STRAND_YIELD 0.25f
+#define STRAND_YIELD 0.1f
 
 /// What is kept of a row between elimination and substitution.
 enum { KEEP_UX, KEEP_UY, KEEP_UZ, KEEP_W, KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };

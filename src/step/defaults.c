@@ -41,6 +41,9 @@ static SingeMaterialDef standard_material(void) {
         def.weight[colour] = singe_param(1);
         def.compliance[colour] = singe_param(0);
     }
+    def.compliance[SINGE_RED] = singe_param(0.1f);
+    def.compliance[SINGE_GREEN] = singe_param(1);
+    def.compliance[SINGE_YELLOW] = singe_param(0.05f);
     return def;
 }
 
@@ -92,7 +95,7 @@ static SingeSolverDef standard_solver(void) {
         .substeps = 3,
         .projections = 1,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
-        .regularisation = {[SINGE_RED] = 4, [SINGE_GREEN] = 4, [SINGE_BLUE] = 0.01f, [SINGE_YELLOW] = 4},
+        .regularisation = {[SINGE_RED] = 0.1f, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
         .attachments = true,
         .early_exit = true,
         .tolerance = 1e-7f,
