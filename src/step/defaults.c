@@ -43,7 +43,7 @@ static SingeMaterialDef standard_material(void) {
     }
     def.compliance[SINGE_RED] = singe_param(0.1f);
     def.compliance[SINGE_GREEN] = singe_param(1);
-    def.compliance[SINGE_YELLOW] = singe_param(0.05f);
+    def.compliance[SINGE_YELLOW] = singe_param(0.2f);
     return def;
 }
 
