@@ -39,6 +39,7 @@ typedef struct StrandSet {
     float *length;         ///< [row_count STRAND_LANES] m, targets
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N
+    float compliance_all;  ///< m/N, that of every spring; negative where they differ
     void *block;           ///< that the five lie in
 } StrandSet;
 

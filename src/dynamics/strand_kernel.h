@@ -42,11 +42,12 @@ enum { KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };
 typedef struct Group {
     float *position;
     const uint32_t *node, *beside;
-    const float *length, *weight, *compliance;
+    const float *length, *weight, *compliance; ///< compliance: NULL where it is the same everywhere
     uint32_t rows;
     size_t stride;              ///< floats from one quadruple to the next where particles are beside each other
     float *keep, *first_beside; ///< first_beside: `position` seen from this part's first lane
     Lanes softness, inverse_h2; ///< 1 + r/2, 1/h^2
+    Lanes stiff;                ///< c/h^2 where c is the same everywhere
 } Group;
 
 static inline float *keep_at(const Group *group, uint32_t row, int what) {
@@ -75,7 +76,6 @@ static inline Node group_node(const Group *group, uint32_t k) {
 static inline Row group_row(const Group *restrict group, uint32_t k, const Node *a, const Node *b) {
     size_t slot = (size_t)k * STRAND_LANES;
     Lanes l = lanes_load(group->length + slot), weight = lanes_load(group->weight + slot);
-    Lanes stiff = lanes_load(group->compliance + slot) * group->inverse_h2;
     Lanes dx = b->x - a->x, dy = b->y - a->y, dz = b->z - a->z;
     Lanes square = dx * dx + dy * dy + dz * dz, target = l * l;
     Lanes e = (square - target) * lanes_all(0.5f);
@@ -84,6 +84,8 @@ static inline Row group_row(const Group *restrict group, uint32_t k, const Node 
     if (__builtin_expect(lanes_any_less(square, crushed), 0))
         e = lanes_where_less(square, crushed, -l * lanes_sqrt(square), e);
     Lanes pull = group->softness * square + lanes_max(e, lanes_all(0)) * lanes_all(STRAND_YIELD);
+    Lanes stiff = group->stiff;
+    if (group->compliance) stiff = lanes_load(group->compliance + slot) * group->inverse_h2;
     return (Row){dx, dy, dz, weight * e, (a->w + b->w) * pull + stiff * square};
 }
 
@@ -239,13 +241,14 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
                        .beside = set->beside + part->row,
                        .length = set->length + slot,
                        .weight = set->weight + slot,
-                       .compliance = set->compliance + slot,
+                       .compliance = set->compliance_all < 0 ? set->compliance + slot : NULL,
                        .rows = part->rows,
                        .stride = part->width,
                        .keep = keep,
                        .first_beside = job->position + 4 * strand_column(part->width, lane),
                        .softness = lanes_all(1 + 0.5f * job->regularisation),
-                       .inverse_h2 = lanes_all(job->inverse_h2)};
+                       .inverse_h2 = lanes_all(job->inverse_h2),
+                       .stiff = lanes_all(set->compliance_all * job->inverse_h2)};
         group_solve(&group, part->ring);
     }
 }
