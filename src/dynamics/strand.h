@@ -4,9 +4,9 @@
 // a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is the one after
 // the last particle, which has no mass.
 //
-// Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then takes
-// the particles of width / 4 columns beside each other at once. Strands are laid so that columns beside each other hold
-// particles of consecutive numbers where they can (strand_lay.c).
+// Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then
+// takes the particles of width / 4 columns beside each other at once. Strands are laid so that columns beside each
+// other hold particles of consecutive numbers where they can (strand_lay.c).
 #ifndef DYNAMICS_STRAND_H
 #define DYNAMICS_STRAND_H
 
