@@ -12,16 +12,21 @@ static size_t keep_floats(const Strands *strands) {
 }
 
 /// Operations of a row of the chain's solve and bytes it moves, counted in strand_kernel.h. The bytes: node, length,
-/// weight, compliance and position on the way there; node, position twice on the way back.
-enum { STRAND_FLOPS = 50, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
+/// weight, compliance and position on the way there; node, position twice on the way back. Rows whose particles lie
+/// beside each other do without the nodes.
+enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 static void strands_comply(const Shell *shell, int colour, StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
     const Field compliance = shell->matter.compliance[colour];
+    set->compliance_all = 0;
     for (uint32_t s = 0; s < set->strand_count; s++) {
         float *slot = set->compliance + set->strand_slot[s];
-        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES)
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             *slot = 0.5f * (field_at(compliance, springs->ends[k][0]) + field_at(compliance, springs->ends[k][1]));
+            if (s == 0 && k == 0) set->compliance_all = *slot;
+            if (*slot != set->compliance_all) set->compliance_all = -1;
+        }
     }
 }
 

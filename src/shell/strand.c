@@ -79,20 +79,70 @@ static void trace_all(Trace *trace) {
         if (!trace->done[s]) trace_from(trace, 2 * s);
 }
 
-/// The particles of every strand.
-static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_count, ItemNodes *items) {
+static uint32_t trace_length(const Trace *trace, uint32_t s) { return trace->first[s + 1] - trace->first[s]; }
+
+/// How far apart the numbers of a strand's first two particles are.
+static uint32_t trace_stride(const Trace *trace, uint32_t s) {
+    uint32_t step = trace->steps[trace->first[s]];
+    uint32_t a = step_from(trace->springs, step), b = step_to(trace->springs, step);
+    return a < b ? b - a : a - b;
+}
+
+/// Strands by length, longest first; of one length first those that begin with the stride of the very first, then in
+/// the order in which they were found.
+static bool order_by_length(Memory *memory, const Trace *trace, uint32_t *order) {
+    uint32_t first = 0, *rank = NULL, *next = NULL;
+    if (trace->strand_count == 0) return true;
+    for (uint32_t s = 0; s < trace->strand_count; s++)
+        if (trace_length(trace, s) > trace_length(trace, first)) first = s;
+    uint32_t longest = trace_length(trace, first), stride = trace_stride(trace, first);
+    bool done = NEW(memory, rank, trace->strand_count) && NEW(memory, next, 2 * (size_t)longest + 2);
+    for (uint32_t s = 0; s < trace->strand_count && done; s++) {
+        rank[s] = 2 * (longest - trace_length(trace, s)) + (trace_stride(trace, s) != stride);
+        next[rank[s] + 1]++; // lengths are 1 at least
+    }
+    if (done) {
+        for (uint32_t i = 0; i <= 2 * longest; i++) next[i + 1] += next[i];
+        for (uint32_t s = 0; s < trace->strand_count; s++) order[next[rank[s]]++] = s;
+    }
+    FREE(memory, rank, trace->strand_count);
+    FREE(memory, next, 2 * (size_t)longest + 2);
+    return done;
+}
+
+/// The particles of every strand, strands in this order.
+static bool list_nodes(Memory *memory, const Trace *trace, uint32_t particle_count, const uint32_t *order,
+                       ItemNodes *items) {
     *items = (ItemNodes){.node_count = particle_count, .item_count = trace->strand_count};
     if (!NEW(memory, items->first, (size_t)trace->strand_count + 1)) return false;
     if (!NEW(memory, items->nodes, (size_t)trace->length + trace->strand_count)) return false;
     uint32_t total = 0;
-    for (uint32_t s = 0; s < trace->strand_count; s++) {
-        items->first[s] = total;
+    for (uint32_t i = 0; i < trace->strand_count; i++) {
+        uint32_t s = order[i];
+        items->first[i] = total;
         for (uint32_t k = trace->first[s]; k < trace->first[s + 1]; k++)
             items->nodes[total++] = step_from(trace->springs, trace->steps[k]);
         if (!trace->ring[s]) items->nodes[total++] = step_to(trace->springs, trace->steps[trace->first[s + 1] - 1]);
     }
     items->first[trace->strand_count] = total;
     return true;
+}
+
+/// Colours the strands, longest first. Where strands form several networks that share no particle, as the diagonals of
+/// a grid's black and of its white vertices do, the longest of each get family 0: those run side by side, and lanes
+/// want neighbours in one family. Returns the number of families, 0 when out of memory.
+static uint32_t find_families(Memory *memory, const Trace *trace, uint32_t particle_count, uint32_t *family) {
+    uint32_t strands = trace->strand_count, families = 0, *order = NULL, *of_item = NULL;
+    ItemNodes items = {0};
+    if (NEW(memory, order, strands) && NEW(memory, of_item, strands) && order_by_length(memory, trace, order) &&
+        list_nodes(memory, trace, particle_count, order, &items))
+        families = family_colour(memory, &items, of_item);
+    for (uint32_t i = 0; i < strands && families; i++) family[order[i]] = of_item[i];
+    FREE(memory, items.nodes, (size_t)trace->length + strands);
+    FREE(memory, items.first, (size_t)strands + 1);
+    FREE(memory, of_item, strands);
+    FREE(memory, order, strands);
+    return families;
 }
 
 /// Numbers strands and springs family by family.
@@ -115,12 +165,8 @@ static void renumber(const Trace *trace, const uint32_t *sorted, SpringSet *set,
 /// Colours the traced strands and writes the set. False when out of memory.
 static bool arrange(Memory *memory, uint32_t particle_count, const Trace *trace, SpringSet *set, uint32_t *number) {
     uint32_t strands = trace->strand_count, families = 0, *family = NULL, *sorted = NULL;
-    ItemNodes items = {0};
-    if (NEW(memory, family, strands) && NEW(memory, sorted, strands) &&
-        list_nodes(memory, trace, particle_count, &items))
-        families = family_colour(memory, &items, family);
-    FREE(memory, items.nodes, (size_t)trace->length + strands);
-    FREE(memory, items.first, (size_t)strands + 1);
+    if (NEW(memory, family, strands) && NEW(memory, sorted, strands))
+        families = find_families(memory, trace, particle_count, family);
     set->strand_count = strands;
     set->family_count = strands ? families : 0;
     bool done = families && NEW(memory, set->ends, set->count) && NEW(memory, set->rest, set->count) &&

@@ -47,6 +47,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
     const float *w = bench->plan->inverse_mass;
     double relative = (double)bench->settings.solver.regularisation[colour];
+    double compliance = (double)singe_default_material().compliance[colour].value;
     for (int k = 0; k < n; k++) {
         const uint32_t *e = set->ends[first + (uint32_t)k];
         double l = (double)bench->state.burn.spring_length[colour][first + (uint32_t)k], length = 0;
@@ -66,7 +67,8 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
                     if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
             if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
             // what is too long yields
-            if (p == q) a[p][q] += 0.25 * fmax(stretch[p], 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
+            if (p == q) a[p][q] += 0.1 * fmax(stretch[p], 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
+            if (p == q) a[p][q] += compliance * 1e6;
             if (p == q && a[p][q] == 0) a[p][q] = 1; // pinned at both ends: an empty row
         }
     dense_solve(a, b, n);
