@@ -11,17 +11,16 @@
 // Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Ways lead
 // over cells that have not begun to burn: char shrinks and stretches, and a length that grows shorter would jerk
 // what hangs on it. So lengths only ever grow, as the fire cuts ways off; they are measured again from time to time.
-// What has come free of a source is let go at once. A sheet whose mesh may stretch by its compliance has none.
+// What has come free of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has none.
 #include "dynamics/attach.h"
 
-#include "base/quad.h"
 #include "base/vec.h"
 
 /// Steps between two measurements while a sheet burns: a search costs as much as several steps.
 enum { ATTACH_PERIOD = 32 };
 
-/// Of a source that is not held any more: no particle's.
-enum { ATTACH_NO_PIECE = -2 };
+/// Vertices that any kernel takes in whole blocks of lanes.
+enum { ATTACH_BLOCK = 16 };
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
     *attachments = (Attachments){0};
@@ -91,12 +90,22 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
     }
 }
 
+/// Pieces never join again: what is in another piece than a source is out of its reach for good.
+static void attach_let_go(Attachments *attachments, const Shell *shell, const int32_t *piece) {
+    for (uint32_t v = 0; v < shell->vertex_count; v++) {
+        const uint32_t *source = attachments->source[shell->matter.sheet[v]];
+        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
+            if (piece[v] != piece[source[k]]) attachments->length[v][k] = INFINITY;
+    }
+}
+
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed) {
-    bool changed = attachments->topology != state->ablate.topology_version ||
-                   attachments->mass_burnt != state->burn.mass_burnt;
+    if (attachments->topology != state->ablate.topology_version)
+        attach_let_go(attachments, shell, state->ablate.piece);
+    attachments->topology = state->ablate.topology_version;
+    bool changed = attachments->mass_burnt != state->burn.mass_burnt;
     if (!pins_changed && !(changed && (state->step + 1) % ATTACH_PERIOD == 0)) return;
     attach_measure(attachments, shell, state);
-    attachments->topology = state->ablate.topology_version;
     attachments->mass_burnt = state->burn.mass_burnt;
 }
 
@@ -113,12 +122,10 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
 }
 
 /// Where a sheet's sources are now, how far apart, and how that compares with what the sheet reaches between them.
-static void attach_spread(const Attachments *attachments, const AblateState *ablate, const float (*position)[4],
-                          const uint32_t *source, AttachSpread *spread) {
+static void attach_spread(const Attachments *attachments, const float (*position)[4], const uint32_t *source,
+                          AttachSpread *spread) {
     *spread = (AttachSpread){0};
     for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++, spread->count++) {
-        bool held = position[source[p]][3] == 0;
-        spread->piece[p] = held ? ablate->piece[source[p]] : ATTACH_NO_PIECE;
         vec_store(spread->place[p], vec_load(position[source[p]]));
         for (int q = 0; q < p; q++) {
             float apart = vec_length(vec_sub(vec_load(spread->place[p]), vec_load(spread->place[q])));
@@ -129,80 +136,30 @@ static void attach_spread(const Attachments *attachments, const AblateState *abl
     }
 }
 
-/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
-/// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
-/// most f and so far that the spheres overlap by a margin. `length` is by source, of four particles.
-static void attach_stretch(const AttachSpread *spread, Quad length[ATTACH_SOURCES]) {
-    const float margin = 1.15f;
-    Quad factor[ATTACH_SOURCES];
-    for (int p = 0; p < spread->count; p++) factor[p] = quad_all(1);
-    for (int p = 0; p < spread->count; p++)
-        for (int q = 0; q < p; q++) {
-            Quad enough = margin * spread->apart[p][q] / (length[p] + length[q]);
-            enough = quad_min(enough, quad_all(spread->ratio[p][q]));
-            factor[p] = quad_max(factor[p], enough);
-            factor[q] = quad_max(factor[q], enough);
-        }
-    for (int p = 0; p < spread->count; p++) length[p] *= factor[p];
-}
-
 typedef struct Attach {
-    const Attachments *attachments;
-    const Shell *shell;
-    const int32_t *piece;
+    const AttachSpread *spread;
+    AttachHold *hold;
+    const float (*length)[ATTACH_SOURCES];
     float (*position)[4];
 } Attach;
 
-/// Up to four particles, source after source, without branches.
-static void attach_four(const Attach *job, const AttachSpread *spread, int first, int count) {
-    float *position = job->position[first];
-    Quad x[4] = {{0}}, length[4] = {{0}}; // by particle, then by coordinate and by source
-    int32_t pieces[4] = {0};
-    for (int i = 0; i < count; i++) {
-        x[i] = quad_load(position + 4 * i);
-        length[i] = quad_load(job->attachments->length[first + i]);
-        pieces[i] = job->piece[first + i];
-    }
-    quad_transpose(x);
-    quad_transpose(length);
-    if (spread->tight) attach_stretch(spread, length);
-    QuadMask piece = quad_load_ints(pieces), free = x[3] > 0;
-    for (int k = 0; k < spread->count; k++) {
-        const float *anchor = spread->place[k];
-        Quad dx = x[0] - anchor[0], dy = x[1] - anchor[1], dz = x[2] - anchor[2];
-        Quad square = dx * dx + dy * dy + dz * dz, most = length[k] * length[k];
-        QuadMask far = (square > most) & free & (piece == spread->piece[k]);
-        Quad factor = quad_sqrt(quad_select(far, most / square, quad_all(1)));
-        x[0] = quad_select(far, anchor[0] + dx * factor, x[0]);
-        x[1] = quad_select(far, anchor[1] + dy * factor, x[1]);
-        x[2] = quad_select(far, anchor[2] + dz * factor, x[2]);
-    }
-    quad_transpose(x);
-    for (int i = 0; i < count; i++) quad_store(position + 4 * i, x[i]);
+static void attach_blocks(void *task, int begin, int end) {
+    const Attach *job = task;
+    int first = begin * ATTACH_BLOCK, count = (end - begin) * ATTACH_BLOCK;
+    job->hold(job->spread, job->length[first], job->position[first], count);
 }
 
-static void attach_range(void *task, int begin, int end) {
-    const Attach *job = task;
-    const Shell *shell = job->shell;
+void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
+                    DynamicsState *dynamics) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
-        const AttachSpread *spread = &job->attachments->spread[s];
+        AttachSpread *spread = &attachments->spread[s];
+        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
         if (spread->count == 0) continue;
-        int first = (int)sheet->vertex_first, last = first + (int)sheet->vertex_count;
-        int i = first > begin ? first : begin, stop = last < end ? last : end;
-        for (; i < stop; i += 4) attach_four(job, spread, i, stop - i < 4 ? stop - i : 4);
+        Attach job = {spread, hold, (const float(*)[ATTACH_SOURCES])attachments->length + sheet->vertex_first,
+                      dynamics->position + sheet->vertex_first};
+        int count = (int)sheet->vertex_count, blocks = count / ATTACH_BLOCK, rest = blocks * ATTACH_BLOCK;
+        pool_for(pool, blocks, POOL_BLOCK / ATTACH_BLOCK, attach_blocks, &job);
+        attach_hold_plain(spread, job.length[rest], job.position[rest], count - rest);
     }
-}
-
-void attach_project(Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
-                    DynamicsState *dynamics) {
-    bool any = false;
-    for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        attach_spread(attachments, ablate, (const float(*)[4])dynamics->position, attachments->source[s],
-                      &attachments->spread[s]);
-        any |= attachments->spread[s].count > 0;
-    }
-    if (!any) return;
-    Attach job = {attachments, shell, ablate->piece, dynamics->position};
-    pool_for(pool, (int)shell->vertex_count, POOL_BLOCK, attach_range, &job);
 }

@@ -13,7 +13,6 @@ typedef struct AttachSpread {
     int count;
     bool tight; ///< two are farther apart than the sheet reaches
     float place[ATTACH_SOURCES][3]; ///< m
-    int32_t piece[ATTACH_SOURCES];
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
     float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
 } AttachSpread;
@@ -30,15 +29,20 @@ typedef struct Attachments {
     double mass_burnt;
 } Attachments;
 
+/// Puts back what is too far from the sources: of `count` vertices beside each other, as many whole blocks of lanes
+/// as there are (attach_kernel.h). `length` as in Attachments, `position` with the inverse mass as fourth.
+typedef void AttachHold(const AttachSpread *spread, const float *length, float *position, int count);
+AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4;
+
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments);
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 
-/// Finds sources and lengths: after pins have changed, and at the end of every ATTACH_PERIODth step in which the
-/// sheet has.
+/// At the end of a step, and after pins have changed: lets go what has come free of a source, and finds sources and
+/// lengths anew where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
 
 /// Puts what is too far from a source back on the sphere around it.
-void attach_project(Attachments *attachments, const Shell *shell, const AblateState *ablate, Pool *pool,
+void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics);
 
 /// Sources and lengths are part of a snapshot: they are those of an earlier step.

@@ -18,7 +18,7 @@ static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
     return ok;
 }
 
-bool dynamics_runs_here(SingeInstructions instructions) { return strand_choose(instructions) != NULL; }
+bool dynamics_runs_here(SingeInstructions instructions) { return kernels_choose(instructions) != NULL; }
 
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
                                  DynamicsPlan **out) {
@@ -31,8 +31,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         plan->spring_count[colour] = shell->springs[colour].count;
     }
-    StrandSolve *solve = strand_choose(settings->instructions);
-    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, solve, &plan->strands) ||
+    plan->kernels = kernels_choose(settings->instructions);
+    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, plan->kernels->solve, &plan->strands) ||
         !attach_create(memory, shell, &plan->attachments) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
@@ -109,13 +109,15 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
 
 /// One projection of all colours. The attachments come first, for the load, and before the last colour, which is held
 /// best: so it mends what they disturb.
-static void dynamics_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
-                             DynamicsState *dynamics, DynamicsCounters *counters) {
+static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics,
+                             DynamicsCounters *counters) {
     const SingeSolverDef *solver = &plan->settings.solver;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         if ((i == 0 || i == SINGE_COLOUR_COUNT - 1) && solver->attachments)
-            attach_project(&plan->attachments, shell, ablate, pool, dynamics);
+            attach_project(&plan->attachments, shell, plan->kernels->hold, pool, dynamics);
+        double start = clock_seconds();
         strand_project(plan, solver->order[i], pool, h, dynamics, counters);
+        counters->seconds += clock_seconds() - start;
     }
 }
 
@@ -138,10 +140,8 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
             if (substep + 1 < solver->substeps) dynamics_move(plan, shell, pool, h_sub, false, true, dynamics);
             continue;
         }
-        double start = clock_seconds();
         for (int projection = 0; projection < solver->projections; projection++)
-            dynamics_project(plan, shell, &state->ablate, pool, h_sub, dynamics, counters);
-        counters->seconds += clock_seconds() - start;
+            dynamics_project(plan, shell, pool, h_sub, dynamics, counters);
         height_project(plan, shell, &state->ablate, pool, dynamics);
         counters->contacts += contact_project(plan, collider_count, pool, h_sub, dynamics);
         dynamics_move(plan, shell, pool, h_sub, true, substep + 1 < solver->substeps, dynamics);

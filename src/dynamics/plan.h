@@ -17,6 +17,15 @@ typedef struct MovingCollider {
     float reach; ///< m
 } MovingCollider;
 
+/// The loops that are written once for every instruction set.
+typedef struct Kernels {
+    StrandSolve *solve;
+    AttachHold *hold;
+} Kernels;
+
+/// Those for these instructions, or NULL where the processor lacks them (kernels.c).
+const Kernels *kernels_choose(SingeInstructions instructions);
+
 /// The strands of all colours, and scratch for the threads that solve them.
 typedef struct Strands {
     StrandSet sets[SINGE_COLOUR_COUNT];
@@ -41,6 +50,7 @@ struct DynamicsPlan {
     float (*normal)[4];      ///< unit
     float (*air)[4];         ///< m/s, the wind there
     float (*predicted)[4];   ///< m, x~ of eq 9
+    const Kernels *kernels;
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
     Attachments attachments;

@@ -65,7 +65,4 @@ typedef struct StrandJob {
 typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
 StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4;
 
-/// The solve for these instructions, or NULL where the processor lacks them (strand_choose.c).
-StrandSolve *strand_choose(SingeInstructions instructions);
-
 #endif

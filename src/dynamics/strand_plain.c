@@ -1,4 +1,4 @@
-// Strands one at a time, for processors without a kernel of their own.
+// Strands and attachments one at a time, for processors without a kernel of their own.
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,5 +49,14 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
     x->z += x->w * (forth->z - back->z);
 }
 
+/// x += (x - anchor) factor.
+static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+    x->x += (x->x - anchor[0]) * factor;
+    x->y += (x->y - anchor[1]) * factor;
+    x->z += (x->z - anchor[2]) * factor;
+}
+
+#define ATTACH_HOLD attach_hold_plain
 #define STRAND_SOLVE strand_solve_plain
+#include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"

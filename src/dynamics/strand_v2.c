@@ -1,4 +1,4 @@
-// Strands four at a time, for x86-64-v2 (SSE 4.2).
+// Strands and attachments four at a time, for x86-64-v2 (SSE 4.2).
 #ifdef __SSE4_2__
 #include <nmmintrin.h>
 #include <stdbool.h>
@@ -66,6 +66,15 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
     }
 }
 
+/// x += (x - anchor) factor.
+static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+    __m128 a = _mm_setr_ps(anchor[0], anchor[1], anchor[2], 0);
+    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], way.at[e]), x->at[e], 8);
+}
+
+#define ATTACH_HOLD attach_hold_v2
 #define STRAND_SOLVE strand_solve_v2
+#include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"
 #endif

@@ -1,4 +1,4 @@
-// Strands sixteen at a time, for x86-64-v4 (AVX-512).
+// Strands and attachments sixteen at a time, for x86-64-v4 (AVX-512).
 #ifdef __AVX512F__
 #include <immintrin.h>
 #include <stdbool.h>
@@ -78,7 +78,16 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
     }
 }
 
+/// x += (x - anchor) factor.
+static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+    __m512 a = _mm512_broadcast_f32x4(_mm_setr_ps(anchor[0], anchor[1], anchor[2], 0));
+    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], way.at[e]);
+}
+
+#define ATTACH_HOLD attach_hold_v4
 #define STRAND_SOLVE strand_solve_v4
 #define STRAND_NARROWER strand_solve_v3
+#include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"
 #endif

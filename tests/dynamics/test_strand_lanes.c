@@ -92,7 +92,7 @@ static void project(Bench *bench, SingeInstructions instructions, Pool *pool, co
     DynamicsCounters counters = {0};
     float *position = bench->state.dynamics.position[0];
     memcpy(position, start, bytes);
-    bench->plan->strands.solve = strand_choose(instructions);
+    bench->plan->strands.solve = kernels_choose(instructions)->solve;
     for (int i = 0; i < 3 * SINGE_COLOUR_COUNT; i++) {
         SingeColour colour = (SingeColour)(i % SINGE_COLOUR_COUNT);
         strand_project(bench->plan, colour, pool, 1e-3f, &bench->state.dynamics, &counters);
@@ -123,7 +123,7 @@ static void compare_kernels(Quads quads, bool vary) {
     assert_memory_not_equal(start, plain, bytes);
     for (uint32_t i = 0; i < 4 * bench.shell.particle_count; i++) assert_true(isfinite(plain[i]));
     for (int i = SINGE_INSTRUCTIONS_X86_V2; i <= SINGE_INSTRUCTIONS_X86_V4; i++) {
-        if (!strand_choose((SingeInstructions)i)) continue;
+        if (!kernels_choose((SingeInstructions)i)) continue;
         project(&bench, (SingeInstructions)i, bench.pool, start, other);
         assert_memory_equal(plain, other, bytes);
     }

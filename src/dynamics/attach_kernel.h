@@ -1,0 +1,44 @@
+// The attachments of vertices, LANES at a time. Included by a file per instruction set, as strand_kernel.h is.
+#include "dynamics/attach.h"
+
+/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
+/// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
+/// most f and so far that the spheres overlap by a margin.
+static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTACH_SOURCES]) {
+    Lanes factor[ATTACH_SOURCES], one = lanes_all(1);
+    for (int p = 0; p < ATTACH_SOURCES; p++) factor[p] = one;
+    for (int p = 0; p < spread->count; p++)
+        for (int q = 0; q < p; q++) {
+            Lanes enough = lanes_all(1.15f * spread->apart[p][q]) / (length[p] + length[q]);
+            Lanes most = lanes_all(spread->ratio[p][q]);
+            enough = lanes_where_less(most, enough, most, enough);
+            factor[p] = lanes_max(factor[p], enough);
+            factor[q] = lanes_max(factor[q], enough);
+        }
+    for (int p = 0; p < spread->count; p++) length[p] *= factor[p];
+}
+
+void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *position, int count) {
+    Lanes zero = lanes_all(0), one = lanes_all(1);
+    for (int i = 0; i + LANES <= count; i += LANES) {
+        Quads place = quads_beside(position + 4 * i, LANES), lengths = quads_beside(length + 4 * i, LANES);
+        Node node = quads_node(&place), by_source = quads_node(&lengths);
+        Lanes most[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
+        bool moved = false;
+        if (spread->tight) attach_stretch(spread, most);
+        for (int k = 0; k < spread->count; k++) {
+            const float *anchor = spread->place[k];
+            Lanes dx = node.x - lanes_all(anchor[0]), dy = node.y - lanes_all(anchor[1]);
+            Lanes dz = node.z - lanes_all(anchor[2]);
+            Lanes square = dx * dx + dy * dy + dz * dz, limit = most[k] * most[k];
+            if (!lanes_any_less(limit, square)) continue;
+            Lanes pull = lanes_sqrt(limit / square) - one;
+            pull = lanes_where_less(limit, square, pull, zero);
+            pull = lanes_where_less(zero, node.w, pull, zero); // what is held itself stays
+            node.x += dx * pull, node.y += dy * pull, node.z += dz * pull;
+            quads_pull(&place, anchor, pull);
+            moved = true;
+        }
+        if (moved) quads_put_beside(position + 4 * i, LANES, &place);
+    }
+}
