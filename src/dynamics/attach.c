@@ -136,30 +136,40 @@ static void attach_spread(const Attachments *attachments, const float (*position
     }
 }
 
+void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s],
+                      &attachments->spread[s]);
+}
+
+void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
+                  int begin, int end) {
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const AttachSpread *spread = &attachments->spread[s];
+        int first = (int)shell->sheets[s].vertex_first, last = first + (int)shell->sheets[s].vertex_count;
+        first = first > begin ? first : begin, last = last < end ? last : end;
+        if (spread->count == 0 || first >= last) continue;
+        int whole = (last - first) / ATTACH_BLOCK * ATTACH_BLOCK, rest = first + whole;
+        hold(spread, attachments->length[first], dynamics->position[first], whole);
+        attach_hold_plain(spread, attachments->length[rest], dynamics->position[rest], last - rest);
+    }
+}
+
 typedef struct Attach {
-    const AttachSpread *spread;
+    const Attachments *attachments;
+    const Shell *shell;
     AttachHold *hold;
-    const float (*length)[ATTACH_SOURCES];
-    float (*position)[4];
+    DynamicsState *dynamics;
 } Attach;
 
-static void attach_blocks(void *task, int begin, int end) {
+static void attach_task(void *task, int begin, int end) {
     const Attach *job = task;
-    int first = begin * ATTACH_BLOCK, count = (end - begin) * ATTACH_BLOCK;
-    job->hold(job->spread, job->length[first], job->position[first], count);
+    attach_range(job->attachments, job->shell, job->hold, job->dynamics, begin, end);
 }
 
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        const Sheet *sheet = &shell->sheets[s];
-        AttachSpread *spread = &attachments->spread[s];
-        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
-        if (spread->count == 0) continue;
-        Attach job = {spread, hold, (const float(*)[ATTACH_SOURCES])attachments->length + sheet->vertex_first,
-                      dynamics->position + sheet->vertex_first};
-        int count = (int)sheet->vertex_count, blocks = count / ATTACH_BLOCK, rest = blocks * ATTACH_BLOCK;
-        pool_for(pool, blocks, POOL_BLOCK / ATTACH_BLOCK, attach_blocks, &job);
-        attach_hold_plain(spread, job.length[rest], job.position[rest], count - rest);
-    }
+    attach_place(attachments, shell, dynamics);
+    Attach job = {attachments, shell, hold, dynamics};
+    pool_for(pool, (int)shell->vertex_count, POOL_BLOCK, attach_task, &job);
 }

@@ -41,7 +41,14 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 /// lengths anew where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
 
-/// Puts what is too far from a source back on the sphere around it.
+/// Notes where the sources are.
+void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics);
+
+/// Puts vertices among the particles [begin, end) that are too far from a source back on the sphere around it.
+void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
+                  int begin, int end);
+
+/// Both, for all vertices.
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics);
 

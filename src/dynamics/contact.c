@@ -6,13 +6,6 @@
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
 #include "dynamics/plan.h"
 
-typedef struct Contact {
-    DynamicsPlan *plan;
-    uint32_t collider_count;
-    float h;
-    const DynamicsState *dynamics;
-} Contact;
-
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
     const SingeColliderDef *def = &collider->def;
     MovingCollider moving = {.def = def, .before = path_pose(&collider->path, before),
@@ -46,28 +39,39 @@ static bool contact_particle(const MovingCollider *collider, Vec previous, float
     return true;
 }
 
-static double contact_range(void *task, int begin, int end) {
-    const Contact job = *(const Contact *)task;
-    float(*position)[4] = job.dynamics->position;
-    double contacts = 0;
-    for (uint32_t c = 0; c < job.collider_count; c++) {
-        const MovingCollider collider = job.plan->colliders[c];
+uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+                       int end) {
+    uint64_t contacts = 0;
+    for (uint32_t c = 0; c < collider_count; c++) {
+        const MovingCollider collider = plan->colliders[c];
         bool plane = collider.def->kind == SINGE_COLLIDER_PLANE;
         float reach = plane ? collider.reach : collider.reach * collider.reach;
         for (int i = begin; i < end; i++) {
-            float *x = position[i];
+            float *x = dynamics->position[i];
             Vec way = vec_sub(vec_load(x), collider.after.position);
             float far = plane ? vec_dot(way, collider.normal) : vec_dot(way, way);
             if (far >= reach || x[3] == 0) continue;
-            Vec previous = vec_mad(vec_load(job.plan->predicted[i]), vec_load(job.dynamics->velocity[i]), -job.h);
+            Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
             contacts += contact_particle(&collider, previous, x);
         }
     }
     return contacts;
 }
 
+typedef struct Contact {
+    const DynamicsPlan *plan;
+    uint32_t collider_count;
+    float h;
+    DynamicsState *dynamics;
+} Contact;
+
+static double contact_block(void *task, int begin, int end) {
+    const Contact *job = task;
+    return (double)contact_touch(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
+}
+
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
     if (collider_count == 0) return 0;
     Contact job = {plan, collider_count, h, dynamics};
-    return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_range, &job, plan->partial);
+    return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_block, &job, plan->partial);
 }

@@ -8,11 +8,11 @@
 
 #include <string.h>
 
-static bool plan_allocate(DynamicsPlan *plan, Memory *memory) {
+static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory) {
     bool ok = NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
-              NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, plan->cell_count) &&
+              NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
               NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     return ok;
@@ -32,7 +32,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         plan->spring_count[colour] = shell->springs[colour].count;
     }
     plan->kernels = kernels_choose(settings->instructions);
-    if (!plan_allocate(plan, memory) || !strands_create(memory, shell, settings->thread_count, plan->kernels->solve, &plan->strands) ||
+    if (!plan_allocate(plan, shell, memory) ||
+        !strands_create(memory, shell, settings->thread_count, plan->kernels->solve, &plan->strands) ||
         !attach_create(memory, shell, &plan->attachments) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
@@ -52,7 +53,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->predicted, plan->particle_count);
     FREE(memory, plan->soft, plan->particle_count);
     FREE(memory, plan->cell_normal, plan->cell_count);
-    FREE(memory, plan->height_wait, plan->cell_count);
+    FREE(memory, plan->height_wait, height_wait_count(shell));
     FREE(memory, plan->colliders, plan->collider_capacity);
     FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
     strands_free(memory, &plan->strands);
@@ -109,11 +110,11 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
 
 /// One projection of all colours. The attachments come first, for the load, and before the last colour, which is held
 /// best: so it mends what they disturb.
-static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, DynamicsState *dynamics,
-                             DynamicsCounters *counters) {
+static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool attached,
+                             DynamicsState *dynamics, DynamicsCounters *counters) {
     const SingeSolverDef *solver = &plan->settings.solver;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
-        if ((i == 0 || i == SINGE_COLOUR_COUNT - 1) && solver->attachments)
+        if (solver->attachments && ((i == 0 && !attached) || i == SINGE_COLOUR_COUNT - 1))
             attach_project(&plan->attachments, shell, plan->kernels->hold, pool, dynamics);
         double start = clock_seconds();
         strand_project(plan, solver->order[i], pool, h, dynamics, counters);
@@ -128,23 +129,27 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
-    dynamics_move(plan, shell, pool, h_sub, false, true, dynamics);
-    for (int substep = 0; substep < solver->substeps; substep++) {
-        double before = state->time + (double)h * substep / solver->substeps;
+    Between between = {.opens = true, .attaches = solver->attachments};
+    double before = state->time;
+    for (int substep = 0; substep <= solver->substeps; substep++) {
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
+        between.opens = substep < solver->substeps;
+        between.attaches = between.opens && solver->attachments;
+        // held particles are where the substep ahead ends before the others set out
+        if (between.opens) dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
+        if (!between.opens) break;
         uint32_t collider_count = dynamics_place_colliders(plan, colliders, before, after);
-
-        dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        before = after;
         if (plan->paper) {
             TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));
-            if (substep + 1 < solver->substeps) dynamics_move(plan, shell, pool, h_sub, false, true, dynamics);
             continue;
         }
         for (int projection = 0; projection < solver->projections; projection++)
-            dynamics_project(plan, shell, pool, h_sub, dynamics, counters);
+            dynamics_project(plan, shell, pool, h_sub, projection == 0, dynamics, counters);
         height_project(plan, shell, &state->ablate, pool, dynamics);
-        counters->contacts += contact_project(plan, collider_count, pool, h_sub, dynamics);
-        dynamics_move(plan, shell, pool, h_sub, true, substep + 1 < solver->substeps, dynamics);
+        between.closes = true;
+        between.collider_count = collider_count;
     }
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     TRY(dynamics_check(plan, pool, dynamics, error));

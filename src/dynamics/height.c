@@ -9,11 +9,12 @@
 //
 // which keeps linear momentum: what holds a centre up presses its corners down. Angular momentum it keeps where the
 // centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
-// share no corner; family follows family. A centre twice as high as it must be is left alone for some substeps.
+// share no corner; family follows family. Where all centres of a block of cells are
+// twice as high as they must be, they are left alone for some substeps.
 #include "dynamics/plan.h"
 
-/// Substeps.
-enum { HEIGHT_WAIT = 5 };
+/// Substeps to wait, and cells that wait together.
+enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };
 
 /// The most that is mended at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
 /// would else be thrown about.
@@ -25,6 +26,8 @@ typedef struct Height {
     const AblateState *ablate;
     float (*position)[4];
     const uint32_t *cells; ///< of the family
+    uint32_t count;
+    uint8_t *wait;         ///< of its blocks
 } Height;
 
 /// Whether a height is enough, by its square: `above` is the height times |n|, `square` is |n|^2.
@@ -32,7 +35,8 @@ static bool height_is_enough(float above, float square, float enough) {
     return above > 0 && above * above >= enough * enough * square;
 }
 
-static void height_cell(const Height *job, uint32_t c) {
+/// Returns whether the centre is twice as high as it must be.
+static bool height_cell(const Height *job, uint32_t c) {
     float(*x)[4] = job->position;
     const SingeSolverDef *solver = &job->plan->settings.solver;
     uint32_t centre = shell_centre(job->shell, c);
@@ -43,35 +47,47 @@ static void height_cell(const Height *job, uint32_t c) {
     Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
     float enough = solver->height_min * field_at(job->shell->matter.thickness, centre);
     float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
-    if (height_is_enough(above, square, 2 * enough)) job->plan->height_wait[c] = HEIGHT_WAIT;
-    if (height_is_enough(above, square, enough) || square == 0) return;
+    if (height_is_enough(above, square, 2 * enough)) return true;
+    if (height_is_enough(above, square, enough) || square == 0) return false;
     float length = sqrtf(square), missing = enough - above / length, most = HEIGHT_MOST * sqrtf(length);
     if (missing > most) missing = most;
     float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
     float weight = x[centre][3] + (w[0] + w[1] + w[2] + w[3]) / 16;
-    if (weight <= 0) return;
+    if (weight <= 0) return false;
     float push = solver->height_gain * missing / (weight * length);
     vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, x[centre][3] * push));
     for (int i = 0; i < 4; i++) vec_store(x[corner[i]], vec_mad(p[i], normal, -0.25f * w[i] * push));
+    return false;
 }
 
-static void height_range(void *task, int begin, int end) {
+/// Blocks of the family's cells.
+static void height_blocks(void *task, int begin, int end) {
     const Height *job = task;
-    uint8_t *wait = job->plan->height_wait;
-    for (int k = begin; k < end; k++) {
-        uint32_t c = job->cells[k];
-        if (wait[c] > 0) wait[c]--;
-        else if (job->ablate->cell_flags[c] & SINGE_ALIVE) height_cell(job, c);
+    for (int b = begin; b < end; b++) {
+        uint8_t *wait = &job->wait[b];
+        if (*wait > 0) {
+            --*wait;
+            continue;
+        }
+        bool all_high = true;
+        uint32_t first = (uint32_t)b * HEIGHT_BLOCK, last = first + HEIGHT_BLOCK;
+        for (uint32_t k = first; k < (last < job->count ? last : job->count); k++)
+            if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) all_high &= height_cell(job, job->cells[k]);
+        if (all_high) *wait = HEIGHT_WAIT;
     }
 }
+
+size_t height_wait_count(const Shell *shell) { return shell->cell_count / HEIGHT_BLOCK + shell->cell_family_count + 1; }
 
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics) {
     if (plan->settings.solver.height_min <= 0) return;
-    Height job = {plan, shell, ablate, dynamics->position, NULL};
+    uint8_t *wait = plan->height_wait;
     for (uint32_t f = 0; f < shell->cell_family_count; f++) {
-        uint32_t first = shell->cell_family_first[f];
-        job.cells = shell->cell_order + first;
-        pool_for(pool, (int)(shell->cell_family_first[f + 1] - first), POOL_BLOCK, height_range, &job);
+        uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
+        uint32_t blocks = (count + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
+        Height job = {plan, shell, ablate, dynamics->position, shell->cell_order + first, count, wait};
+        pool_for(pool, (int)blocks, POOL_BLOCK / HEIGHT_BLOCK, height_blocks, &job);
+        wait += blocks;
     }
 }

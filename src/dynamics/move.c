@@ -1,4 +1,4 @@
-// What a particle does by itself between two projections: eq 13 closes one substep,
+// What a particle does by itself between two projections: it touches colliders, eq 13 closes one substep,
 //
 //   v^ = v~ + (x^ - x~)/h
 //
@@ -7,7 +7,7 @@
 //
 //   v~ = v + h F_ext / m,   x~ = x + h v~
 //
-// F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken implicitly
+// and attachments hold it. F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken implicitly
 // (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
 //
 // The fourth numbers: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
@@ -18,8 +18,8 @@ typedef struct Move {
     DynamicsPlan *plan;
     const Shell *shell;
     DynamicsState *dynamics;
+    Between between;
     float h;
-    bool closes, opens;
 } Move;
 
 /// Drag on a velocity that gravity and damping have been at.
@@ -29,20 +29,21 @@ static inline Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad
     return velocity - slip * k / (1 + k) * normal;
 }
 
-static void move_range(void *task, int begin, int end) {
-    const Move job = *(const Move *)task;
+static void move_particles(const Move *task, int begin, int end) {
+    const Move job = *task;
     DynamicsPlan *plan = job.plan;
     const Field damping = job.shell->matter.damping;
     const float *gravity = plan->settings.gravity;
-    float h = job.h, inverse_h = 1 / h;
+    float h = job.h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
     Quad fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
     for (int i = begin; i < end; i++) {
         float *x = job.dynamics->position[i], *v = job.dynamics->velocity[i], *predicted = plan->predicted[i];
         if (x[3] == 0) continue; // pinned or gone
         Quad place = quad_load(x), velocity = quad_load(v);
-        if (job.closes) velocity += (place - quad_load(predicted)) * inverse_h;
-        if (job.opens) {
-            velocity = (velocity + fall) * (1 / (1 + h * field_at(damping, (uint32_t)i)));
+        if (job.between.closes) velocity += (place - quad_load(predicted)) * inverse_h;
+        if (job.between.opens) {
+            if (damping.mask) keep = 1 / (1 + h * field_at(damping, (uint32_t)i));
+            velocity = (velocity + fall) * keep;
             if (plan->drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
             place += h * velocity;
             quad_store(x, place);
@@ -52,10 +53,23 @@ static void move_range(void *task, int begin, int end) {
     }
 }
 
-void dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool closes, bool opens,
-                   DynamicsState *dynamics) {
-    Move job = {plan, shell, dynamics, h, closes, opens};
-    pool_for(pool, (int)shell->particle_count, POOL_BLOCK, move_range, &job);
+/// A block of particles stays in the cache while all this happens to it.
+static double move_block(void *task, int begin, int end) {
+    const Move *job = task;
+    DynamicsPlan *plan = job->plan;
+    uint64_t contacts =
+        contact_touch(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
+    move_particles(job, begin, end);
+    if (job->between.attaches)
+        attach_range(&plan->attachments, job->shell, plan->kernels->hold, job->dynamics, begin, end);
+    return (double)contacts;
+}
+
+uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
+                       DynamicsState *dynamics) {
+    Move job = {plan, shell, dynamics, *between, h};
+    if (between->attaches) attach_place(&plan->attachments, shell, dynamics);
+    return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
 }
 
 void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,

@@ -54,7 +54,7 @@ struct DynamicsPlan {
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
     Attachments attachments;
-    uint8_t *height_wait;    ///< [cells] substeps for which a centre needs no look; 0 at the start of a step
+    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
@@ -66,9 +66,17 @@ struct DynamicsPlan {
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
                       DynamicsState *dynamics);
 
-/// Closes a substep (eq 13), opens the next (eq 8 and 9), or both in one pass (move.c).
-void dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool closes, bool opens,
-                   DynamicsState *dynamics);
+/// What happens to each particle between two projections (move.c).
+typedef struct Between {
+    uint32_t collider_count; ///< in plan->colliders, to be touched
+    bool closes;             ///< eq 13 of the substep behind
+    bool opens;              ///< eq 8 and 9 of the substep ahead
+    bool attaches;           ///< to sources at their places in the substep ahead
+} Between;
+
+/// One pass over the particles. Returns the number of contacts.
+uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
+                       DynamicsState *dynamics);
 
 /// Puts pinned particles on their paths (move.c).
 void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
@@ -77,6 +85,9 @@ void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateSt
 /// One projection of one colour, family after family (strand_project.c).
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters);
+
+/// Bytes of height_wait.
+size_t height_wait_count(const Shell *shell);
 
 /// Keeps every centre over its cell's corners (height.c).
 void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
@@ -93,7 +104,12 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
     return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
 }
 
-/// Contact and friction with the colliders in plan->colliders (contact.c). Returns the number of contacts.
+/// Contact and friction of particles [begin, end) with the colliders in plan->colliders (contact.c). Returns the number
+/// of contacts.
+uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+                       int end);
+
+/// The same for all particles.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
 
 #endif

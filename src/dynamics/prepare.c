@@ -7,6 +7,8 @@
 // takes half of it.
 #include "dynamics/plan.h"
 
+#include <string.h>
+
 /// What is left weighs at least this share of the unburnt particle: a mass of 0 would not move at all.
 static const float PREPARE_MASS_MIN = 0.01f;
 
@@ -27,7 +29,6 @@ static void prepare_cells(void *task, int begin, int end) {
         Vec a = vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]]));
         Vec b = vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]));
         vec_store(job->plan->cell_normal[c], vec_cross(a, b));
-        job->plan->height_wait[c] = 0;
     }
 }
 
@@ -84,6 +85,7 @@ static void prepare_strands(void *task, int begin, int end) {
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
                       DynamicsState *dynamics) {
     Prepare job = {plan, shell, state, wind, dynamics->position, SINGE_RED};
+    memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {

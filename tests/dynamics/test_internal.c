@@ -214,7 +214,7 @@ static void test_damping_and_drag_by_picture(void **unused) {
         float h = 0.01f;
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = 2;
         prepare(&bench);
-        dynamics_move(bench.plan, &bench.shell, bench.pool, h, false, true, &bench.state.dynamics);
+        dynamics_move(bench.plan, &bench.shell, bench.pool, h, &(Between){.opens = true}, &bench.state.dynamics);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
             float f = fminf(fmaxf(2 * bench.shell.rest_position[i][0] / 0.08f - 0.5f, 0), 1);
             // a layer of 40 g/m2 in air of 1.2 kg/m3 takes half of the drag
