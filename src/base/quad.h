@@ -20,18 +20,28 @@ static inline Quad quad_min(Quad a, Quad b) { return quad_select(a < b, a, b); }
 static inline Quad quad_max(Quad a, Quad b) { return quad_select(a > b, a, b); }
 static inline Quad quad_sqrt(Quad a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
 
-/// Four rows become four columns.
-static inline void quad_transpose(Quad q[4]) {
 #ifdef __clang__
 #define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
 #else
 #define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (QuadMask){i, j, k, l})
 #endif
+
+/// Of the first three numbers; the fourth of the product is 0.
+static inline Quad quad_cross(Quad a, Quad b) {
+    Quad turned = a * QUAD_SHUFFLE(b, b, 1, 2, 0, 3) - QUAD_SHUFFLE(a, a, 1, 2, 0, 3) * b;
+    return QUAD_SHUFFLE(turned, turned, 1, 2, 0, 3);
+}
+static inline float quad_dot(Quad a, Quad b) {
+    Quad c = a * b;
+    return c[0] + c[1] + c[2];
+}
+
+/// Four rows become four columns.
+static inline void quad_transpose(Quad q[4]) {
     Quad xy01 = QUAD_SHUFFLE(q[0], q[1], 0, 4, 1, 5), zw01 = QUAD_SHUFFLE(q[0], q[1], 2, 6, 3, 7);
     Quad xy23 = QUAD_SHUFFLE(q[2], q[3], 0, 4, 1, 5), zw23 = QUAD_SHUFFLE(q[2], q[3], 2, 6, 3, 7);
     q[0] = QUAD_SHUFFLE(xy01, xy23, 0, 1, 4, 5), q[1] = QUAD_SHUFFLE(xy01, xy23, 2, 3, 6, 7);
     q[2] = QUAD_SHUFFLE(zw01, zw23, 0, 1, 4, 5), q[3] = QUAD_SHUFFLE(zw01, zw23, 2, 3, 6, 7);
-#undef QUAD_SHUFFLE
 }
 
 #endif

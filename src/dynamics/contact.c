@@ -4,6 +4,7 @@
 // A particle nearer than the collider's offset is moved out along the normal by its depth p. Its slip
 // over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
+#include "base/quad.h"
 #include "dynamics/plan.h"
 
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
@@ -39,20 +40,34 @@ static bool contact_particle(const MovingCollider *collider, Vec previous, float
     return true;
 }
 
+/// Which of four particles may be nearer to a collider than it reaches.
+static inline bool contact_any_near(const MovingCollider *collider, bool plane, const Quad x[4]) {
+    Vec centre = collider->after.position, normal = collider->normal;
+    Quad dx = x[0] - centre.x, dy = x[1] - centre.y, dz = x[2] - centre.z;
+    QuadMask near = plane ? dx * normal.x + dy * normal.y + dz * normal.z < collider->reach
+                          : dx * dx + dy * dy + dz * dz < collider->reach * collider->reach;
+    return (near[0] | near[1] | near[2] | near[3]) != 0;
+}
+
 uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end) {
     uint64_t contacts = 0;
-    for (uint32_t c = 0; c < collider_count; c++) {
-        const MovingCollider collider = plan->colliders[c];
-        bool plane = collider.def->kind == SINGE_COLLIDER_PLANE;
-        float reach = plane ? collider.reach : collider.reach * collider.reach;
-        for (int i = begin; i < end; i++) {
-            float *x = dynamics->position[i];
-            Vec way = vec_sub(vec_load(x), collider.after.position);
-            float far = plane ? vec_dot(way, collider.normal) : vec_dot(way, way);
-            if (far >= reach || x[3] == 0) continue;
-            Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
-            contacts += contact_particle(&collider, previous, x);
+    float(*position)[4] = dynamics->position;
+    for (int first = begin; first < end && collider_count > 0; first += 4) {
+        int count = end - first < 4 ? end - first : 4;
+        Quad x[4];
+        for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
+        quad_transpose(x);
+        for (uint32_t c = 0; c < collider_count; c++) {
+            const MovingCollider *collider = &plan->colliders[c];
+            if (!contact_any_near(collider, collider->def->kind == SINGE_COLLIDER_PLANE, x)) continue;
+            for (int i = first; i < first + count; i++) {
+                if (position[i][3] == 0) continue;
+                Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
+                contacts += contact_particle(collider, previous, position[i]);
+            }
+            for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
+            quad_transpose(x);
         }
     }
     return contacts;

@@ -153,6 +153,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     }
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     TRY(dynamics_check(plan, pool, dynamics, error));
+    plan->prepared.valid = true;
     if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
     return SINGE_OK;
 }

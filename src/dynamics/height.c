@@ -11,6 +11,7 @@
 // centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
 // share no corner; family follows family. Where all centres of a block of cells are
 // twice as high as they must be, they are left alone for some substeps.
+#include "base/quad.h"
 #include "dynamics/plan.h"
 
 /// Substeps to wait, and cells that wait together.
@@ -35,28 +36,34 @@ static bool height_is_enough(float above, float square, float enough) {
     return above > 0 && above * above >= enough * enough * square;
 }
 
-/// Returns whether the centre is twice as high as it must be.
-static bool height_cell(const Height *job, uint32_t c) {
+/// Projects a centre that is too low.
+static void height_mend(const Height *job, uint32_t c, Quad normal, float square, float missing) {
     float(*x)[4] = job->position;
-    const SingeSolverDef *solver = &job->plan->settings.solver;
+    const uint32_t *corner = job->shell->cells[c];
+    float *centre = x[shell_centre(job->shell, c)], length = sqrtf(square), most = HEIGHT_MOST * sqrtf(length);
+    float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
+    float weight = centre[3] + (w[0] + w[1] + w[2] + w[3]) / 16;
+    if (weight <= 0) return;
+    float gain = job->plan->settings.solver.height_gain;
+    Quad push = gain * (missing < most ? missing : most) / (weight * length) * normal;
+    quad_store(centre, quad_load(centre) + centre[3] * push);
+    for (int i = 0; i < 4; i++) quad_store(x[corner[i]], quad_load(x[corner[i]]) - 0.25f * w[i] * push);
+}
+
+/// Returns whether the centre is twice as high as it must be.
+static inline bool height_cell(const Height *job, uint32_t c) {
+    const float(*x)[4] = (const float(*)[4])job->position;
     uint32_t centre = shell_centre(job->shell, c);
     const uint32_t *corner = job->shell->cells[c];
-    Vec p[4];
-    for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]);
-    Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
-    Vec mean = vec_scale(vec_add(vec_add(p[0], p[1]), vec_add(p[2], p[3])), 0.25f);
-    float enough = solver->height_min * field_at(job->shell->matter.thickness, centre);
-    float above = vec_dot(vec_sub(vec_load(x[centre]), mean), normal), square = vec_dot(normal, normal);
+    Quad p0 = quad_load(x[corner[0]]), p1 = quad_load(x[corner[1]]);
+    Quad p2 = quad_load(x[corner[2]]), p3 = quad_load(x[corner[3]]);
+    Quad normal = quad_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
+    normal[3] = 0; // positions hold masses there
+    float enough = job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
+    float above = quad_dot(quad_load(x[centre]) - mean, normal), square = quad_dot(normal, normal);
     if (height_is_enough(above, square, 2 * enough)) return true;
-    if (height_is_enough(above, square, enough) || square == 0) return false;
-    float length = sqrtf(square), missing = enough - above / length, most = HEIGHT_MOST * sqrtf(length);
-    if (missing > most) missing = most;
-    float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
-    float weight = x[centre][3] + (w[0] + w[1] + w[2] + w[3]) / 16;
-    if (weight <= 0) return false;
-    float push = solver->height_gain * missing / (weight * length);
-    vec_store(x[centre], vec_mad(vec_load(x[centre]), normal, x[centre][3] * push));
-    for (int i = 0; i < 4; i++) vec_store(x[corner[i]], vec_mad(p[i], normal, -0.25f * w[i] * push));
+    if (!height_is_enough(above, square, enough) && square > 0)
+        height_mend(job, c, normal, square, enough - above / sqrtf(square));
     return false;
 }
 

@@ -29,27 +29,28 @@ static inline Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad
     return velocity - slip * k / (1 + k) * normal;
 }
 
-static void move_particles(const Move *task, int begin, int end) {
-    const Move job = *task;
-    DynamicsPlan *plan = job.plan;
-    const Field damping = job.shell->matter.damping;
-    const float *gravity = plan->settings.gravity;
-    float h = job.h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
+/// Particles [begin, end); `plain` where none has drag and damping is the same for all.
+static inline void move_particles(const Move *job, int begin, int end, bool closes, bool opens, bool plain) {
+    const DynamicsPlan *plan = job->plan;
+    const Field damping = job->shell->matter.damping;
+    const float *gravity = plan->settings.gravity, *drag = plan->drag;
+    float(*restrict position)[4] = job->dynamics->position, (*restrict velocities)[4] = job->dynamics->velocity;
+    float(*restrict predicted)[4] = plan->predicted;
+    float h = job->h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
     Quad fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
     for (int i = begin; i < end; i++) {
-        float *x = job.dynamics->position[i], *v = job.dynamics->velocity[i], *predicted = plan->predicted[i];
-        if (x[3] == 0) continue; // pinned or gone
-        Quad place = quad_load(x), velocity = quad_load(v);
-        if (job.between.closes) velocity += (place - quad_load(predicted)) * inverse_h;
-        if (job.between.opens) {
-            if (damping.mask) keep = 1 / (1 + h * field_at(damping, (uint32_t)i));
+        Quad place = quad_load(position[i]), velocity = quad_load(velocities[i]);
+        if (place[3] == 0) continue; // pinned or gone
+        if (closes) velocity += (place - quad_load(predicted[i])) * inverse_h;
+        if (opens) {
+            if (!plain) keep = 1 / (1 + h * field_at(damping, (uint32_t)i));
             velocity = (velocity + fall) * keep;
-            if (plan->drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
+            if (!plain && drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
             place += h * velocity;
-            quad_store(x, place);
-            quad_store(predicted, place);
+            quad_store(position[i], place);
+            quad_store(predicted[i], place);
         }
-        quad_store(v, velocity);
+        quad_store(velocities[i], velocity);
     }
 }
 
@@ -59,7 +60,14 @@ static double move_block(void *task, int begin, int end) {
     DynamicsPlan *plan = job->plan;
     uint64_t contacts =
         contact_touch(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
-    move_particles(job, begin, end);
+    bool closes = job->between.closes, opens = job->between.opens;
+    bool plain = plan->settings.air_density == 0 || (job->shell->matter.drag.mask == 0 && field_at(job->shell->matter.drag, 0) == 0);
+    plain = plain && job->shell->matter.damping.mask == 0;
+    // each of these is a loop of its own
+    if (closes && opens && plain) move_particles(job, begin, end, true, true, true);
+    else if (closes && opens) move_particles(job, begin, end, true, true, false);
+    else if (closes) move_particles(job, begin, end, true, false, true);
+    else if (opens) move_particles(job, begin, end, false, true, false);
     if (job->between.attaches)
         attach_range(&plan->attachments, job->shell, plan->kernels->hold, job->dynamics, begin, end);
     return (double)contacts;
