@@ -1,8 +1,8 @@
 // Strands laid out for lanes. A group is up to STRAND_LANES lanes side by side; a lane holds one strand, or several
 // one after another with a row between them that holds no spring. Row k of lane j of a group is the slot
 // (row + k) STRAND_LANES + j, of a node and of the spring from it to the node of the next row; a group ends with
-// a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is the one after
-// the last particle, which has no mass.
+// a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is one of those after
+// the last particle, which have no mass.
 //
 // Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then
 // takes the particles of width / 4 columns beside each other at once. Strands are laid so that columns beside each
@@ -48,7 +48,7 @@ static inline uint32_t strand_lane(uint32_t width, uint32_t column) {
 }
 static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lane % 4 * (width / 4) + lane / 4; }
 
-/// Lays out the strands of a colour. `nowhere` is the particle of no mass. False when out of memory.
+/// Lays out the strands of a colour. `nowhere` is the first particle of no mass. False when out of memory.
 bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, StrandSet *set);
 void strand_set_free(Memory *memory, StrandSet *set);
 

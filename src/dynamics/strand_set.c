@@ -3,7 +3,14 @@
 
 /// Particles along every strand, and one of no mass everywhere else.
 static void set_write_nodes(StrandSet *set, const SpringSet *springs, uint32_t nowhere) {
-    for (size_t i = 0; i < (size_t)set->row_count * STRAND_LANES; i++) set->node[i] = 4 * nowhere;
+    for (uint32_t f = 0; f < set->family_count; f++)
+        for (uint32_t g = set->family_first[f]; g < set->family_first[f + 1]; g++) {
+            const StrandGroup *group = &set->groups[g];
+            uint32_t *node = set->node + (size_t)group->row * STRAND_LANES;
+            // groups that are solved side by side write to places of their own
+            for (uint32_t i = 0; i < (group->rows + 1) * STRAND_LANES; i++)
+                node[i] = 4 * (nowhere + g - set->family_first[f]);
+        }
     for (uint32_t s = 0; s < set->strand_count; s++) {
         uint32_t *node = set->node + set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, node += STRAND_LANES) {

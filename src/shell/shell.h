@@ -166,7 +166,7 @@ typedef struct AblateState {
 } AblateState;
 
 typedef struct DynamicsState {
-    float (*position)[4]; ///< [particles + 1] m; fourth: 1/kg, inverse mass in this step; the last is nowhere, of no mass
+    float (*position)[4]; ///< [particles + shell_nowhere_count] m; fourth: 1/kg, inverse mass in this step
     float (*velocity)[4]; ///< m/s
     uint8_t *pinned;      ///< [particles] number of pins that hold it
 } DynamicsState;
@@ -194,6 +194,10 @@ static inline void event_push(EventList *list, SingeEventKind kind, int32_t elem
     if (list->count == list->capacity) { list->dropped++; return; }
     list->items[list->count++] = (SingeEvent){kind, element, time, {position[0], position[1], position[2]}};
 }
+
+/// Places after the last particle that have no mass: what lanes without a strand work on. As many as a family has
+/// strands at most.
+uint32_t shell_nowhere_count(const Shell *shell);
 
 /// Lays out a State for the shell and fills it with the start: rest positions, initial temperatures,
 /// mass 1, all alive, target lengths = rest lengths (state.c).
