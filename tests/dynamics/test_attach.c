@@ -1,0 +1,319 @@
+// Long-range attachments: what they hold, what they leave alone, and when they let go.
+#include "sheets.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "dynamics/plan.h"
+#include "step/scenes.h"
+
+enum { SIDE = 20, ROW = SIDE + 1 };
+static const float cell = 0.01f;
+static const SingeSheetId the_sheet = {0, 1}; // of test_sim
+
+static uint32_t vertex(uint32_t i, uint32_t j) { return j * ROW + i; }
+
+/// A sheet of 20 cm, flat, held at `count` vertices and ready for a projection.
+static void hold(Bench *bench, const SingeMaterialDef *material, int count, const uint32_t *held) {
+    bench_open(bench, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
+    for (int k = 0; k < count; k++) bench->state.dynamics.pinned[held[k]] = 1;
+    dynamics_plan_hold(bench->plan, &bench->shell, &bench->state);
+    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, bench->pool, &bench->state.dynamics);
+}
+
+/// Throws what is free about, up to 10 cm.
+static void scatter(Bench *bench) {
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!bench->state.dynamics.pinned[i])
+                bench->state.dynamics.position[i][k] += 0.2f * (random_unit(random_hash(i, (uint32_t)k, 1, 2)) - 0.5f);
+}
+
+static void project(Bench *bench) {
+    attach_project(&bench->plan->attachments, &bench->shell, bench->plan->kernels->hold, bench->pool,
+                   &bench->state.dynamics);
+}
+
+/// How much farther than it may be a vertex is from a source, at most.
+static double excess(const Bench *bench, int source) {
+    const Attachments *attachments = &bench->plan->attachments;
+    const float *anchor = bench->state.dynamics.position[attachments->source[0][source]];
+    double most = 0;
+    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
+        Vec away = vec_sub(vec_load(bench->state.dynamics.position[v]), vec_load(anchor));
+        most = fmax(most, (double)(vec_length(away) - attachments->length[v][source]));
+    }
+    return most;
+}
+
+static double far_from_start(const Bench *bench, uint32_t i) {
+    return (double)vec_length(
+        vec_sub(vec_load(bench->state.dynamics.position[i]), vec_load(bench->shell.rest_position[i])));
+}
+
+static void test_none_is_too_far(void **unused) {
+    (void)unused;
+    const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
+    for (int count = 1; count <= 2; count++) {
+        Bench bench;
+        hold(&bench, NULL, count, corners);
+        scatter(&bench);
+        float(*before)[4] = malloc(bench.shell.particle_count * sizeof *before);
+        assert_non_null(before);
+        memcpy(before, bench.state.dynamics.position, bench.shell.particle_count * sizeof *before);
+        assert_true(excess(&bench, 0) > 0.01);
+        project(&bench);
+        assert_true(excess(&bench, count - 1) < 1e-6); // the last source's is exact
+        for (int pass = 0; pass < 30; pass++) project(&bench);
+        for (int k = 0; k < count; k++) assert_true(excess(&bench, k) < 1e-3); // spheres that touch: slow
+        for (int k = 0; k < count; k++) assert_true(far_from_start(&bench, corners[k]) == 0);
+        // centres are off the mesh: left alone
+        const uint32_t first = bench.shell.vertex_count;
+        assert_memory_equal(before[first], bench.state.dynamics.position[first], bench.shell.cell_count * sizeof *before);
+        free(before);
+        bench_close(&bench);
+    }
+}
+
+/// What is in reach already stays to the bit.
+static void test_slack_is_left_alone(void **unused) {
+    (void)unused;
+    const uint32_t corner = vertex(0, 0);
+    Bench bench;
+    hold(&bench, NULL, 1, &corner);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        if (i != corner) bench.state.dynamics.position[i][2] = 0.3f * bench.state.dynamics.position[i][0],
+                         bench.state.dynamics.position[i][0] *= 0.9f;
+    float(*before)[4] = malloc(bench.shell.particle_count * sizeof *before);
+    assert_non_null(before);
+    memcpy(before, bench.state.dynamics.position, bench.shell.particle_count * sizeof *before);
+    project(&bench);
+    assert_memory_equal(before, bench.state.dynamics.position, bench.shell.particle_count * sizeof *before);
+    free(before);
+    bench_close(&bench);
+}
+
+static void test_loose_piece_is_free(void **unused) {
+    (void)unused;
+    const uint32_t corner = vertex(0, 0);
+    Bench bench;
+    hold(&bench, NULL, 1, &corner);
+    for (uint32_t v = vertex(0, 10); v < bench.shell.vertex_count; v++) bench.state.ablate.piece[v] = 7;
+    bench.state.ablate.topology_version++;
+    attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+    for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
+    project(&bench);
+    for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
+        assert_true((bench.state.dynamics.position[v][2] == -1) == (v >= vertex(0, 10)));
+    bench_close(&bench);
+}
+
+/// Nothing is held by what is not held itself: by a pin that was removed, or by a vertex that is gone.
+static void test_let_go(void **unused) {
+    (void)unused;
+    const uint32_t corner = vertex(0, 0);
+    for (int burnt = 0; burnt < 2; burnt++) {
+        Bench bench;
+        hold(&bench, NULL, 1, &corner);
+        if (burnt) {
+            bench.state.ablate.particle_flags[corner] = 0, bench.state.ablate.piece[corner] = -1;
+            bench.state.ablate.topology_version++;
+            attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+        } else {
+            bench.state.dynamics.pinned[corner] = 0;
+            dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
+            assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
+        }
+        dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, bench.pool, &bench.state.dynamics);
+        for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
+        project(&bench);
+        for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
+            assert_true(bench.state.dynamics.position[v][2] == -1);
+        bench_close(&bench);
+    }
+}
+
+/// Up to four sources, far apart; none where the sheet may stretch.
+static void test_sources(void **unused) {
+    (void)unused;
+    uint32_t edge[ROW];
+    for (uint32_t i = 0; i < ROW; i++) edge[i] = vertex(i, SIDE);
+    Bench bench;
+    hold(&bench, NULL, ROW, edge);
+    const uint32_t *source = bench.plan->attachments.source[0];
+    assert_int_equal(source[0], edge[0]);
+    assert_int_equal(source[1], edge[SIDE]);
+    assert_int_equal(source[2], edge[SIDE / 2]);
+    assert_int_not_equal(source[3], SHELL_NONE);
+    bench_close(&bench);
+    const uint32_t close[] = {vertex(0, 0), vertex(SIDE, 0), vertex(1, 0)};
+    hold(&bench, NULL, 3, close); // the third is nearer than a tenth
+    assert_int_equal(bench.plan->attachments.source[0][2], SHELL_NONE);
+    bench_close(&bench);
+    SingeMaterialDef gives = singe_default_material();
+    gives.compliance[SINGE_BLUE] = singe_param(1e-3f);
+    hold(&bench, &gives, ROW, edge);
+    assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
+    bench_close(&bench);
+}
+
+/// A fire that eats a disc from the middle: ways round it are longer, none is ever shorter.
+static void test_lengths_never_shrink(void **unused) {
+    (void)unused;
+    const uint32_t corners[] = {vertex(0, 0), vertex(SIDE, 0)};
+    Bench bench;
+    hold(&bench, NULL, 2, corners);
+    const Attachments *attachments = &bench.plan->attachments;
+    float before[ROW * ROW][ATTACH_SOURCES];
+    int grown = 0, cut_off = 0;
+    memcpy(before, attachments->length, sizeof before);
+    for (int ring = 1; ring <= 9; ring++) {
+        for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
+            const float *r = bench.shell.rest_position[v];
+            if (hypotf(r[0] - 0.1f, r[1] - 0.1f) < 0.0101f * (float)ring) bench.state.burn.mass[v] = 0.9f;
+        }
+        bench.state.burn.mass_burnt += 1e-6;
+        bench.state.step = 10; // not yet
+        attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+        assert_memory_equal(before, attachments->length, sizeof before);
+        bench.state.step = 32 * (uint64_t)ring - 1;
+        attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+        for (uint32_t v = 0; v < bench.shell.vertex_count; v++)
+            for (int k = 0; k < 2; k++) {
+                assert_true(attachments->length[v][k] >= before[v][k] * (1 - 1e-4f));
+                grown += attachments->length[v][k] > before[v][k] * 1.01f;
+                cut_off += isinf(attachments->length[v][k]) && !isinf(before[v][k]);
+            }
+        memcpy(before, attachments->length, sizeof before);
+    }
+    assert_true(grown > 100 && cut_off > 100);
+    bench_close(&bench);
+}
+
+/// A sheet held at two corners; the second goes `away` m within half a second.
+static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMaterialDef *material, float away) {
+    SingeSim *sim = test_sim(def, test_grid(cells, cells, 0.2f / (float)cells, 0.2f / (float)cells), material);
+    const uint32_t corners[] = {0, cells};
+    const SingePoseKey keys[] = {test_key(0, 0, 0, 0), test_key(0.5f, away, 0, 0)};
+    for (int k = 0; k < 2; k++) {
+        SingePinDef pin = singe_default_pin();
+        pin.sheet = the_sheet, pin.vertex_count = 1, pin.vertices = &corners[k];
+        if (k) pin.path_count = 2, pin.path = keys;
+        SingePinId id;
+        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    }
+    return sim;
+}
+
+/// The sheet cannot follow: it trembles between the pins, but stays where it is and does not fly apart.
+static void test_pulled_apart(void **unused) {
+    (void)unused;
+    const float side = 0.2f, aways[] = {0.02f, 0.05f, 0.1f};
+    for (int run = 0; run < 3; run++) {
+        SingeSim *sim = hung(NULL, 24, NULL, aways[run]);
+        double fastest = 0, farthest = 0;
+        for (int step = 0; step < 720; step++) {
+            test_steps(sim, 1);
+            SingeView view = singe_sim_view(sim);
+            for (uint32_t i = 0; i < view.particle_count; i++) {
+                double speed = (double)vec_length(vec_load(view.velocity[i]));
+                double reach = (double)vec_length(vec_load(view.position[i]));
+                assert_true(isfinite(speed) && isfinite(reach));
+                fastest = fmax(fastest, speed), farthest = fmax(farthest, reach);
+            }
+        }
+        print_message("pulled to %.2f of its side: up to %.1f m/s, %.3f m from a pin\n",
+                      1 + (double)(aways[run] / side), fastest, farthest);
+        assert_true(fastest < 30 && farthest < 1.5 * sqrt(2.0) * (double)side);
+        singe_sim_destroy(sim);
+    }
+}
+
+static SingeSim *burning(int threads) {
+    SingeSimDef def = scene_def();
+    def.thread_count = threads;
+    SingeMaterialDef material = scene_quick_material();
+    SingeSim *sim = hung(&def, 44, &material, 0);
+    test_spot(sim, 0.1f, 0.1f, 0, 0.02f, 1500, 1000);
+    return sim;
+}
+
+static void test_same_for_any_thread_count(void **unused) {
+    (void)unused;
+    SingeSim *one = burning(1);
+    test_steps(one, 70);
+    assert_true(singe_sim_stats(one).mass_removed > 0);
+    for (int threads = 2; threads <= 4; threads += 2) {
+        SingeSim *more = burning(threads);
+        test_steps(more, 70);
+        test_assert_same(one, more);
+        singe_sim_destroy(more);
+    }
+    singe_sim_destroy(one);
+}
+
+/// Lengths are those of an earlier step: a snapshot must have them.
+static void test_resumes_between_measurements(void **unused) {
+    (void)unused;
+    SingeSim *sim = burning(1);
+    test_steps(sim, 45);
+    TestBytes bytes = test_save(sim);
+    SingeSimDef hooks = singe_default_sim();
+    SingeSim *resumed;
+    SingeError error = {0};
+    if (singe_sim_load(&hooks, bytes.data, bytes.size, &resumed, &error)) fail_msg("load: %s", error.message);
+    for (int part = 0; part < 3; part++) {
+        test_steps(sim, 12), test_steps(resumed, 12);
+        test_assert_same(sim, resumed);
+    }
+    assert_true(singe_sim_stats(sim).mass_removed > 0);
+    free(bytes.data);
+    singe_sim_destroy(resumed);
+    singe_sim_destroy(sim);
+}
+
+/// In the step after a pin is removed the sheet falls freely.
+static void test_removed_pin_lets_go(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = singe_default_material();
+    material.drag = material.damping = singe_param(0);
+    SingeSim *sim = test_sim(NULL, test_grid(SIDE, SIDE, cell, cell), &material);
+    const uint32_t corner = 0;
+    SingePinDef pin = singe_default_pin();
+    pin.sheet = the_sheet, pin.vertex_count = 1, pin.vertices = &corner;
+    SingePinId id;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    test_steps(sim, 200);
+    double momentum[3] = {0};
+    test_ok(sim, singe_sim_remove_pin(sim, id));
+    for (int step = 0; step < 3; step++) {
+        test_steps(sim, 1);
+        SingeView view = singe_sim_view(sim);
+        momentum[step] = 0;
+        double area = 0;
+        for (uint32_t i = 0; i < view.particle_count; i++)
+            momentum[step] += (double)(view.area[i] * view.velocity[i][2]), area += (double)view.area[i];
+        momentum[step] /= area;
+    }
+    for (int step = 1; step < 3; step++)
+        assert_true(fabs((momentum[step] - momentum[step - 1]) * 480 / -9.81 - 1) < 1e-2);
+    singe_sim_destroy(sim);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_none_is_too_far),
+        cmocka_unit_test(test_slack_is_left_alone),
+        cmocka_unit_test(test_loose_piece_is_free),
+        cmocka_unit_test(test_let_go),
+        cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_lengths_never_shrink),
+        cmocka_unit_test(test_pulled_apart),
+        cmocka_unit_test(test_same_for_any_thread_count),
+        cmocka_unit_test(test_resumes_between_measurements),
+        cmocka_unit_test(test_removed_pin_lets_go),
+    };
+    return cmocka_run_group_tests_name("attach", tests, NULL, NULL);
+}
