@@ -37,6 +37,7 @@ static SingeSheetDef state_sheet(PaperState state, float *positions, uint32_t *c
     def.material.grammage = singe_param(grammage);
     def.material.thickness = singe_param(1e-3f);
     def.material.drag = def.material.damping = singe_param(0);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none
     if (state == PAPER_SHRINK) shrink_material(&def.material);
     return def;
 }
