@@ -105,19 +105,23 @@ static const Schema schema_weight = {
     COLOUR_ROW("blue", SINGE_BLUE, "mesh edges", dim, __VA_ARGS__),         \
     COLOUR_ROW("yellow", SINGE_YELLOW, "diagonals", dim, __VA_ARGS__)
 static const SchemaRow compliance_rows[] = {
-    PARAM("red", compliance[SINGE_RED], DIM_COMPLIANCE, FROM(0), "centre to corner"),
-    PARAM("green", compliance[SINGE_GREEN], DIM_COMPLIANCE, FROM(0), "centre to centre"),
-    PARAM("blue", compliance[SINGE_BLUE], DIM_COMPLIANCE, FROM(0), "mesh edges"),
-    PARAM("yellow", compliance[SINGE_YELLOW], DIM_COMPLIANCE, FROM(0), "diagonals"),
+    PARAM("red", compliance[SINGE_RED], DIM_COMPLIANCE, FROM(0), "centre to corner: thickness, shear across it"),
+    PARAM("green", compliance[SINGE_GREEN], DIM_COMPLIANCE, FROM(0),
+          "centre to centre: bending; the stiffness is thickness^2/compliance, in N m"),
+    PARAM("blue", compliance[SINGE_BLUE], DIM_COMPLIANCE, FROM(0),
+          "mesh edges: stretch; the stiffness is 1/compliance. Above 0 the sheet has no attachments"),
+    PARAM("yellow", compliance[SINGE_YELLOW], DIM_COMPLIANCE, FROM(0),
+          "diagonals: shear; the stiffness is 1/compliance"),
 };
 static const Schema schema_compliance = {
     .title = "compliances", .size = sizeof(SceneMaterial), ROWS(compliance_rows),
-    .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding."};
+    .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding. What that is for a sheet, and "
+           "the substeps that firm sheets need: [equations.md](equations.md#firmness)."};
 static const SchemaRow regularisation_rows[] = {PER_COLOUR(DIM_NONE, WITHIN(1e-6, 1e6))};
 static const Schema schema_regularisation = {
     .title = "regularisations", .size = 4 * sizeof(float), ROWS(regularisation_rows),
-    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. Larger is "
-           "safer and softer."};
+    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. It gives like "
+           "a compliance that grows with the square of the substep; firmness is the material's `compliance`."};
 
 #define NUMBER(name, member, dim, range_, text)                                                                        \
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
@@ -291,7 +295,7 @@ static const SchemaRow pin_rows[] = {
 };
 static const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
-    .place = pin_place, .doc = "Holds part of a sheet. Small patches hold better than single points."};
+    .place = pin_place, .doc = "Holds part of a sheet."};
 
 // ---- wind, solver, preview
 
@@ -311,7 +315,7 @@ static const SchemaRow solver_rows[] = {
      .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; all "
             "colours in one system; or Hooke's law. The defaults below are those of `strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(1, 1000),
-     .doc = "parts of a step; more is stiffer and slower"},
+     .doc = "parts of a step; firm, thick sheets of small cells need more ([equations.md](equations.md#firmness))"},
     {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
      .doc = "of all colours, a substep"},
     {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),
@@ -319,7 +323,7 @@ static const SchemaRow solver_rows[] = {
     {"regularisation", ROW_MAP, DIM_NONE, AT(SingeSolverDef, regularisation), .sub = &schema_regularisation,
      .doc = "by colour of spring"},
     {"attachments", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, attachments),
-     .doc = "`strand`: holds what hangs from a pin within its distance of it in the sheet"},
+     .doc = "`strand`: keeps vertices within their distance along the sheet from what is pinned"},
     {"early_exit", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, early_exit),
      .doc = "`paper`, `paper-literal`, `all-at-once`: stops where the error is below `tolerance` of the lengths"},
     {"tolerance", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, tolerance), WITHIN(1e-12, 1),

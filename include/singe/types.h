@@ -297,8 +297,8 @@ typedef struct SingeSolverDef {
     int substeps;                              ///< per step, 1 to 1000
     int projections;                           ///< of all colours, per substep, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
-    float regularisation[SINGE_COLOUR_COUNT];  ///< added to the diagonal, relative to w_a + w_b = 2; > 0
-    bool attachments;       ///< hold particles within their geodesic distance of every pin (strand)
+    float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; > 0
+    bool attachments;       ///< keep vertices within their geodesic distance of what is pinned (strand)
     bool early_exit;        ///< stop projecting when the error is below `tolerance` (paper, all-at-once)
     float tolerance;        ///< of the conjugate gradients and the early exit, 1e-12 to 1 (paper, all-at-once)
     float stiffness;        ///< N/m, of every spring (mass-spring), > 0
