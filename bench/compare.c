@@ -98,6 +98,7 @@ static BenchSetup method_setup(const Comparison *c, BenchState state, double spr
     BenchOptions options = *c->options;
     options.solver = method;
     BenchSetup setup = sheet_setup(&options, state, STEPS);
+    setup.rigid = true;
     setup.cells = options_cells(springs);
     return setup;
 }

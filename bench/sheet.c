@@ -11,6 +11,7 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
         .time_step = 1.0f / (float)(BENCH_FPS * steps), .instructions = options->instructions,
     };
     singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
+    setup.rigid = options->solver != SINGE_SOLVER_STRAND;
     if (options->substeps) setup.solver.substeps = options->substeps;
     if (options->projections) setup.solver.projections = options->projections;
     if (options->smoothing >= 0) setup.solver.smoothing = (float)options->smoothing;
@@ -93,6 +94,7 @@ static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
     sheet.material.thickness = singe_param(setup->thickness);
     if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
     sheet.material.damping = singe_param(setup->damping);
+    for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
     SingeResult result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
     if (!result) result = singe_sim_commit(sim);
     return result ? result : pins_add(sim, setup, id);

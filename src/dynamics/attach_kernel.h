@@ -32,7 +32,11 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
             Lanes dz = node.z - lanes_all(anchor[2]);
             Lanes square = dx * dx + dy * dy + dz * dz, limit = most[k] * most[k];
             if (!lanes_any_less(limit, square)) continue;
-            Lanes pull = lanes_sqrt(limit / square) - one;
+            // sqrt(q) - 1 for q = limit/square; for a hundredth too far, (q - 1)/(q + 1) is that to 1e-5
+            Lanes pull = (limit - square) / (limit + square);
+            Lanes most_square = limit * lanes_all(1.02f);
+            if (lanes_any_less(most_square, square))
+                pull = lanes_where_less(most_square, square, lanes_sqrt(limit / square) - one, pull);
             pull = lanes_where_less(limit, square, pull, zero);
             pull = lanes_where_less(zero, node.w, pull, zero); // what is held itself stays
             node.x += dx * pull, node.y += dy * pull, node.z += dz * pull;

@@ -129,12 +129,12 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
-    Between between = {.opens = true, .attaches = solver->attachments};
+    Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
         between.opens = substep < solver->substeps;
-        between.attaches = between.opens && solver->attachments;
+        between.attaches = between.opens && solver->attachments && !plan->paper;
         // held particles are where the substep ahead ends before the others set out
         if (between.opens) dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);

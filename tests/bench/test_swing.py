@@ -29,7 +29,7 @@ class Swing(unittest.TestCase):
                 self.assertAlmostEqual(row[f"fall_m_{mark}"], height, delta=0.02)
 
     def test_one_corner(self):
-        for row in swing("--thickness", "1,2,5", "--pins", "1", "--substeps", "12"):
+        for row in swing("--thickness", "1,2,5", "--pins", "1"):
             self.hold(row, 5, 0.5)
 
     def test_bars_are_marked(self):
