@@ -9,15 +9,15 @@
 //   C = (|d|^2 - l^2) / (2 |d|)
 //
 // Eq 16 and 19 with masses, w = 1/m: (J M^-1 J^T + S) lambda = W C, x_a += w_a u lambda, x_b -= w_b u lambda, with
-// S = c/h^2 + (r/2 + y max(C, 0)/|d|) (w_a + w_b), the compliance c, the regularisation r and y = STRAND_YIELD. The
-// last is for what cannot be satisfied, a strand pulled longer than it is between two pins: there lambda would grow
-// to C/r, while a substep can take a pull of w lambda of about |d| only, beyond which it throws what is not quite in
-// line from side to side. With y it stays near |d|/y; a spring within a thousandth of its length hardly knows of it.
+// S = c/h^2 + (r/2 + y max(C/|d| - g, 0)) (w_a + w_b), the compliance c, the regularisation r, y = STRAND_YIELD and
+// g = STRAND_GIVES. The last is for what cannot be satisfied, a strand pulled longer than it is between two pins: there
+// lambda would grow to C/r, while a substep can take a pull of w lambda of about |d| only, beyond which it throws what
+// is not quite in line from side to side. With y it stays below |d|/y. Springs within a hundredth do not know of it.
 //
 // Every row times its |d|, with mu = lambda/|d| for unknown, needs neither roots nor unit vectors. Let D = |d|^2 and
 // E = |d| C = (D - l^2)/2. Along a chain, spring k shares node k with spring k - 1, so the matrix is tridiagonal:
 //
-//   diagonal     (w_k + w_(k+1)) ((1 + r/2) D + y max(E, 0)) + (c/h^2) D
+//   diagonal     (w_k + w_(k+1)) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D
 //   off-diagonal -w_k (d_(k-1) . d_k)
 //   right side   W E
 //
@@ -28,8 +28,9 @@
 
 #include <math.h>
 
-/// y above.
-#define STRAND_YIELD 0.1f
+/// y and g above.
+#define STRAND_YIELD 0.5f
+#define STRAND_GIVES 0.01f
 
 /// A spring of every lane: d, W E, the diagonal.
 typedef struct Row {
@@ -83,7 +84,8 @@ static inline Row group_row(const Group *restrict group, uint32_t k, const Node 
     Lanes crushed = target * lanes_all(0.17157288f);
     if (__builtin_expect(lanes_any_less(square, crushed), 0))
         e = lanes_where_less(square, crushed, -l * lanes_sqrt(square), e);
-    Lanes pull = group->softness * square + lanes_max(e, lanes_all(0)) * lanes_all(STRAND_YIELD);
+    Lanes beyond = lanes_max(e - square * lanes_all(STRAND_GIVES), lanes_all(0));
+    Lanes pull = group->softness * square + beyond * lanes_all(STRAND_YIELD);
     Lanes stiff = group->stiff;
     if (group->compliance) stiff = lanes_load(group->compliance + slot) * group->inverse_h2;
     return (Row){dx, dy, dz, weight * e, (a->w + b->w) * pull + stiff * square};

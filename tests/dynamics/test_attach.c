@@ -207,7 +207,7 @@ static SingeSim *hung(const SingeSimDef *def, uint32_t cells, const SingeMateria
     return sim;
 }
 
-/// The sheet cannot follow: it trembles between the pins, but stays where it is and does not fly apart.
+/// The sheet cannot follow: it stretches between the pins and trembles a little.
 static void test_pulled_apart(void **unused) {
     (void)unused;
     const float side = 0.2f, aways[] = {0.02f, 0.05f, 0.1f};
@@ -226,7 +226,7 @@ static void test_pulled_apart(void **unused) {
         }
         print_message("pulled to %.2f of its side: up to %.1f m/s, %.3f m from a pin\n",
                       1 + (double)(aways[run] / side), fastest, farthest);
-        assert_true(fastest < 30 && farthest < 1.5 * sqrt(2.0) * (double)side);
+        assert_true(fastest < 10 && farthest < 1.5 * sqrt(2.0) * (double)side);
         singe_sim_destroy(sim);
     }
 }

@@ -67,7 +67,7 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
                     if (ep[i] == eq[j]) a[p][q] += (i == j ? 1 : -1) * (double)w[ep[i]] * dot;
             if (p == q) a[p][q] += 0.5 * relative * ((double)w[ep[0]] + (double)w[ep[1]]);
             // what is too long yields
-            if (p == q) a[p][q] += 0.1 * fmax(stretch[p], 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
+            if (p == q) a[p][q] += 0.5 * fmax(stretch[p] - 0.01, 0) * ((double)w[ep[0]] + (double)w[ep[1]]);
             if (p == q) a[p][q] += compliance * 1e6;
             if (p == q && a[p][q] == 0) a[p][q] = 1; // pinned at both ends: an empty row
         }
