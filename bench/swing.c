@@ -10,7 +10,8 @@
 #include "bench/trajectory.h"
 
 /// Steps a frame: of the shrinking sheet; the swinging one, where nothing burns, takes one of more substeps.
-enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240 };
+/// What hangs from one corner whips: from 100 cells on, the more cells, the more substeps.
+enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240, ONE_CORNER_CELLS = 100 };
 
 static const double right_motion[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
 
@@ -80,6 +81,12 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const
     return table_add(table, row);
 }
 
+static int swing_substeps(const BenchSetup *setup) {
+    if (setup->pins != 1) return SWING_SUBSTEPS;
+    return setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS
+                                            : ONE_CORNER_SUBSTEPS * setup->cells / ONE_CORNER_CELLS;
+}
+
 static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int steps, double seconds,
                            const BenchList *cells, const BenchList *thickness, BenchTable *table, SingeError *error) {
     if (options->steps) steps = options->steps;
@@ -89,6 +96,7 @@ static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int s
     for (int c = 0; c < cells->count; c++)
         for (int t = 0; t < thickness->count; t++) {
             setup->cells = (int)cells->values[c], setup->thickness = (float)thickness->values[t];
+            if (steps == 1 && !options->substeps && !options->steps) setup->solver.substeps = swing_substeps(setup);
             Trajectory *trajectory = trajectory_run(setup, frames, steps, INFINITY, error);
             bool added = trajectory && add_row(table, setup, steps, trajectory);
             trajectory_free(trajectory);
@@ -104,7 +112,6 @@ SingeResult bench_swing(const BenchOptions *options, BenchTable *table, SingeErr
     BenchSetup setup = sheet_setup(options, BENCH_SWING, DEFAULT_STEPS);
     if (options->smoothing < 0) setup.solver.smoothing = 0; // no damping of any kind
     bool standard = setup.solver.method == SINGE_SOLVER_STRAND && !options->steps && !options->substeps;
-    if (standard) setup.solver.substeps = options->pins == 1 ? ONE_CORNER_SUBSTEPS : SWING_SUBSTEPS;
     *table = table_begin("swing", columns, COLUMNS, table->text);
     return run_all(options, &setup, standard ? 1 : DEFAULT_STEPS, 1, &cells, &thickness, table, error);
 }
