@@ -8,16 +8,14 @@
 // the load at a pin would be carried by stretch; these carry it at once. Centres lie off the mesh, farther away on
 // the outside of a bend: they are not attached, or a sheet would not bend.
 //
-// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Ways lead
-// over cells that have not begun to burn: char shrinks and stretches, and a length that grows shorter would jerk
-// what hangs on it. So lengths only ever grow, as the fire cuts ways off; they are measured again from time to time.
-// What has come free of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has none.
+// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths are
+// those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a sheet
+// burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new length
+// step by step till the next measurement, for a length that shortens at once jerks what hangs on it. What has come free
+// of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
 #include "dynamics/attach.h"
 
 #include "base/vec.h"
-
-/// Steps between two measurements while a sheet burns: a search costs as much as several steps.
-enum { ATTACH_PERIOD = 32 };
 
 /// Vertices that any kernel takes in whole blocks of lanes.
 enum { ATTACH_BLOCK = 16 };
@@ -27,6 +25,7 @@ bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments)
     bool done = NEW(memory, attachments->source, shell->sheet_count) &&
                 NEW(memory, attachments->spread, shell->sheet_count) &&
                 NEW(memory, attachments->length, shell->vertex_count) &&
+                NEW(memory, attachments->goal, shell->vertex_count) &&
                 NEW(memory, attachments->distance, shell->vertex_count) &&
                 geodesic_create(memory, shell->vertex_count, &attachments->search);
     for (uint32_t s = 0; done && s < shell->sheet_count; s++)
@@ -38,6 +37,7 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
     FREE(memory, attachments->source, shell->sheet_count);
     FREE(memory, attachments->spread, shell->sheet_count);
     FREE(memory, attachments->length, shell->vertex_count);
+    FREE(memory, attachments->goal, shell->vertex_count);
     FREE(memory, attachments->distance, shell->vertex_count);
     geodesic_free(memory, shell->vertex_count, &attachments->search);
 }
@@ -73,19 +73,29 @@ static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
     return true;
 }
 
-static void attach_measure(Attachments *attachments, const Shell *shell, const State *state) {
+/// Takes over what was measured: at once what has grown longer, or all of it.
+static void attach_accept(Attachments *attachments, const Sheet *sheet, int k, bool all) {
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
+        float measured = attachments->distance[v], *length = &attachments->length[v][k];
+        attachments->goal[v][k] = measured;
+        attachments->settled = false;
+        if (all || measured > *length) *length = measured;
+    }
+}
+
+static void attach_measure(Attachments *attachments, const Shell *shell, const State *state, bool at_once) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         uint32_t *source = attachments->source[s];
         bool more = attach_is_inextensible(shell, sheet);
         for (int k = 0; k < ATTACH_SOURCES; k++) {
+            uint32_t before = source[k];
             source[k] = more ? attach_farthest(shell, state, sheet, source, k) : SHELL_NONE;
             more = source[k] != SHELL_NONE;
             if (!more) continue;
             geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-                attachments->length[v][k] = attachments->distance[v];
+            attach_accept(attachments, sheet, k, at_once || source[k] != before);
         }
     }
 }
@@ -95,17 +105,33 @@ static void attach_let_go(Attachments *attachments, const Shell *shell, const in
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         const uint32_t *source = attachments->source[shell->matter.sheet[v]];
         for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++)
-            if (piece[v] != piece[source[k]]) attachments->length[v][k] = INFINITY;
+            if (piece[v] != piece[source[k]]) attachments->length[v][k] = attachments->goal[v][k] = INFINITY;
     }
+}
+
+/// A step of what shortens, so that it arrives when the next measurement is due: all at once would jerk what hangs on
+/// it.
+static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_t step) {
+    if (attachments->settled) return;
+    attachments->settled = true;
+    float share = 1 / (float)(ATTACH_PERIOD - step % ATTACH_PERIOD);
+    for (uint32_t v = 0; v < shell->vertex_count; v++)
+        for (int k = 0; k < ATTACH_SOURCES; k++) {
+            float *length = &attachments->length[v][k], goal = attachments->goal[v][k];
+            if (!(goal < *length)) continue;
+            *length += (goal - *length) * share;
+            attachments->settled = false;
+        }
 }
 
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed) {
     if (attachments->topology != state->ablate.topology_version)
         attach_let_go(attachments, shell, state->ablate.piece);
     attachments->topology = state->ablate.topology_version;
+    if (!pins_changed) attach_shorten(attachments, shell, state->step);
     bool changed = attachments->mass_burnt != state->burn.mass_burnt;
     if (!pins_changed && !(changed && (state->step + 1) % ATTACH_PERIOD == 0)) return;
-    attach_measure(attachments, shell, state);
+    attach_measure(attachments, shell, state, pins_changed);
     attachments->mass_burnt = state->burn.mass_burnt;
 }
 
@@ -114,6 +140,7 @@ void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream)
     STREAM(stream, attachments->mass_burnt);
     stream_data(stream, attachments->source, shell->sheet_count * sizeof *attachments->source);
     stream_data(stream, attachments->length, shell->vertex_count * sizeof *attachments->length);
+    stream_data(stream, attachments->goal, shell->vertex_count * sizeof *attachments->goal);
     for (uint32_t s = 0; stream->mode == STREAM_READ && s < shell->sheet_count; s++)
         for (int k = 0; k < ATTACH_SOURCES; k++) {
             uint32_t source = attachments->source[s][k];

@@ -6,7 +6,8 @@
 #include "base/pool.h"
 #include "dynamics/geodesic.h"
 
-enum { ATTACH_SOURCES = 4 };
+/// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps.
+enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96 };
 
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
@@ -21,9 +22,11 @@ typedef struct AttachSpread {
 typedef struct Attachments {
     uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
     float (*length)[ATTACH_SOURCES];    ///< [vertices] m, INFINITY where nothing holds
+    float (*goal)[ATTACH_SOURCES];      ///< [vertices] m, as last measured; lengths that shorten go there by and by
     AttachSpread *spread;               ///< [sheets] scratch of a substep
     float *distance;                    ///< [vertices] scratch
     Geodesic search;
+    bool settled; ///< no length is on its way to its goal
     // what they were measured for
     uint64_t topology;
     double mass_burnt;

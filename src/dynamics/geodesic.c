@@ -9,7 +9,7 @@
 //   d(u) = |s - u|.
 //
 // This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
-// triangular meshes, 2002). The metric is intrinsic: rest lengths of blue and yellow springs, wherever the sheet is.
+// triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
 #include "dynamics/geodesic.h"
 
 #include <math.h>
@@ -70,14 +70,15 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
 }
 
 /// Length of the side or diagonal between corners i and j of a cell.
-static float cell_length(const Shell *shell, const CellSprings *springs, int i, int j) {
-    if (((i ^ j) & 1) == 0) return shell->springs[SINGE_YELLOW].rest[springs->yellow[i & 1]];
+static float cell_length(const CellSprings *springs, const BurnState *burn, int i, int j) {
+    if (((i ^ j) & 1) == 0) return burn->spring_length[SINGE_YELLOW][springs->yellow[i & 1]];
     int side = ((i + 1) & 3) == j ? i : j;
-    return shell->springs[SINGE_BLUE].rest[springs->blue[side]];
+    return burn->spring_length[SINGE_BLUE][springs->blue[side]];
 }
 
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.
-static void geodesic_cross_cell(Geodesic *search, const Shell *shell, uint32_t cell, int i, float *distance) {
+static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const BurnState *burn, uint32_t cell, int i,
+                                float *distance) {
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
@@ -85,24 +86,18 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, uint32_t c
         int j = (i + turn) & 3;
         uint32_t u = corner[j];
         if (search->place[u] == GEODESIC_DONE) continue;
-        float vu = cell_length(shell, springs, i, j), d = dv + vu;
+        float vu = cell_length(springs, burn, i, j), d = dv + vu;
         for (int other = 1; other < 4; other++) {
             int k = (i + other) & 3;
             if (k == j || search->place[corner[k]] != GEODESIC_DONE) continue;
-            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, springs, i, k), vu,
-                                          cell_length(shell, springs, k, j)));
+            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(springs, burn, i, k), vu,
+                                          cell_length(springs, burn, k, j)));
         }
         if (d >= distance[u]) continue;
         distance[u] = d;
         if (search->place[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
         heap_rise(search, distance, u);
     }
-}
-
-static bool geodesic_burns(const Shell *shell, const BurnState *burn, uint32_t cell) {
-    for (int i = 0; i < 4; i++)
-        if (burn->mass[shell->cells[cell][i]] < 1) return true;
-    return false;
 }
 
 void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, const AblateState *ablate,
@@ -115,10 +110,10 @@ void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, 
         uint32_t v = heap_pop(search, distance);
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
-            if (!(ablate->cell_flags[cell] & SINGE_ALIVE) || geodesic_burns(shell, burn, cell)) continue;
+            if (!(ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
             int i = 0;
             while (shell->cells[cell][i] != v) i++;
-            geodesic_cross_cell(search, shell, cell, i, distance);
+            geodesic_cross_cell(search, shell, burn, cell, i, distance);
         }
     }
 }

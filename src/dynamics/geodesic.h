@@ -14,8 +14,8 @@ typedef struct Geodesic {
 bool geodesic_create(Memory *memory, uint32_t vertex_count, Geodesic *search);
 void geodesic_free(Memory *memory, uint32_t vertex_count, Geodesic *search);
 
-/// Distances from `source` to the vertices [first, last) of its sheet over the cells that are whole and have not begun
-/// to burn, with the springs' rest lengths as metric; INFINITY where there is no way.
+/// Distances from `source` to the vertices [first, last) of its sheet over the cells that are alive, with the springs'
+/// target lengths as metric; INFINITY where there is no way.
 void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, const AblateState *ablate,
                    uint32_t source, uint32_t first, uint32_t last, float *distance);
 
