@@ -5,7 +5,7 @@
 
 #include "bench/curves.h"
 
-enum { WIDTH = 880, HEIGHT = 560, LEFT = 76, RIGHT = 300, TOP = 24, BOTTOM = 56 };
+enum { WIDTH = 920, HEIGHT = 560, LEFT = 76, RIGHT = 340, TOP = 24, BOTTOM = 56 };
 
 static const char *const colours[CURVES_MAX] = {"#888888", "#444444", "#c8401c", "#1c6cc8", "#2c8c3c", "#8c3ca0",
                                                 "#c89018", "#18a0a0", "#a03c5c", "#5c5cc8", "#6c8c1c", "#7c5c3c"};

@@ -83,8 +83,7 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const
 
 static int swing_substeps(const BenchSetup *setup) {
     if (setup->pins != 1) return SWING_SUBSTEPS;
-    return setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS
-                                            : ONE_CORNER_SUBSTEPS * setup->cells / ONE_CORNER_CELLS;
+    return setup->cells <= ONE_CORNER_CELLS ? ONE_CORNER_SUBSTEPS : 3 * setup->cells;
 }
 
 static SingeResult run_all(const BenchOptions *options, BenchSetup *setup, int steps, double seconds,
