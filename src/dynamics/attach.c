@@ -73,14 +73,17 @@ static bool attach_is_inextensible(const Shell *shell, const Sheet *sheet) {
     return true;
 }
 
-/// Takes over what was measured: at once what has grown longer, or all of it.
-static void attach_accept(Attachments *attachments, const Sheet *sheet, int k, bool all) {
+/// Takes over what was measured: at once what has grown longer, or all of it. Cells may touch at a vertex where no
+/// spring joins them any more: another piece is out of reach, whatever was measured.
+static void attach_accept(Attachments *attachments, const Sheet *sheet, const int32_t *piece, uint32_t source, int k,
+                          bool all) {
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
-        float measured = attachments->distance[v], *length = &attachments->length[v][k];
+        float measured = piece[v] == piece[source] ? attachments->distance[v] : INFINITY;
+        float *length = &attachments->length[v][k];
         attachments->goal[v][k] = measured;
-        attachments->settled = false;
-        if (all || measured > *length) *length = measured;
+        if (all || isinf(*length) || measured > *length) *length = measured;
     }
+    attachments->settled = false;
 }
 
 static void attach_measure(Attachments *attachments, const Shell *shell, const State *state, bool at_once) {
@@ -95,7 +98,7 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
             if (!more) continue;
             geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            attach_accept(attachments, sheet, k, at_once || source[k] != before);
+            attach_accept(attachments, sheet, state->ablate.piece, source[k], k, at_once || source[k] != before);
         }
     }
 }

@@ -107,6 +107,16 @@ static void test_loose_piece_is_free(void **unused) {
     project(&bench);
     for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
         assert_true((bench.state.dynamics.position[v][2] == -1) == (v >= vertex(0, 10)));
+    // nor is it held again by a later measurement, though its cells still touch: after a pin, or while it burns
+    dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
+    bench.state.burn.mass_burnt = 1e-6, bench.state.step = ATTACH_PERIOD - 1;
+    for (int step = 0; step < 3; step++, bench.state.step++) {
+        attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+        for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
+            float length = bench.plan->attachments.length[v][0];
+            assert_true(v >= vertex(0, 10) ? isinf(length) && length > 0 : isfinite(length));
+        }
+    }
     bench_close(&bench);
 }
 
