@@ -28,9 +28,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->settings = *settings;
     plan->particle_count = shell->particle_count;
     plan->cell_count = shell->cell_count;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         plan->spring_count[colour] = shell->springs[colour].count;
-    }
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, settings->thread_count, plan->kernels->solve, &plan->strands) ||
@@ -153,7 +152,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     }
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    plan->prepared.valid = true;
+    plan->strands_written = true;
     if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
     return SINGE_OK;
 }

@@ -41,13 +41,6 @@ void strands_free(Memory *memory, Strands *strands);
 
 typedef struct Paper Paper;
 
-/// The state that weights and targets of the strands were written for.
-typedef struct Prepared {
-    bool valid;
-    uint64_t topology;
-    double mass_burnt;
-} Prepared;
-
 struct DynamicsPlan {
     DynamicsSettings settings;
     Paper *paper;            ///< of the methods other than strand, else NULL
@@ -60,7 +53,7 @@ struct DynamicsPlan {
     const Kernels *kernels;
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
-    Prepared prepared;
+    bool strands_written; ///< their weights and targets, in a step that was done
     Attachments attachments;
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
     float (*cell_normal)[4]; ///< unit times twice the area

@@ -88,12 +88,9 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state
     memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
-    // what was written for the last step is still right where nothing has burnt since
-    const Prepared now = {true, state->ablate.topology_version, state->burn.mass_burnt};
-    bool same = plan->prepared.valid && plan->prepared.topology == now.topology &&
-                plan->prepared.mass_burnt == now.mass_burnt;
-    plan->prepared = now;
-    plan->prepared.valid = false; // till the step is done
+    // nothing has burnt, so what was written for an earlier step is still right
+    bool same = plan->strands_written && state->burn.mass_burnt == 0;
+    plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; !same && colour < SINGE_COLOUR_COUNT; colour++) {
         job.colour = (SingeColour)colour;
         const SpringSet *springs = &shell->springs[colour];
