@@ -56,6 +56,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
         !memory_grow(memory, &set->groups, set->group_capacity, set->group_count, sizeof *set->groups))
         return false;
     set->group_capacity = set->group_count;
+    if (set->row_count > UINT32_MAX / STRAND_LANES) return false; // slots are numbered in 32 bits
     if (!set_take_block(memory, set)) return false;
     set_write_nodes(set, springs, nowhere);
     for (uint32_t g = 0; g < set->group_count; g++) {
