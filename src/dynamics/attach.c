@@ -8,11 +8,12 @@
 // the load at a pin would be carried by stretch; these carry it at once. Centres lie off the mesh, farther away on
 // the outside of a bend: they are not attached, or a sheet would not bend.
 //
-// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths are
-// those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a sheet
-// burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new length
-// step by step till the next measurement, for a length that shortens at once jerks what hangs on it. What has come free
-// of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
+// Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
+// are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
+// sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
+// length step by step till the next measurement, for a length that shortens at once jerks what hangs on it. What has
+// come free of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has no
+// attachments.
 #include "dynamics/attach.h"
 
 #include "base/vec.h"

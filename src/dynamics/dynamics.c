@@ -12,7 +12,8 @@ static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory
     bool ok = NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
-              NEW(memory, plan->cell_normal, plan->cell_count) && NEW(memory, plan->height_wait, height_wait_count(shell)) &&
+              NEW(memory, plan->cell_normal, plan->cell_count) &&
+              NEW(memory, plan->height_wait, height_wait_count(shell)) &&
               NEW(memory, plan->colliders, plan->collider_capacity) &&
               NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
     return ok;

@@ -7,8 +7,8 @@
 //
 //   v~ = v + h F_ext / m,   x~ = x + h v~
 //
-// and attachments hold it. F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken implicitly
-// (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
+// and attachments hold it. F_ext: gravity, and quadratic drag on the normal velocity relative to the air, taken
+// implicitly (v_n <- v_n / (1 + h k |v_n|)), so that no time step makes it overshoot. Damping: v <- v / (1 + h d).
 //
 // The fourth numbers: of a position, the inverse mass, which its prediction repeats; of a velocity, 0.
 #include "base/quad.h"
@@ -58,11 +58,11 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
 static double move_block(void *task, int begin, int end) {
     const Move *job = task;
     DynamicsPlan *plan = job->plan;
-    uint64_t contacts =
-        contact_touch(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
+    uint64_t contacts = contact_touch(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
     bool closes = job->between.closes, opens = job->between.opens;
-    bool plain = plan->settings.air_density == 0 || (job->shell->matter.drag.mask == 0 && field_at(job->shell->matter.drag, 0) == 0);
-    plain = plain && job->shell->matter.damping.mask == 0;
+    const Field drag = job->shell->matter.drag, damping = job->shell->matter.damping;
+    bool still = plan->settings.air_density == 0 || (drag.mask == 0 && field_at(drag, 0) == 0);
+    bool plain = still && damping.mask == 0;
     // each of these is a loop of its own
     if (closes && opens && plain) move_particles(job, begin, end, true, true, true);
     else if (closes && opens) move_particles(job, begin, end, true, true, false);

@@ -95,12 +95,14 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
                     DynamicsState *dynamics);
 
 /// Internal friction of both layers over a step of h seconds (smooth.c).
-void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h, DynamicsState *dynamics);
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
+                     DynamicsState *dynamics);
 
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);
 
-/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their softness.
+/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their
+/// softness.
 static inline float dynamics_weight(Field material, const float *soft, uint32_t a, uint32_t b) {
     return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
 }

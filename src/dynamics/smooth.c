@@ -72,7 +72,8 @@ static int smooth_grain(const SpringSet *set, uint32_t family) {
     return (int)(2048 * (last - first) / (springs + 1)) + 1;
 }
 
-void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h, DynamicsState *dynamics) {
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
+                     DynamicsState *dynamics) {
     if (plan->settings.solver.smoothing <= 0) return;
     const SingeColour layers[] = {SINGE_BLUE, SINGE_GREEN};
     for (int layer = 0; layer < 2; layer++) {

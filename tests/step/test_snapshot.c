@@ -261,8 +261,8 @@ static void hooks_are_only_hooks(void **state) {
     singe_sim_destroy(scene.sim);
 }
 
-/// Bytes of a Def that are not saved: struct_size, pointers, hooks, thread count, instructions, what the shell sets, padding. A new
-/// field that is not in snapshot_def.c makes one of these numbers grow.
+/// Bytes of a Def that are not saved: struct_size, pointers, hooks, thread count, instructions, what the shell sets,
+/// padding. A new field that is not in snapshot_def.c makes one of these numbers grow.
 static void every_field_is_saved(void **state) {
     (void)state;
     if (sizeof(void *) != 8) skip();
