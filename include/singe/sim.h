@@ -196,6 +196,21 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_surface(SingeSim *sim, SingeSurf
 /// Frees a surface's arrays and zeroes it.
 SINGE_API void singe_surface_free(SingeSurface *surface);
 
+/// The hot gas about what burns: cubes of side `cell` along the axes of space, x fastest. Cell (i, j, k) is entry
+/// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its middle.
+typedef struct SingeGas {
+    uint32_t size[3];         ///< cells; all 0 where the simulation has no gas
+    float origin[3];          ///< m, lower corner of cell (0, 0, 0)
+    float cell;               ///< m
+    const float *temperature; ///< K
+    const float *smoke;       ///< kg/m3 of soot
+    const float *flame;       ///< W/m3 of heat set free
+    const float (*velocity)[3]; ///< m/s
+} SingeGas;
+
+/// The gas now; the arrays stay valid, their contents until the next step.
+SINGE_API SingeGas singe_sim_gas(const SingeSim *sim);
+
 /// Saves the whole simulation. *bytes comes from the simulation's allocator; free it with
 /// singe_sim_free_bytes. Versioned and checksummed; the byte order is the machine's.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size);

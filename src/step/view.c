@@ -42,6 +42,11 @@ const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
     return sim->events.items;
 }
 
+SingeGas singe_sim_gas(const SingeSim *sim) {
+    (void)sim;
+    return (SingeGas){0};
+}
+
 SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }
 
 SingeCensus singe_sim_census(const SingeSim *sim) {
