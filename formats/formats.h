@@ -47,6 +47,16 @@ SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, siz
 /// uv from (0,0) at (-x,-y) to (1,1).
 SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y,
                                       SingeAllocator allocator, Mesh *mesh, SingeError *error);
+/// What keeps a grid from being perfect.
+typedef struct GridWear {
+    float jitter;  ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3
+    float relief;  ///< m, root mean square height of the waves in which the sheet lies, >= 0
+    uint32_t seed;
+} GridWear;
+
+/// Moves the vertices of a mesh_grid: off its lines, so that folds and fronts find none to follow, and up and down
+/// in smooth waves about half as long as the shorter side. The outline from above, and what uv means, stay.
+void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear);
 void mesh_free(Mesh *mesh);
 
 // ---- pictures

@@ -1,8 +1,59 @@
+// Rectangles of quads, and how they come off the drawing board.
+//
+// Noise is a sum of plane waves whose directions are spread evenly over the half circle, so that it favours neither
+// the grid's lines nor any other:
+//
+//     n(p) = sqrt(2/N) sum over k of cos(p . d_k f_k + phase_k),   f_k = 2 pi / wavelength, stretched by 0.7 to 1.4
+//
+// with mean 0 and mean square 1.
+
 #include "mesh.h"
 #include "support.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { WAVES = 12 };
+
+/// A hash of two numbers in [0, 1).
+static double grid_random(uint32_t seed, uint32_t index) {
+    uint32_t h = seed * 0x9E3779B9u + index * 0x85EBCA6Bu + 0x165667B1u;
+    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
+    h = (h ^ (h >> 12)) * 0x297A2D39u;
+    return (double)(h ^ (h >> 15)) / 4294967296.0;
+}
+
+static double grid_noise(double x, double y, double wavelength, uint32_t seed) {
+    const double pi = 3.14159265358979323846;
+    double sum = 0;
+    for (uint32_t k = 0; k < WAVES; k++) {
+        double angle = pi * ((double)k + grid_random(seed, 3 * k)) / WAVES;
+        double f = 2 * pi / wavelength * exp2(grid_random(seed, 3 * k + 1) - 0.5);
+        sum += cos(f * (cos(angle) * x + sin(angle) * y) + 2 * pi * grid_random(seed, 3 * k + 2));
+    }
+    return sum * sqrt(2.0 / WAVES);
+}
+
+void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear) {
+    if (!(wear->jitter > 0) && !(wear->relief > 0)) return;
+    const double jitter_wavelength = 3.7; // cells: neighbours move much alike, cells stay convex
+    uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
+    double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
+    double wavelength = 0.45 * fmin(size_x, size_y);
+    for (uint32_t v = 0; v <= last; v++) {
+        uint32_t i = v % row, j = v / row;
+        // the border slides along itself only
+        bool free_x = i > 0 && i < cells_x, free_y = j > 0 && j < cells_y;
+        double dx = free_x ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
+        double dy = free_y ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;
+        double x = (i + (double)wear->jitter * dx) / cells_x, y = (j + (double)wear->jitter * dy) / cells_y;
+        float *position = mesh->positions + 3 * (size_t)v, *uv = mesh->uv + 2 * (size_t)v;
+        uv[0] = (float)x, uv[1] = (float)y;
+        position[0] = (float)((x - 0.5) * size_x), position[1] = (float)((y - 0.5) * size_y);
+        double height = grid_noise((double)position[0], (double)position[1], wavelength, ~wear->seed);
+        position[2] = (float)((double)wear->relief * height);
+    }
+}
 
 static void grid_fill(Mesh *mesh, double size_x, double size_y, uint32_t cells_x, uint32_t cells_y) {
     float *position = mesh->positions, *uv = mesh->uv;

@@ -81,6 +81,13 @@ void chosen_solver(void *object) {
     singe_init_solver_method(solver, sizeof *solver, solver->method);
 }
 
+bool default_grid(SceneArena *arena, void *object) {
+    (void)arena;
+    SceneGrid *grid = object;
+    grid->wear = (GridWear){.jitter = 0.15f, .seed = 1};
+    return true;
+}
+
 bool default_noise(SceneArena *arena, void *object) {
     (void)arena;
     *(SingeNoise *)object = singe_param(0).noise;

@@ -77,6 +77,8 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
         file.place = sheet->place;
         result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
                            (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
+        if (!result)
+            mesh_grid_wear(mesh, (uint32_t)sheet->grid.cells[0], (uint32_t)sheet->grid.cells[1], &sheet->grid.wear);
     }
     if (result)
         loader_fail(loader, &file, result, error.message);

@@ -63,6 +63,7 @@ typedef struct SceneGrid {
     bool given;
     float size[2];  ///< m
     int cells[2];
+    GridWear wear;
 } SceneGrid;
 
 /// Places for what belongs to a material's SingeParams. Each has its own: where it lies in the Def, counted in whole

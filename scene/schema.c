@@ -78,10 +78,15 @@ static const SchemaRow grid_rows[] = {
      .flags = ROW_REQUIRED, .doc = "along x and y"},
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "how many cells along x and y"},
+    {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
+     .doc = "how far vertices lie off the grid, of a cell: folds and fronts then find no lines to follow; 0 is regular"},
+    {"relief", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.relief), WITHIN(0, 1e3),
+     .doc = "root mean square height of the smooth waves in which the sheet lies from the start; 0 is flat"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
 };
 static const Schema schema_grid = {
-    .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows),
-    .doc = "A flat rectangle around the origin in the x-y plane, facing up (+z)."};
+    .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows), .defaults = default_grid,
+    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
 // A value that may vary over the sheet; its picture's place follows from the member.
 #define PARAM(name, member, dim, range_, text)                                                                         \

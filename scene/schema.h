@@ -124,6 +124,7 @@ bool default_source(SceneArena *arena, void *object);
 bool default_collider(SceneArena *arena, void *object);
 bool default_pin(SceneArena *arena, void *object);
 bool default_noise(SceneArena *arena, void *object);
+bool default_grid(SceneArena *arena, void *object);
 /// What suits the solver's method.
 void chosen_solver(void *object);
 

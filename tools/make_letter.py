@@ -16,6 +16,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent.parent / "examples" / "letter"
 WIDTH, HEIGHT = 0.210, 0.297  # m
 CELLS_X, CELLS_Y = 46, 65
 JITTER = 0.15  # of a cell
+RELIEF = 0.0012  # m, root mean square height of its waves
 
 
 def lattice(i, j, seed):
@@ -44,16 +45,30 @@ def vertex(i, j):
     return (i + dx) / CELLS_X, (j + dy) / CELLS_Y
 
 
+def relief(x, y):
+    """Height in m of a sheet that has been in a pocket: waves of a hand's width and a corner that will not lie down."""
+    waves = 0.0
+    for k in range(9):
+        angle = math.pi * (k + 0.5 * lattice(k, 1, 5)) / 9
+        f = 2 * math.pi / 0.115 * 2 ** (0.5 * lattice(k, 2, 5))
+        waves += math.cos(f * (math.cos(angle) * x + math.sin(angle) * y) + math.pi * lattice(k, 3, 5)) / 3
+    corner = max(0.0, (x + y - 0.165) / 0.0885)  # 1 at the upper right corner
+    other = max(0.0, (-x - y - 0.205) / 0.0485)
+    return RELIEF * waves + 0.011 * corner ** 2 + 0.004 * other ** 2
+
+
 def make_mesh(path):
     lines = [
-        "# A sheet of A4 paper, 0.210 x 0.297 m, flat in the x-y plane, centred at the origin.",
+        "# A sheet of A4 paper, 0.210 x 0.297 m, in the x-y plane, centred at the origin; it lies in waves of about 1 mm.",
         f"# {CELLS_X} x {CELLS_Y} quads; vertices lie off the grid by up to {JITTER:.0%} of a cell, so that folds and fronts",
         "# find no lines to follow. The picture is undistorted: u = x / 0.210 + 0.5, v = y / 0.297 + 0.5.",
         "# Made by tools/make_letter.py.",
         "o letter",
     ]
     points = [vertex(i, j) for j in range(CELLS_Y + 1) for i in range(CELLS_X + 1)]
-    lines += [f"v {(u - 0.5) * WIDTH:.7f} {(v - 0.5) * HEIGHT:.7f} 0" for u, v in points]
+    places = [((u - 0.5) * WIDTH, (v - 0.5) * HEIGHT) for u, v in points]
+    lowest = min(relief(x, y) for x, y in places)
+    lines += [f"v {x:.7f} {y:.7f} {relief(x, y) - lowest:.6f}" for x, y in places]
     lines += [f"vt {u:.6f} {v:.6f}" for u, v in points]
     row = CELLS_X + 1
     for j in range(CELLS_Y):
