@@ -45,9 +45,10 @@ SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float side, 
 /// Nothing but the sheet's own weight acts, and no heat flows.
 static void material_inert(SingeMaterialDef *material) {
     material->grammage = singe_param(0.1f);
+    material->reference_grammage = 0;
     material->diffusivity = material->layer_exchange = singe_param(0);
     material->convection = material->emissivity = singe_param(0);
-    material->heating = singe_param(0);
+    material->heat_share = singe_param(0);
     material->thickening = 1;
     material->drag = material->damping = singe_param(0);
     material->char_weight = singe_param(1);

@@ -11,7 +11,7 @@ static void shrink_material(SingeMaterialDef *material) {
     const float rate = 4e-3f; // 1/(K s), at 100 K above ignition
     material->temperature = singe_param(600), material->ignition_temperature = singe_param(500);
     material->mass_rate = singe_param(rate), material->rate_ceiling = singe_param(1e6f);
-    material->ash_exponent = singe_param(0), material->heating = singe_param(0);
+    material->ash_exponent = singe_param(0), material->heat_share = singe_param(0);
     material->mass_min = singe_param(0.8f), material->mass_loss = singe_param(0.1f);
     material->ash_density = singe_param(1), material->char_weight = singe_param(1);
     material->shrink_front = material->shrink_back = singe_param(1);
@@ -35,6 +35,7 @@ static SingeSheetDef state_sheet(PaperState state, float *positions, uint32_t *c
     def.vertex_count = (n + 1) * (n + 1), def.positions = positions;
     def.cell_count = n * n, def.cells = cells;
     def.material.grammage = singe_param(grammage);
+    def.material.reference_grammage = 0; // rates are those of eq 4
     def.material.thickness = singe_param(1e-3f);
     def.material.drag = def.material.damping = singe_param(0);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) def.material.compliance[c] = singe_param(0); // eq 16 has none

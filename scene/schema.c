@@ -132,6 +132,9 @@ static const Schema schema_regularisation = {
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
 static const SchemaRow material_rows[] = {
     PARAM("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
+    {"reference_grammage", ROW_FLOAT, DIM_GRAMMAGE, AT(SceneMaterial, def.reference_grammage), WITHIN(0, 1e6),
+     .doc = "`diffusivity`, `layer_exchange` and `mass_rate` are given for this mass per area; on a lighter sheet they "
+            "are larger in proportion, and its fire faster. 0: they hold at any. One for the whole sheet"},
     PARAM("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, WITHIN(1e-3, MUCH), "heat to warm a kilogram by a kelvin"),
     PARAM("thickness", thickness, DIM_LENGTH, WITHIN(1e-6, 100),
           "distance of the model's two layers; it sets the size of the wrinkles, and is larger than the real sheet's"),
@@ -149,8 +152,10 @@ static const SchemaRow material_rows[] = {
            "little as the cells need; one number for the whole sheet"),
     PARAM("temperature", temperature, DIM_TEMPERATURE, KELVIN, "at the start"),
     PARAM("ignition_temperature", ignition_temperature, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
-    PARAM("heating", heating, DIM_TEMPERATURE_DIFFERENCE, FROM(0),
-          "eta of eq 1: warming when all of the mass burns with no losses"),
+    PARAM("heat_of_combustion", heat_of_combustion, DIM_SPECIFIC_ENERGY, FROM(0), "heat that a kilogram gives as it burns"),
+    PARAM("heat_share", heat_share, DIM_FRACTION, WITHIN(0, 1),
+          "share of it that stays in the sheet; the rest goes up in the flame. eta of eq 1, the warming when all of the "
+          "mass burns with no losses, is heat_share heat_of_combustion/specific_heat"),
     PARAM("mass_rate", mass_rate, DIM_RATE_PER_KELVIN, FROM(0),
           "mu of eq 4: mass lost per second and kelvin above ignition"),
     PARAM("rate_ceiling", rate_ceiling, DIM_TEMPERATURE_DIFFERENCE, OVER_OR_INF(0),

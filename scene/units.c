@@ -35,6 +35,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
     [DIM_FLUX] = {"heat flux", {{"W/m2", 1, 0}, {"kW/m2", 1e3, 0}}},
     [DIM_CONDUCTANCE] = {"heat transfer coefficient", {{"W/(m2 K)", 1, 0}, {"W/m2/K", 1, 0}, {"kW/(m2 K)", 1e3, 0}}},
     [DIM_SPECIFIC_HEAT] = {"specific heat", {{"J/(kg K)", 1, 0}, {"kJ/(kg K)", 1e3, 0}}},
+    [DIM_SPECIFIC_ENERGY] = {"heat of combustion", {{"J/kg", 1, 0}, {"kJ/kg", 1e3, 0}, {"MJ/kg", 1e6, 0}}},
     [DIM_DIFFUSIVITY] = {"diffusivity", {{"m2/s", 1, 0}, {"cm2/s", 1e-4, 0}, {"mm2/s", 1e-6, 0}}},
     [DIM_RATE] = {"rate", {{"1/s", 1, 0}, {"1/min", 1.0 / 60.0, 0}}},
     [DIM_RATE_PER_KELVIN] = {"rate per kelvin", {{"1/(K s)", 1, 0}}},

@@ -86,13 +86,17 @@ typedef enum SingeColour {
 } SingeColour;
 
 /// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt. Every parameter may
-/// vary over the sheet but `thickening`, which is one factor for the whole front, and the choices `heat_operator` and
-/// `ablate`.
+/// vary over the sheet but `thickening`, which is one factor for the whole front, `reference_grammage`, and the choices
+/// `heat_operator` and `ablate`.
 typedef struct SingeMaterialDef {
     size_t struct_size;
 
     // body
     SingeParam grammage;      ///< kg/m2, > 0
+    /// kg/m2, the grammage that diffusivity, layer_exchange and mass_rate are stated for, >= 0. Their real causes are
+    /// fluxes per area, so on a sheet of another grammage they are reference_grammage/grammage times as large; 0: as
+    /// stated at any. One for the sheet
+    float reference_grammage;
     SingeParam specific_heat; ///< J/(kg K), > 0
     SingeParam thickness;     ///< m, between the two layers of the model, > 0; sets the wrinkles' size
 
@@ -108,7 +112,8 @@ typedef struct SingeMaterialDef {
 
     // burning, eq 1 and 4 to 6
     SingeParam ignition_temperature; ///< K, > 0
-    SingeParam heating;              ///< K per unit of mass fraction burnt, eta of eq 1, >= 0
+    SingeParam heat_of_combustion;   ///< J for a kg that burns, >= 0
+    SingeParam heat_share; ///< of it what stays in the sheet, 0 to 1: eta of eq 1 is share * heat/specific_heat in K
     SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
     /// K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
     SingeParam rate_ceiling;

@@ -7,6 +7,7 @@
 #include "shell/sheet.h"
 
 #include "base/random.h"
+#include "shell/matter.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,7 +46,8 @@ static const ParamRule param_rules[] = {
     {FIELD(loss_mass_floor), PARAM_LOSS_MASS_FLOOR, AT_BOTH, SHARE_ABOVE_ZERO},
     {FIELD(temperature), PARAM_TEMPERATURE, AT_BOTH, POSITIVE},
     {FIELD(ignition_temperature), PARAM_IGNITION, AT_BOTH, POSITIVE},
-    {FIELD(heating), PARAM_HEATING, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(heat_of_combustion), PARAM_HEAT_OF_COMBUSTION, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(heat_share), PARAM_HEAT_SHARE, AT_BOTH, UP_TO_ONE},
     {FIELD(mass_rate), PARAM_MASS_RATE, AT_BOTH, NOT_NEGATIVE},
     {FIELD(rate_ceiling), PARAM_RATE_CEILING, AT_BOTH, POSITIVE_OR_INFINITE},
     {FIELD(ash_exponent), PARAM_ASH_EXPONENT, AT_BOTH, NOT_NEGATIVE},
@@ -76,6 +78,9 @@ static bool inside(float x, float low, float high, bool low_open, bool high_open
 SingeResult material_check_scalars(const SingeMaterialDef *material, const char *sheet, SingeError *error) {
     if (material->thickening != 0 && !(isfinite(material->thickening) && material->thickening >= 1))
         return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': thickening must be 0, or 1 or more",
+                         sheet);
+    if (!(isfinite(material->reference_grammage) && material->reference_grammage >= 0))
+        return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': reference_grammage must be 0 or more",
                          sheet);
     int heat_operator = (int)material->heat_operator;
     if (heat_operator != SINGE_HEAT_SURFACE && heat_operator != SINGE_HEAT_UMBRELLA)
@@ -192,6 +197,21 @@ static void keep_values(Memory *memory, SheetSource *source, int param) {
     if (memcmp(*values, *values + 1, (total - 1) * sizeof **values) == 0) FREE(memory, *values, total);
 }
 
+/// What several parameters make together may leave what a float can hold.
+static SingeResult check_matter(const SheetSource *source, SingeError *error) {
+    static const struct { int param; const char *name; } made[] = {
+        {PARAM_DIFFUSIVITY, "diffusivity"}, {PARAM_LAYER_EXCHANGE, "layer_exchange"}, {PARAM_MASS_RATE, "mass_rate"},
+        {PARAM_HEAT_SHARE, "heat_of_combustion"}};
+    uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
+    for (size_t k = 0; k < sizeof made / sizeof *made; k++)
+        for (uint32_t i = 0; i < total; i++)
+            if (!isfinite(matter_value(source, made[k].param, i)))
+                return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s is too large for its %s",
+                                 source->sheet.name, made[k].name,
+                                 made[k].param == PARAM_HEAT_SHARE ? "specific heat" : "grammage");
+    return SINGE_OK;
+}
+
 SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error) {
     size_t total = (size_t)source->sheet.vertex_count + source->sheet.cell_count;
     for (int r = 0; r < RULE_COUNT; r++) {
@@ -206,7 +226,7 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
         // the layers' rules of one parameter follow each other
         if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
     }
-    return SINGE_OK;
+    return check_matter(source, error);
 }
 
 SingeParam *material_param(SingeMaterialDef *material, int index) {

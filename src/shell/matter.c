@@ -3,12 +3,22 @@
 //
 //   mass      m = (grammage/2) A [kg], heat capacity = m c_p [J/K]
 //
-// Each layer carries half of the sheet's mass.
+// Each layer carries half of the sheet's mass. Some of what a particle has comes from several parameters:
+//
+//   diffusivity, layer exchange, mass rate = stated value * g_0/g     g grammage, g_0 that which they are stated for
+//   heating   eta = s H/c_p [K]                                       H heat of combustion [J/kg], s its share that
+//   gas_heat  (1 - s) H [J/kg]                                        stays in the sheet
+//
+// The first three stand for what the gas beside a sheet does: heat that flows along it (W/K) and oxygen that reaches
+// it (kg/(m2 s K)) are the same beside a thick sheet and a thin one, but the thin one has less to warm and to burn.
+// Losses and sources, being fluxes over the capacity per area, have this by themselves. So with g every rate changes in
+// the same proportion, t' = t g_0/g gives the old equations, and the front's speed is in proportion to 1/g, its
+// thickness and its temperature the same.
 #include "shell/matter.h"
 
 #include <string.h>
 
-/// The Field of a parameter; NULL for those that masses and capacities are made of.
+/// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are made of.
 static Field *matter_field(Matter *matter, int param) {
     if (param >= PARAM_COMPLIANCE) return &matter->compliance[param - PARAM_COMPLIANCE];
     if (param >= PARAM_WEIGHT) return &matter->weight[param - PARAM_WEIGHT];
@@ -17,7 +27,8 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_DIFFUSIVITY] = &matter->diffusivity,
         [PARAM_TEMPERATURE] = &matter->temperature,
         [PARAM_IGNITION] = &matter->ignition_temperature,
-        [PARAM_HEATING] = &matter->heating,
+        [PARAM_HEAT_SHARE] = &matter->heating,
+        [PARAM_HEAT_OF_COMBUSTION] = &matter->gas_heat,
         [PARAM_MASS_RATE] = &matter->mass_rate,
         [PARAM_ASH_EXPONENT] = &matter->ash_exponent,
         [PARAM_MASS_MIN] = &matter->mass_min,
@@ -36,9 +47,39 @@ static Field *matter_field(Matter *matter, int param) {
     return fields[param];
 }
 
+/// Whether what a particle has by a parameter differs within the sheet.
+static bool matter_varies(const SheetSource *source, int param) {
+    float *const *values = source->values;
+    switch (param) {
+    case PARAM_DIFFUSIVITY:
+    case PARAM_LAYER_EXCHANGE:
+    case PARAM_MASS_RATE:
+        return values[param] || (values[PARAM_GRAMMAGE] && source->sheet.material.reference_grammage > 0);
+    case PARAM_HEAT_SHARE:
+        return values[param] || values[PARAM_HEAT_OF_COMBUSTION] || values[PARAM_SPECIFIC_HEAT];
+    case PARAM_HEAT_OF_COMBUSTION: return values[param] || values[PARAM_HEAT_SHARE];
+    default: return values[param] != NULL;
+    }
+}
+
+float matter_value(const SheetSource *source, int param, uint32_t i) {
+    float value = sheet_param(source, param, i), reference = source->sheet.material.reference_grammage;
+    switch (param) {
+    case PARAM_DIFFUSIVITY:
+    case PARAM_LAYER_EXCHANGE:
+    case PARAM_MASS_RATE:
+        return reference > 0 ? value * (reference / sheet_param(source, PARAM_GRAMMAGE, i)) : value;
+    case PARAM_HEAT_SHARE:
+        return value * sheet_param(source, PARAM_HEAT_OF_COMBUSTION, i) / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
+    case PARAM_HEAT_OF_COMBUSTION: return value * (1 - sheet_param(source, PARAM_HEAT_SHARE, i));
+    default: return value;
+    }
+}
+
 static bool matter_is_uniform(const SheetSource *sources, uint32_t count, int param) {
+    float first = matter_value(&sources[0], param, 0);
     for (uint32_t s = 0; s < count; s++)
-        if (sources[s].values[param] || sources[s].value[param] != sources[0].value[param]) return false;
+        if (matter_varies(&sources[s], param) || matter_value(&sources[s], param, 0) != first) return false;
     return true;
 }
 
@@ -46,9 +87,9 @@ static bool matter_is_uniform(const SheetSource *sources, uint32_t count, int pa
 static void matter_place(const Shell *shell, const Sheet *sheet, const SheetSource *source, int param, Field *field) {
     uint32_t centre = shell_centre(shell, sheet->cell_first);
     for (uint32_t v = 0; v < sheet->vertex_count; v++)
-        field->values[sheet->vertex_first + v] = sheet_param(source, param, v);
+        field->values[sheet->vertex_first + v] = matter_value(source, param, v);
     for (uint32_t c = 0; c < sheet->cell_count; c++)
-        field->values[centre + c] = sheet_param(source, param, sheet->vertex_count + c);
+        field->values[centre + c] = matter_value(source, param, sheet->vertex_count + c);
 }
 
 bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
@@ -62,7 +103,7 @@ bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
             for (uint32_t s = 0; s < sheets; s++) weighs_evenly &= sources[s].values[p] == NULL;
             continue;
         }
-        if (!field_create(memory, field, sources[0].value[p])) return false;
+        if (!field_create(memory, field, matter_value(&sources[0], p, 0))) return false;
         if (uniform) continue;
         if (!field_vary(memory, field, particles)) return false;
         for (uint32_t s = 0; s < sheets; s++) matter_place(shell, &shell->sheets[s], &sources[s], p, field);

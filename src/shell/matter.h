@@ -9,6 +9,10 @@
 bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources);
 void matter_free(Memory *memory, Shell *shell);
 
+/// What particle i of the sheet (its vertices, then its cells) has by a parameter: its value or, where it comes from
+/// several, what they make together; kept in the Field of the parameter.
+float matter_value(const SheetSource *source, int param, uint32_t i);
+
 /// Masses, capacities and their ratio, from areas, grammage and specific heat.
 void matter_weigh(Shell *shell, const SheetSource *sources);
 

@@ -36,7 +36,7 @@ typedef struct CellSprings {
     uint32_t yellow[2]; ///< corners 0-2, corners 1-3
 } CellSprings;
 
-/// Material of each particle (its own layer: half the sheet's mass). Area, mass and capacity of a vertex
+/// Material of each particle (its own layer: half the sheet's mass), at the grammage that it has. Area, mass and capacity of a vertex
 /// without cells are 0; it never lives.
 typedef struct Matter {
     float *area;               ///< m2 at rest
@@ -44,13 +44,14 @@ typedef struct Matter {
     float *capacity;           ///< J/K, of the unburnt particle
     Field capacity_ratio;      ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
     Field thickness;           ///< m
-    Field diffusivity;         ///< m2/s
+    Field diffusivity;         ///< m2/s; this, layer_exchange and mass_rate are in proportion to 1/grammage
     Field layer_exchange;      ///< 1/s
     Field convection;          ///< W/(m2 K)
     Field emissivity;
     Field loss_mass_floor;
     Field ignition_temperature; ///< K
-    Field heating;             ///< K per mass fraction
+    Field heating;             ///< K per mass fraction, eta of eq 1
+    Field gas_heat;            ///< J per kg burnt, what of its heat the sheet does not keep
     Field mass_rate;           ///< 1/(K s)
     Field rate_ceiling;        ///< K, may be infinite
     Field ash_exponent;
@@ -95,9 +96,9 @@ typedef struct Shell {
 
 /// The parameters that vary over a sheet, in the order of SheetSource.value.
 typedef enum ShellParam {
-    PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEATING, PARAM_MASS_RATE,
-    PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY, PARAM_SHRINK,
-    PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE, PARAM_CONVECTION, PARAM_EMISSIVITY,
+    PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEAT_OF_COMBUSTION,
+    PARAM_HEAT_SHARE, PARAM_MASS_RATE, PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY,
+    PARAM_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE, PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four

@@ -12,6 +12,7 @@ static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
         .grammage = singe_param(0.080f),
+        .reference_grammage = 0.080f,
         .specific_heat = singe_param(1400),
         .thickness = singe_param(1e-3f),
         .heat_operator = SINGE_HEAT_SURFACE,
@@ -23,7 +24,8 @@ static SingeMaterialDef standard_material(void) {
         .thickening = 0,
         .temperature = singe_param(293.15f),
         .ignition_temperature = singe_param(513.15f),
-        .heating = singe_param(2250),
+        .heat_of_combustion = singe_param(16e6f),
+        .heat_share = singe_param(0.2f),
         .mass_rate = singe_param(9e-3f),
         .rate_ceiling = singe_param(260),
         .ash_exponent = singe_param(0.5f),

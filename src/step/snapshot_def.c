@@ -63,6 +63,7 @@ static void def_material(Stream *stream, SingeMaterialDef *material) {
     for (int i = 0; (param = material_param(material, i)); i++) def_param(stream, param);
     STREAM(stream, material->heat_operator);
     STREAM(stream, material->thickening);
+    STREAM(stream, material->reference_grammage);
     def_bool(stream, &material->ablate);
 }
 

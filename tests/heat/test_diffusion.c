@@ -344,6 +344,7 @@ static void heat_is_kept_where_capacity_varies(void **unused) {
         (SingeParam){.value = 0.04f, .to = 0.4f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
     def.material.specific_heat =
         (SingeParam){.value = 900, .to = 1800, .field = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}};
+    def.material.reference_grammage = 0;
     Rig rig;
     rig_open(&rig, &def);
     double sum = 0, capacity = 0;

@@ -81,7 +81,7 @@ static void one_step_of_losses_is_the_formula(void **unused) {
 static void combustion_is_eta_times_burnt_mass(void **unused) {
     (void)unused;
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
-    def.material.heating = singe_param(2400);
+    def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     def.settings.pace = 4; // burn_rate is per second of scene time already
     Rig rig;
     rig_open(&rig, &def);
@@ -114,7 +114,7 @@ static void pace_is_fire_time(void **unused) {
 static void the_peak_is_the_hottest_so_far(void **unused) {
     (void)unused;
     RigDef def = lossy();
-    def.material.heating = singe_param(2400);
+    def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 600);

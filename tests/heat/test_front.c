@@ -12,8 +12,8 @@ typedef struct Front {
     double hottest; ///< K
 } Front;
 
-/// Burns a strip of 3 cells' width from one end; particles burnt to m_loss fall away.
-static Front burn_strip(float size, const SingeMaterialDef *material) {
+/// Burns a strip of 3 cells' width from one end in steps of h; particles burnt to m_loss fall away.
+static Front burn_strip(float size, float h, const SingeMaterialDef *material) {
     const double length = 0.12, first = 0.4 * length, last = 0.9 * length;
     int n = (int)lround(length / (double)size);
     RigDef def = rig_default(n, 3, size, size);
@@ -22,6 +22,7 @@ static Front burn_strip(float size, const SingeMaterialDef *material) {
     def.settings.tolerance = 1e-5f;
     Rig rig;
     rig_open(&rig, &def);
+    rig.h = h;
     const Shell *shell = &rig.shell;
     State *state = &rig.state;
     double *partial = calloc((size_t)pool_blocks((int)shell->particle_count), sizeof *partial);
@@ -61,7 +62,7 @@ static void compare(const SingeMaterialDef *material, double slowest, double fas
     const float sizes[] = {0.0005f, 0.001f, 0.002f, 0.004f};
     double reference = 0;
     for (int k = 0; k < 4; k++) {
-        Front front = burn_strip(sizes[k], material);
+        Front front = burn_strip(sizes[k], 0.002f, material);
         print_message("cells %.1f mm: F %.2f, front %.3f mm/s, hottest %.0f C\n", (double)sizes[k] * 1e3,
                       (double)front.thickening,
                       front.speed * 1e3, front.hottest - 273.15);
@@ -77,7 +78,7 @@ static void front_speed_does_not_depend_on_cells(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.diffusivity = singe_param(2.7e-6f), material.mass_rate = singe_param(8e-3f);
-    material.heating = singe_param(2400), material.rate_ceiling = singe_param(INFINITY);
+    material.heat_of_combustion = singe_param(2400 * 1400), material.heat_share = singe_param(1), material.rate_ceiling = singe_param(INFINITY);
     material.ash_exponent = singe_param(1), material.mass_loss = singe_param(0.22f);
     compare(&material, 4e-3, 7e-3);
 }
@@ -87,6 +88,34 @@ static void calibrated_paper_burns_at_its_real_pace(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     compare(&material, 4.4e-3, 7.0e-3);
+}
+
+/// The same material at other grammages, all of it derived from fluxes per area: a lighter sheet's front is faster in
+/// proportion, as thick and as hot, to the rounding where its steps are shorter in proportion too. The ranges at 45 and
+/// 20 g/m2 (Thomas & Law again) are predictions.
+static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
+    (void)unused;
+    static const struct { float grammage; double slowest, fastest; } sheets[] = {
+        {0.080f, 4.4e-3, 7.0e-3}, {0.045f, 7.8e-3, 12.4e-3}, {0.020f, 17.5e-3, 28e-3}};
+    Front office = {0};
+    for (int k = 0; k < 3; k++) {
+        float grammage = sheets[k].grammage, ratio = grammage / 0.080f;
+        SingeMaterialDef material = singe_default_material();
+        material.grammage = singe_param(grammage);
+        Front same = burn_strip(0.001f, 0.002f, &material), shorter = burn_strip(0.001f, 0.002f * ratio, &material);
+        print_message("%.0f g/m2: F %.2f, front %.3f mm/s, hottest %.0f C; steps of %.1f ms: %.3f mm/s, %.0f C\n",
+                      (double)grammage * 1e3, (double)same.thickening, same.speed * 1e3, same.hottest - 273.15,
+                      2 * (double)ratio, shorter.speed * 1e3, shorter.hottest - 273.15);
+        if (k == 0) office = same;
+        CHECK_NEAR(same.speed * (double)ratio / office.speed, 1, 0.05);
+        CHECK_NEAR(shorter.speed * (double)ratio / office.speed, 1, 1e-3);
+        CHECK_NEAR(shorter.hottest, office.hottest, 0.5);
+        CHECK_NEAR(same.thickening, office.thickening, 1e-5);
+        if (same.speed < sheets[k].slowest || same.speed > sheets[k].fastest) fail_msg("%.2f mm/s", same.speed * 1e3);
+    }
+    SingeMaterialDef stated = singe_default_material(); // at any grammage alike: losses alone are less
+    stated.grammage = singe_param(0.160f), stated.reference_grammage = 0;
+    assert_true(burn_strip(0.001f, 0.002f, &stated).speed > office.speed);
 }
 
 static void thickening_by_hand_and_its_limits(void **unused) {
@@ -120,7 +149,7 @@ static void thickening_goes_by_the_means(void **unused) {
     def.material.thickening = 0;
     Rig rig;
     rig_open(&rig, &def);
-    FrontMatter front = {1e-4f, 10e-3f, def.material.heating.value, def.material.ignition_temperature.value, 200};
+    FrontMatter front = {1e-4f, 10e-3f, 2250, def.material.ignition_temperature.value, 200};
     double expected = (double)heat_thickening_for(0, &front, 293, 0.01f);
     assert_true(expected > 1.5);
     CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);
@@ -131,6 +160,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_speed_does_not_depend_on_cells),
         cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
+        cmocka_unit_test(speed_is_in_proportion_to_one_over_grammage),
         cmocka_unit_test(thickening_by_hand_and_its_limits),
         cmocka_unit_test(thickening_goes_by_the_means),
     };

@@ -215,7 +215,7 @@ static void lift(float position[3], int column, int row) {
 static double plume_excess(float rate, float share, float pace, double heat[2]) {
     RigDef def = inert(40, 40);
     def.shape = lift;
-    def.material.heating = singe_param(2400);
+    def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
     def.settings.pace = pace;
     Rig rig;
     rig_open(&rig, &def);

@@ -71,7 +71,8 @@ static const struct {
     {AT(loss_mass_floor), PARAM_LOSS_MASS_FLOOR, BOTH, OVER_0_TO_1},
     {AT(temperature), PARAM_TEMPERATURE, BOTH, ABOVE_0},
     {AT(ignition_temperature), PARAM_IGNITION, BOTH, ABOVE_0},
-    {AT(heating), PARAM_HEATING, BOTH, FROM_0},
+    {AT(heat_of_combustion), PARAM_HEAT_OF_COMBUSTION, BOTH, FROM_0},
+    {AT(heat_share), PARAM_HEAT_SHARE, BOTH, TO_1},
     {AT(mass_rate), PARAM_MASS_RATE, BOTH, FROM_0},
     {AT(rate_ceiling), PARAM_RATE_CEILING, BOTH, ABOVE_0_OR_INFINITE},
     {AT(ash_exponent), PARAM_ASH_EXPONENT, BOTH, FROM_0},
@@ -129,9 +130,12 @@ static void test_numbers(void **state) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(2);
     SingeMaterialDef *m = &square.def.material;
-    SingeParam *params[] = {&m->thickness, &m->diffusivity, &m->temperature, &m->ignition_temperature, &m->heating,
-                            &m->mass_rate, &m->ash_exponent, &m->mass_min, &m->mass_loss, &m->ash_density};
-    for (int k = 0; k < 10; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
+    SingeParam *params[] = {&m->thickness, &m->diffusivity, &m->temperature, &m->ignition_temperature,
+                            &m->heat_of_combustion, &m->heat_share, &m->mass_rate, &m->ash_exponent, &m->mass_min,
+                            &m->mass_loss, &m->ash_density};
+    enum { FIRST = sizeof params / sizeof *params };
+    m->reference_grammage = 0;
+    for (int k = 0; k < FIRST; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
     SingeParam *more[] = {&m->layer_exchange, &m->convection, &m->emissivity, &m->loss_mass_floor, &m->rate_ceiling,
@@ -145,16 +149,21 @@ static void test_numbers(void **state) {
     const Field others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
                              matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping};
     const Field fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
-                             matter->heating, matter->mass_rate, matter->ash_exponent, matter->mass_min,
-                             matter->mass_loss, matter->ash_density};
+                             matter->gas_heat, matter->heating, matter->mass_rate, matter->ash_exponent,
+                             matter->mass_min, matter->mass_loss, matter->ash_density};
+    const float heat = m->heat_of_combustion.value, share = m->heat_share.value;
     for (uint32_t p = 0; p < shell.particle_count; p++) {
-        for (int k = 0; k < 10; k++) assert_true(field_at(fields[k], p) == 0.01f * (float)(k + 1));
+        for (int k = 0; k < FIRST; k++)
+            if (params[k] != &m->heat_of_combustion && params[k] != &m->heat_share)
+                assert_true(field_at(fields[k], p) == 0.01f * (float)(k + 1));
+        assert_true(field_at(matter->heating, p) == share * heat / m->specific_heat.value);
+        assert_true(field_at(matter->gas_heat, p) == heat * (1 - share));
         assert_true(field_at(matter->shrink, p) == (p < 9 ? 1.25f : 0.75f));
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->weight[k], p) == 0.5f + 0.1f * (float)k);
         for (int k = 0; k < 8; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
-    for (int k = 0; k < 10; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
+    for (int k = 0; k < FIRST; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
     square_free(&square);
@@ -213,26 +222,26 @@ static void test_attribute(void **state) {
     SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
     attributes[0].values = values;
     square.def.attribute_count = 2, square.def.attributes = attributes;
-    square.def.material.heating =
+    square.def.material.mass_rate =
         (SingeParam){.value = 100, .to = 200, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t v = 0; v < 16; v++)
-        assert_float_equal(param_at(&source, PARAM_HEATING, v), 100 + 25 * (float)v, 1e-3f);
+        assert_float_equal(param_at(&source, PARAM_MASS_RATE, v), 100 + 25 * (float)v, 1e-3f);
     for (uint32_t c = 0; c < 9; c++) {
         float mean = 0;
         for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
-        assert_float_equal(param_at(&source, PARAM_HEATING, 16 + c), 100 + mean, 1e-3f);
+        assert_float_equal(param_at(&source, PARAM_MASS_RATE, 16 + c), 100 + mean, 1e-3f);
     }
-    assert_null(source.sheet.material.heating.attribute);
+    assert_null(source.sheet.material.mass_rate.attribute);
     sheet_source_free(&memory, &source);
 
-    values[6] = -5; // -400 K
-    refuse(&square.def, 6, "heating must be 0 or more, which it is not at vertex 6");
+    values[6] = -5; // -400
+    refuse(&square.def, 6, "mass_rate must be 0 or more, which it is not at vertex 6");
     values[6] = NAN;
     refuse(&square.def, 6, "vertex 6");
-    square.def.material.heating.attribute = "char";
+    square.def.material.mass_rate.attribute = "char";
     refuse(&square.def, -1, "no attribute 'char'");
-    square.def.material.heating.attribute = NULL;
+    square.def.material.mass_rate.attribute = NULL;
     refuse(&square.def, -1, "names no attribute");
     square_free(&square);
 }
@@ -361,6 +370,43 @@ static void test_mass_varies(void **state) {
     square_free(&square);
 }
 
+/// Diffusivity, layer exchange and mass rate are stated for one grammage and are larger where the sheet is lighter; the
+/// product of conductance and capacity, a flux per area, is the same everywhere. Heat is stated by its share.
+static void test_stated_for_a_grammage(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(4);
+    static const float pixels[] = {0, 1};
+    SingeMaterialDef *m = &square.def.material;
+    m->grammage = (SingeParam){.value = 0.02f, .to = 0.08f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
+    m->specific_heat = (SingeParam){.value = 1000, .to = 2000, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
+    m->heat_of_combustion = singe_param(16e6f), m->heat_share = singe_param(0.25f);
+    for (int scaled = 0; scaled < 2; scaled++) {
+        m->reference_grammage = scaled ? 0.04f : 0;
+        SheetSource source = evaluate(&memory, &square.def);
+        Shell shell;
+        assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
+        const Matter *matter = &shell.matter;
+        for (uint32_t p = 0; p < shell.particle_count; p++) {
+            float grammage = param_at(&source, PARAM_GRAMMAGE, p), ratio = scaled ? 0.04f / grammage : 1;
+            assert_float_equal(field_at(matter->diffusivity, p), m->diffusivity.value * ratio, 1e-12f);
+            assert_float_equal(field_at(matter->layer_exchange, p), m->layer_exchange.value * ratio, 1e-4f);
+            assert_float_equal(field_at(matter->mass_rate, p), m->mass_rate.value * ratio, 1e-8f);
+            assert_float_equal(field_at(matter->heating, p), 4e6f / param_at(&source, PARAM_SPECIFIC_HEAT, p), 1e-3f);
+            assert_true(field_at(matter->gas_heat, p) == 12e6f);
+        }
+        assert_true(matter->mass_rate.mask == (scaled ? UINT32_MAX : 0)); // one value where it does not vary
+        assert_true(matter->gas_heat.mask == 0 && matter->heating.mask == UINT32_MAX);
+        shell_free(&memory, &shell);
+        sheet_source_free(&memory, &source);
+    }
+    m->reference_grammage = 1e30f, m->mass_rate = singe_param(1e30f);
+    refuse(&square.def, -1, "mass_rate is too large for its grammage");
+    m->reference_grammage = 0, m->heat_of_combustion = singe_param(1e38f), m->specific_heat = singe_param(0.01f);
+    refuse(&square.def, -1, "heat_of_combustion is too large for its specific heat");
+    square_free(&square);
+}
+
 // The ends of every range: the last number that is allowed and the first that is not.
 static void test_ranges(void **state) {
     (void)state;
@@ -393,6 +439,12 @@ static void test_ranges(void **state) {
         SingeSheetDef def = square.def;
         def.material.thickening = thickening[k];
         refuse(&def, -1, "thickening");
+    }
+    static const float reference[] = {-0.01f, NAN, INFINITY};
+    for (int k = 0; k < 3; k++) {
+        SingeSheetDef def = square.def;
+        def.material.reference_grammage = reference[k];
+        refuse(&def, -1, "reference_grammage");
     }
     SingeSheetDef def = square.def;
     def.material.heat_operator = (SingeHeatOperator)2;
@@ -464,6 +516,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers),   cmocka_unit_test(test_sample), cmocka_unit_test(test_picture),
         cmocka_unit_test(test_attribute), cmocka_unit_test(test_noise),  cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_stated_for_a_grammage),
         cmocka_unit_test(test_old_def),   cmocka_unit_test(test_name),   cmocka_unit_test(test_all_are_listed),
         cmocka_unit_test(test_all_vary),  cmocka_unit_test(test_mass_varies),
     };

@@ -7,7 +7,7 @@ SingeMaterialDef scene_quick_material(void) {
     material.thickening = 1;
     material.diffusivity = singe_param(1e-4f);
     material.ignition_temperature = singe_param(450);
-    material.heating = singe_param(1500);
+    material.heat_of_combustion = singe_param(1500 * 1400), material.heat_share = singe_param(1);
     material.mass_rate = singe_param(0.08f);
     material.shrink_back = singe_param(0.9f);
     return material;

@@ -96,7 +96,7 @@ static void one_piece_for_a_cut(void **state) {
     (void)state;
     SingeSimDef def = calm();
     SingeMaterialDef material = scene_quick_material();
-    material.heating = singe_param(0); // burns where it is heated and nowhere else
+    material.heat_share = singe_param(0); // burns where it is heated and nowhere else
     SingeSim *sim = test_sim(&def, test_grid(30, 4, 0.005f, 0.005f), &material);
     float line = 0.05f;
     SingeSourceDef source = singe_default_source();
