@@ -262,7 +262,7 @@ static void worn_grid_keeps_its_outline(void **state) {
     mesh_free(&mesh), mesh_free(&plain);
 }
 
-// The example's sheet: A4, flat, straight borders, at most 30,000 springs (4 + 2 + 2 + 2 a cell, fewer at the border).
+// The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs (4 + 2 + 2 + 2 a cell, fewer at the border).
 static void the_letter_is_a4(void **state) {
     (void)state;
     Bytes bytes;
@@ -286,7 +286,7 @@ static void the_letter_is_a4(void **state) {
     int on_border = 0;
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
         const float *p = mesh.positions + 3 * v;
-        assert_true(fabsf(p[0]) <= 0.105f && fabsf(p[1]) <= 0.1485f && p[2] == 0);
+        assert_true(fabsf(p[0]) <= 0.105f && fabsf(p[1]) <= 0.1485f && p[2] >= 0 && p[2] < 0.016f);
         on_border += fabsf(p[0]) == 0.105f || fabsf(p[1]) == 0.1485f;
         assert_float_equal(mesh.uv[2 * v], p[0] / 0.21f + 0.5f, 1e-5f);
         assert_float_equal(mesh.uv[2 * v + 1], p[1] / 0.297f + 0.5f, 1e-5f);
