@@ -1,0 +1,24 @@
+#!/bin/bash
+# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, and writes down how long it took and
+# what `singe measure` says. Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+declare -A best=([letter]=0105 [letter-hanging]=0100 [hot-sphere]=0070 [page-hot]=0040 [newspaper]=0090
+    [curtain-flame]=0150 [stack-edge]=0080)
+order=(letter letter-hanging hot-sphere page-hot newspaper curtain-flame stack-edge)
+[ $# -gt 0 ] && order=("$@")
+jpeg() { ffmpeg -loglevel error -y -i "$1" -qscale:v 3 -update 1 "$2"; }
+for name in "${order[@]}"; do
+    frame=${best[$name]} out=out/gallery/$name
+    begun=$EPOCHREALTIME
+    build/cli/singe run "examples/$name/$name.yaml" -o "$out" --no-preview --quiet
+    burnt=$EPOCHREALTIME
+    build/cli/singe render "$out" --frames "$((10#$frame))" --quiet
+    drawn=$EPOCHREALTIME
+    build/cli/singe render "$out" --sheet 4x2 --only-sheet --quiet
+    jpeg "$out/frames/$name.$frame.png" "docs/gallery/$name.jpg"
+    jpeg "$out/sheet.png" "docs/gallery/$name-sheet.jpg"
+    build/cli/singe measure "$out" > "docs/gallery/$name.txt"
+    awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
+        'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
+done
