@@ -23,6 +23,9 @@ BenchFn bench_ablate;
 /// Bytes a spring.
 BenchFn bench_memory;
 
+/// The burning front of options->materials on strips, beside what sources say.
+BenchFn bench_front;
+
 /// The paper's solver and ours on the same trajectories.
 BenchFn bench_compare;
 /// The same run with each set of instructions.

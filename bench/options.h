@@ -20,6 +20,16 @@ typedef enum BenchState {
     BENCH_HANG,   ///< hangs from two corner patches that come nearer to each other
 } BenchState;
 
+/// A material, and what sources say of its fire, from .. to; 0 and 0 where they say nothing.
+typedef struct BenchMaterial {
+    const char *name;
+    SingeMaterialDef def;
+    bool calibrated;    ///< it was made to agree with them
+    float speed[2];     ///< m/s of a front that runs level
+    float temperature[2]; ///< K, hottest
+    float residue[2];   ///< share of the mass
+} BenchMaterial;
+
 typedef struct BenchOptions {
     BenchList cells;     ///< a side of the square sheet
     BenchList thickness; ///< m
@@ -35,6 +45,8 @@ typedef struct BenchOptions {
     double smoothing;    ///< 1/s; below 0: the measurement's default
     double limit_ms;     ///< 0: none
     bool quick;
+    int material_count;
+    const BenchMaterial *materials;
 } BenchOptions;
 
 static inline BenchOptions bench_options(void) { return (BenchOptions){.threads = 1, .smoothing = -1}; }

@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "cli/args.h"
 #include "cli/bench_args.h"
+#include "cli/bench_materials.h"
 #include "cli/bench_plot.h"
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -35,6 +36,8 @@ static const struct {
     {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
+    {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
+     "The burning front of materials: speed, temperature and residue, beside what sources say."},
     {"compare", "bench compare", bench_compare,
      BENCH_BIT(SPRINGS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(QUICK) | OUTPUT,
      "The paper's solver and ours on the same trajectories: error, cost, and the ratio at no more error."},
@@ -116,5 +119,12 @@ int command_bench(int argc, char **argv) {
     int end = bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
                               argv + 1, &request);
     if (end == ARG_HELP) return EXIT_GOOD;
-    return end == ARG_END ? measure(m, &request) : EXIT_INPUT;
+    if (end != ARG_END) return EXIT_INPUT;
+    if (!(measurements[m].accepted & BENCH_BIT(MATERIAL))) return measure(m, &request);
+    BenchMaterials materials;
+    ExitCode code = bench_materials_open(request.materials, &materials);
+    request.options.material_count = materials.count, request.options.materials = materials.items;
+    if (!code) code = measure(m, &request);
+    bench_materials_close(&materials);
+    return code;
 }

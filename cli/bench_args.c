@@ -22,6 +22,7 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_LIMIT] = {"limit-ms", 0, "MS", "fails where a step takes longer at the reference machine's pace"},
     [BENCH_OPT_QUICK] = {"quick", 0, NULL, "a short run"},
     [BENCH_OPT_TIMED] = {"steps", 0, "N", "steps to time, 1 to 100000 [by size]"},
+    [BENCH_OPT_MATERIAL] = {"material", 0, "NAME,NAME,...", "materials or material files [all that are built in]"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
 };
@@ -128,6 +129,7 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_LIMIT: return read_one(parser, text, 1e-3, 1e6, "milliseconds from 0.001 to 1e6", &o->limit_ms);
     case BENCH_OPT_QUICK: o->quick = true; return true;
     case BENCH_OPT_TIMED: return args_int(reader, option, text, 1, 100000, &o->steps);
+    case BENCH_OPT_MATERIAL: request->materials = text; return true;
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;
     case BENCH_OPT_COUNT: break;

@@ -33,6 +33,25 @@ static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, ui
     return path || position;
 }
 
+/// What was measured of the base does not hold for what is changed.
+void finish_material(Reader *reader, const Node *map, void *object) {
+    SceneMaterial *material = object;
+    const Node *measured = node_find(map, "measured");
+    for (const Node *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
+        if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0)
+            material->measured = (SceneMeasured){0};
+    const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
+    static const char *const keys[] = {"speed", "temperature", "residue"};
+    for (int i = 0; i < 3; i++)
+        if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
+            message_add(reader->messages, reader->text, node_find(measured, keys[i])->place,
+                        "%s must not begin above its end", keys[i]);
+    const Node *thickening = node_find(map, "thickening");
+    float value = material->def.thickening;
+    if (thickening && value > 0 && value < 1)
+        complain(reader, thickening->place, "thickening must be 0 (as little as the cells need) or 1 and more");
+}
+
 void finish_sheet(Reader *reader, const Node *map, void *object) {
     SceneSheet *sheet = object;
     const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
@@ -40,10 +59,6 @@ void finish_sheet(Reader *reader, const Node *map, void *object) {
         complain(reader, grid->key_place, "'grid' and 'mesh' exclude each other; give one");
     if (!mesh && !grid)
         complain(reader, map->place, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
-    const Node *thickening = node_find(node_find(map, "material"), "thickening");
-    float value = sheet->material.def.thickening;
-    if (thickening && value > 0 && value < 1)
-        complain(reader, thickening->place, "thickening must be 0 (as little as the cells need) or 1 and more");
     if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
         complain(reader, grid->place, "a grid has at most 100 million cells");
 }

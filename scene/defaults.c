@@ -88,6 +88,12 @@ bool default_grid(SceneArena *arena, void *object) {
     return true;
 }
 
+bool default_measured(SceneArena *arena, void *object) {
+    (void)arena;
+    *(SceneMeasured *)object = (SceneMeasured){0};
+    return true;
+}
+
 bool default_noise(SceneArena *arena, void *object) {
     (void)arena;
     *(SingeNoise *)object = singe_param(0).noise;

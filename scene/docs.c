@@ -103,7 +103,7 @@ static void put_type(FILE *file, const SchemaRow *row) {
         [ROW_BOOL] = "yes or no",      [ROW_INT] = "whole number",
         [ROW_UINT32] = "whole number", [ROW_UINT64] = "whole number",
         [ROW_TEXT] = "text",           [ROW_NAME] = "name",
-        [ROW_FILE] = "file",           [ROW_ORDER] = "4 colours",
+        [ROW_FILE] = "file",           [ROW_BASE] = "material or file", [ROW_ORDER] = "4 colours",
         [ROW_POINTS] = "points, m",    [ROW_INDICES] = "whole numbers",
     };
     const char *unit = quantity_unit(row->dimension);

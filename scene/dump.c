@@ -125,6 +125,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     }
     case ROW_POSITION: put_numbers(file, ((const SceneKey *)items_at(object, row))->position, 3, row->dimension); break;
     case ROW_ROTATION: put_numbers(file, ((const SceneKey *)items_at(object, row))->rotation, 3, row->dimension); break;
+    case ROW_BASE: // what it made is all there
     case ROW_MAP:
     case ROW_LIST:
     case ROW_STRENGTH: break; // dump_row

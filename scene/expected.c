@@ -61,6 +61,13 @@ static void add_names(char *buffer, size_t size, const char *const *names) {
     }
 }
 
+static void add_base(char *buffer, size_t size) {
+    char names[160];
+    add(buffer, size, "a material (");
+    add(buffer, size, base_names(names, sizeof names));
+    add(buffer, size, ") or a material file (mine.yaml)");
+}
+
 static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
     char units[80];
     quantity_units(row->dimension, units, sizeof units);
@@ -110,6 +117,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         add(buffer, size, "a name of at most 100 characters without / \\ : * ? \" < > | % or a dot in front");
         break;
     case ROW_FILE: add(buffer, size, "the name of a file"); break;
+    case ROW_BASE: add_base(buffer, size); break;
     case ROW_ENUM: add_names(buffer, size, row->names); break;
     case ROW_ORDER: add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
     case ROW_MAP:
@@ -117,7 +125,10 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         for (int i = 0; row->sub && row->sub->choice && i < row->sub->row_count; i++)
             if (strcmp(row->sub->rows[i].key, row->sub->choice) == 0) {
                 add(buffer, size, " or ");
-                add_names(buffer, size, row->sub->rows[i].names);
+                if (row->sub->rows[i].type == ROW_BASE)
+                    add_base(buffer, size);
+                else
+                    add_names(buffer, size, row->sub->rows[i].names);
             }
         break;
     case ROW_LIST: add(buffer, size, "a list of maps"); break;

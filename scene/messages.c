@@ -83,8 +83,17 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     return copy;
 }
 
+// The file that a place is in.
+static const SceneText *text_of(const SceneText *text, ScenePlace place) {
+    const SceneText *file = text && place.file ? text->files : text;
+    while (file && file->number != place.file)
+        file = file->next;
+    return file;
+}
+
 static char *text_origin(const SceneText *text, ScenePlace place) {
-    const char *name = text && text->name ? text->name : "scene";
+    const SceneText *file = text_of(text, place);
+    const char *name = file && file->name ? file->name : "scene";
     size_t size = 64;
     if (place.set > 0 && text && place.set <= text->set_count) {
         const char *set = text->sets[place.set - 1];
@@ -103,6 +112,13 @@ static char *text_origin(const SceneText *text, ScenePlace place) {
     else
         snprintf(origin, size, "%s", name);
     return origin;
+}
+
+static bool told_already(const SceneMessages *messages, const SceneMessage *message) {
+    for (uint32_t i = 0; i < messages->count; i++)
+        if (!strcmp(messages->items[i].origin, message->origin) && !strcmp(messages->items[i].text, message->text))
+            return true;
+    return false;
 }
 
 void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...) {
@@ -130,14 +146,22 @@ void message_add(SceneMessages *messages, const SceneText *text, ScenePlace plac
     }
     text_tame(message.text);
     text_tame(message.origin);
-    if (text && place.line > 0 && place.set == 0)
-        message.source = source_line(text, place.line, place.column, &message.caret);
+    if (place.file && told_already(messages, &message)) {
+        free(message.text);
+        free(message.origin);
+        return;
+    }
+    const SceneText *file = text_of(text, place);
+    if (file && place.line > 0 && place.set == 0)
+        message.source = source_line(file, place.line, place.column, &message.caret);
     items[messages->count++] = message;
 }
 
 static bool place_before(ScenePlace a, ScenePlace b) {
     if (a.set != b.set)
         return a.set < b.set;
+    if (a.file != b.file)
+        return a.file < b.file;
     return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 

@@ -4,20 +4,24 @@
 
 #include "scene/scene.h"
 
-/// What a place refers to: the scene's name and bytes, and the --set texts.
+/// What a place refers to: the scene's name and bytes, and the --set texts; or those of a material file.
 typedef struct SceneText {
     const char *name;
     const char *bytes;
     size_t size;
     const char *const *sets;
     int set_count;
+    int number;              ///< of a material file, 0 for the scene
+    struct SceneText *files; ///< of the scene: the material files read so far, the last one first
+    struct SceneText *next;  ///< of a material file: the one before it
 } SceneText;
 
-/// Adds a mistake at a place. Never fails: what memory does not suffice for is counted in left_out.
+/// Adds a mistake at a place; one in a material file that several sheets use is told once. Never fails: what memory
+/// does not suffice for is counted in left_out.
 void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
-/// Puts the messages from `first` on into the order of the file, those of --set last.
+/// Puts the messages from `first` on into the order of the file, those of material files and of --set behind them.
 void messages_sort(SceneMessages *messages, uint32_t first);
 
 /// How many there are; more than before a call means that it found something.

@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-enum { SCENE_BYTES_MOST = 1 << 20 };
-
 // The text is kept with the scene, so that later messages can show its lines.
 static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     SceneText *kept = arena_new(arena, 1, sizeof *kept);
@@ -16,7 +14,7 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     for (int i = 0; i < text->set_count; i++)
         if (!(sets[i] = arena_text(arena, text->sets[i], strlen(text->sets[i]))))
             return NULL;
-    *kept = (SceneText){name, bytes, text->size, sets, text->set_count};
+    *kept = (SceneText){.name = name, .bytes = bytes, .size = text->size, .sets = sets, .set_count = text->set_count};
     return kept;
 }
 
@@ -62,10 +60,12 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     if (!text || !scene || (base_dir && !folder))
         return SINGE_ERROR_MEMORY;
     uint32_t before = message_total(messages), first = messages->count;
-    Node *root = tree_read(arena, text, text->bytes, text->size, 0, messages);
+    Node *root = tree_read(arena, text, text->bytes, text->size, (ScenePlace){0}, messages);
+    if (root)
+        schema_spell_out(arena, &schema_scene, root);
     if (root && !tree_set(arena, text, root, messages))
         return SINGE_ERROR_MEMORY;
-    Reader reader = {arena, text, messages, folder, scene};
+    Reader reader = {.arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "", .scene = scene};
     if (root)
         scene_fill(&reader, root);
     if (arena_failed(arena))
@@ -83,7 +83,8 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
 
 SingeResult scene_parse(const char *name, const char *bytes, size_t size, const char *base_dir, const char *const *sets,
                         int set_count, Scene **scene, SceneMessages *messages) {
-    SceneText text = {name ? name : "scene", bytes, size, sets, set_count > 0 ? set_count : 0};
+    SceneText text = {.name = name ? name : "scene", .bytes = bytes, .size = size, .sets = sets,
+                      .set_count = set_count > 0 ? set_count : 0};
     *scene = NULL;
     if (size > SCENE_BYTES_MOST) {
         message_add(messages, &text, (ScenePlace){0}, "a scene has at most 1 MiB, this one has %zu bytes", size);

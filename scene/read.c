@@ -46,6 +46,7 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
 static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
     static const char *const keys[] = {"from", "to", "picture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
+    *file = (SceneFile){0}; // of the material that this one began as
     if (node->kind != NODE_MAP) {
         if (value_float(reader, row, node, &result.value)) {
             result.to = result.value;
@@ -178,11 +179,13 @@ static const SchemaRow *choice_row(const Schema *schema) {
 static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
-    if (message_total(reader->messages) == before)
+    if (message_total(reader->messages) == before && schema->chosen)
         schema->chosen(object);
 }
 
 static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
+    if (row->extra && row->sub->defaults) // nothing of what it was before
+        row->sub->defaults(reader->arena, at(object, row->offset));
     if (row->extra)
         *(bool *)at(object, row->extra) = true;
     if (node->kind == NODE_MAP)
@@ -222,6 +225,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
             memcpy(field, &value, sizeof value);
         break;
     }
+    case ROW_BASE: read_base(reader, row, node, field); break;
     case ROW_ORDER: value_order(reader, row, node, field); break;
     case ROW_PARAM: read_param(reader, row, node, field, at(object, row->extra)); break;
     case ROW_MAP: read_submap(reader, row, node, object); break;
@@ -307,4 +311,35 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
     }
     if (schema->finish)
         schema->finish(reader, map, object);
+}
+
+static void spell_out_word(SceneArena *arena, const Schema *schema, Node *node) {
+    Node *word = arena_new(arena, 1, sizeof *word);
+    char *key = arena_text(arena, schema->choice, strlen(schema->choice));
+    if (!word || !key)
+        return;
+    *word = *node;
+    word->next = NULL;
+    word->key = key;
+    word->key_place = node->place;
+    node->kind = NODE_MAP;
+    node->text = NULL;
+    node->first = node->last = word;
+    node->count = 1;
+}
+
+void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
+    for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
+        for (int i = 0; i < schema->row_count; i++) {
+            const SchemaRow *row = &schema->rows[i];
+            if (!row->sub || strcmp(row->key, child->key) != 0)
+                continue;
+            if (row->type == ROW_MAP && row->sub->choice && value_is_text(child))
+                spell_out_word(arena, row->sub, child);
+            else if (child->kind == NODE_MAP)
+                schema_spell_out(arena, row->sub, child);
+            for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
+                schema_spell_out(arena, row->sub, entry);
+            break;
+        }
 }

@@ -20,7 +20,8 @@
 /// Where something in a scene was written. A zeroed place is nowhere.
 typedef struct ScenePlace {
     int line, column; ///< counted from 1; 0 for nothing
-    int set;          ///< 1 + index of the --set that it came from, 0 for the file
+    int set;          ///< 1 + index of the --set that it came from, 0 for a file
+    int file;         ///< number of the material file that it is in, 0 for the scene's own
 } ScenePlace;
 
 /// One mistake. `source` and the caret are absent (NULL, 0) where there is no line to show.
@@ -71,9 +72,20 @@ typedef struct SceneGrid {
 #define SCENE_PARAM_SLOT(member) (offsetof(SingeMaterialDef, member) / sizeof(SingeParam))
 enum { SCENE_PARAM_SLOTS = sizeof(SingeMaterialDef) / sizeof(SingeParam) };
 
+/// What sources say of a material's fire, each from .. to; 0 and 0 where they say nothing.
+typedef struct SceneMeasured {
+    bool given;
+    bool calibrated;      ///< the material was made to agree with it; otherwise it is held against a prediction
+    float speed[2];       ///< m/s of a front that runs level
+    float temperature[2]; ///< K, hottest
+    float residue[2];     ///< share of the mass that is left
+} SceneMeasured;
+
 typedef struct SceneMaterial {
     SingeMaterialDef def;                  ///< pictures have no values before scene_load
     SceneFile pictures[SCENE_PARAM_SLOTS]; ///< of parameters that follow a picture
+    char *name;                            ///< for messages, may be NULL
+    SceneMeasured measured;
 } SceneMaterial;
 
 typedef struct SceneSheet {
@@ -178,6 +190,9 @@ typedef enum SceneSyntax { SCENE_YAML = 0, SCENE_JSON = 1 } SceneSyntax;
 /// Writes the scene with every value that it uses; it reads back as the same scene. `indent` is the number
 /// of spaces before each line but the first (for a JSON dump inside another document).
 void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file);
+
+/// The index-th material that the program brings along, in the order of their names; NULL behind the last.
+const char *scene_material_name(int index);
 
 /// Writes docs/scene.md, the reference of scene files, from the schema.
 void scene_document(FILE *file);

@@ -130,7 +130,27 @@ static const Schema schema_regularisation = {
 
 #define NUMBER(name, member, dim, range_, text)                                                                        \
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
+static const SchemaRow measured_rows[] = {
+    {"calibrated", ROW_BOOL, DIM_NONE, AT(SceneMeasured, calibrated),
+     .doc = "the material was made to agree with these; otherwise they are held against what it predicts"},
+    {"speed", ROW_VECTOR, DIM_SPEED, AT(SceneMeasured, speed), .length = 2, WITHIN(0, 1e6),
+     .doc = "of a front that runs level, from and to"},
+    {"temperature", ROW_VECTOR, DIM_TEMPERATURE, AT(SceneMeasured, temperature), .length = 2, WITHIN(0, 1e4),
+     .doc = "the hottest, from and to"},
+    {"residue", ROW_VECTOR, DIM_FRACTION, AT(SceneMeasured, residue), .length = 2, WITHIN(0, 1),
+     .doc = "share of the mass that is left, from and to"},
+};
+static const Schema schema_measured = {
+    .title = "what is measured", .size = sizeof(SceneMeasured), ROWS(measured_rows),
+    .defaults = default_measured,
+    .doc = "What sources say of the material's fire, for `singe bench front`; nothing is computed from it. 0 and 0 where "
+           "they say nothing."};
+
 static const SchemaRow material_rows[] = {
+    {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,
+     .doc = "the material that it begins as, and which the other keys change: one that is built in, or a file of the "
+            "same keys ([materials.md](materials.md))"},
+    {"name", ROW_TEXT, DIM_NONE, AT(SceneMaterial, name), .doc = "for messages; that of `base` by default"},
     PARAM("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
     {"reference_grammage", ROW_FLOAT, DIM_GRAMMAGE, AT(SceneMaterial, def.reference_grammage), WITHIN(0, 1e6),
      .doc = "`diffusivity`, `layer_exchange` and `mass_rate` are given for this mass per area; on a lighter sheet they "
@@ -177,13 +197,18 @@ static const SchemaRow material_rows[] = {
     PARAM("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
     PARAM("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
     PARAM("damping", damping, DIM_RATE, FROM(0), "of all motion"),
+    {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
+     .sub = &schema_measured, .doc = "what sources say of its fire"},
 };
-static const Schema schema_material = {
+const Schema schema_material = {
     .title = "a material",
     .size = sizeof(SceneMaterial),
     ROWS(material_rows),
+    .choice = "base",
+    .finish = finish_material,
     .doc =
-        "What a sheet is made of and how it burns. The defaults are office paper of 80 g/m2 at its real pace. Mass is "
+        "What a sheet is made of and how it burns. `material: newsprint` takes one as it is, `material: {base: newsprint, "
+        "thickness: 2 mm}` changes it; the defaults are those of office-paper, 80 g/m2 at its real pace. Mass is "
         "always a fraction of the mass at the start. A value marked *varies* may also follow a picture, an attribute "
         "or a noise (see *Values that vary*)."};
 

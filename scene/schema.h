@@ -20,6 +20,7 @@ typedef enum RowType {
     ROW_FILE,     ///< SceneFile
     ROW_ENUM,     ///< an enum, by `names`
     ROW_ORDER,    ///< SingeColour[4], each once
+    ROW_BASE,     ///< the SceneMaterial at `offset`: a material's name or file, which it begins as
     ROW_PARAM,    ///< SingeParam, with its SceneFile at `extra`
     ROW_MAP,      ///< a map by `sub`; `extra`, when not 0, is the bool that says it is given
     ROW_LIST,     ///< pointer to maps by `sub`; their count at `extra`
@@ -55,11 +56,15 @@ typedef struct SchemaRow {
 /// What the reader knows while it works.
 typedef struct Reader {
     SceneArena *arena;
-    const SceneText *text;
+    SceneText *text;
     SceneMessages *messages;
     const char *base_dir; ///< NULL: files are not looked for
+    const char *prefix;   ///< from base_dir to the folder of the material file that is read, "" or with its last slash
+    const struct BaseChain *chain; ///< the material files that are being read (base.c)
     Scene *scene;
 } Reader;
+
+enum { SCENE_BYTES_MOST = 1 << 20 }; ///< of a scene or a material file
 
 typedef struct Schema {
     const char *title; ///< "a sheet": for messages and headings
@@ -68,8 +73,8 @@ typedef struct Schema {
     const SchemaRow *rows;
     int row_count;
     size_t kind_offset; ///< of the enum that `kinds` are bits of; the row is called "kind"
-    /// The key of a choice that is read before the others, and what it makes of the object's defaults. A bare word in
-    /// the map's stead is that choice. NULL: none.
+    /// The key of a choice that is read before the others, and what it makes of the object's defaults (NULL: nothing
+    /// more). A bare word in the map's stead is that choice. NULL: none.
     const char *choice;
     void (*chosen)(void *object);
     /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
@@ -108,8 +113,18 @@ static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
 
+/// Makes maps of bare words in a map's stead, so that --set reaches into them.
+void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map);
+
+/// A material that another begins as: one that is built in, or a file (base.c).
+void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMaterial *material);
+extern const Schema schema_material;
+/// "cotton, newsprint, ..."
+const char *base_names(char *buffer, size_t size);
+
 // checks (checks.c)
 void finish_scene(Reader *reader, const Node *map, void *object);
+void finish_material(Reader *reader, const Node *map, void *object);
 void finish_sheet(Reader *reader, const Node *map, void *object);
 void finish_source(Reader *reader, const Node *map, void *object);
 void finish_collider(Reader *reader, const Node *map, void *object);
@@ -123,6 +138,7 @@ bool default_sheet(SceneArena *arena, void *object);
 bool default_source(SceneArena *arena, void *object);
 bool default_collider(SceneArena *arena, void *object);
 bool default_pin(SceneArena *arena, void *object);
+bool default_measured(SceneArena *arena, void *object);
 bool default_noise(SceneArena *arena, void *object);
 bool default_grid(SceneArena *arena, void *object);
 /// What suits the solver's method.

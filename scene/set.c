@@ -111,13 +111,13 @@ static bool setter_path_good(Setter *setter) {
 
 static void set_one(SceneArena *arena, const SceneText *text, int index, Node *root, SceneMessages *messages) {
     const char *set = text->sets[index], *equals = strchr(set, '=');
-    Setter setter = {arena, text, messages, {0, 0, index + 1}, set, set, equals ? equals : set};
+    Setter setter = {arena, text, messages, {.set = index + 1}, set, set, equals ? equals : set};
     if (!setter_path_good(&setter)) {
         message_add(messages, text, setter.place, "expected PATH=VALUE, such as sheets.0.material.grammage=60 g/m2");
         return;
     }
     // the value first: a bad one must leave no half-made maps behind
-    Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), index + 1, messages);
+    Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.place, messages);
     Node *target = value ? setter_walk(&setter, root) : NULL;
     if (!target)
         return;

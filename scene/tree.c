@@ -14,7 +14,7 @@ typedef struct Builder {
     SceneMessages *messages;
     const char *bytes; // of the document
     size_t size;
-    int set;
+    ScenePlace origin; // --set or file, without line and column
     Node *stack[DEPTH_MOST]; // open lists and maps
     char *keys[DEPTH_MOST];  // key that waits for its value, in each open map
     ScenePlace key_places[DEPTH_MOST];
@@ -30,9 +30,9 @@ static void builder_fail(Builder *builder, ScenePlace place, const char *what) {
 }
 
 static ScenePlace event_place(const Builder *builder, struct fy_event *event) {
-    ScenePlace place = {0, 0, builder->set};
+    ScenePlace place = builder->origin;
     const struct fy_mark *mark = fy_event_start_mark(event);
-    if (mark && !builder->set) {
+    if (mark && !place.set) {
         place.line = mark->line + 1;
         place.column = mark->column + 1;
         // libfyaml's mark of a quoted text lies behind the quote, that of an alias behind the star
@@ -153,13 +153,23 @@ static void builder_report(Builder *builder, struct fy_diag *diag) {
     struct fy_diag_error *found;
     bool any = false;
     while ((found = fy_diag_errors_iterate(diag, &iterator))) {
-        ScenePlace place = {found->line > 0 ? found->line : 0, found->column > 0 ? found->column : 1, builder->set};
+        ScenePlace place = builder->origin;
+        place.line = found->line > 0 ? found->line : 0;
+        place.column = found->column > 0 ? found->column : 1;
         message_add(builder->messages, builder->text, place, "not valid YAML: %s", found->msg ? found->msg : "?");
         any = true;
     }
     if (!any)
-        message_add(builder->messages, builder->text, (ScenePlace){0, 0, builder->set}, "not valid YAML");
+        message_add(builder->messages, builder->text, builder->origin, "not valid YAML");
     builder->bad = true;
+}
+
+// A line and column of a file; a --set has neither.
+static ScenePlace place_at(const Builder *builder, int line, int column) {
+    ScenePlace place = builder->origin;
+    if (!place.set)
+        place.line = line, place.column = column;
+    return place;
 }
 
 // libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
@@ -177,13 +187,11 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         for (int i = 1; good && i <= more; i++)
             good = (c[i] & 0xc0) == 0x80;
         if (!good) {
-            ScenePlace place = {builder->set ? 0 : line, builder->set ? 0 : column, builder->set};
-            builder_fail(builder, place, "this byte is not text; a scene is UTF-8 without control characters");
+            builder_fail(builder, place_at(builder, line, column), "this byte is not text; a scene is UTF-8 without control characters");
             return false;
         }
         if (begins && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
-            ScenePlace place = {builder->set ? 0 : line, builder->set ? 0 : column, builder->set};
-            builder_fail(builder, place, "a line must not begin with %; directives of YAML are not supported");
+            builder_fail(builder, place_at(builder, line, column), "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
         bool mark = c == (const unsigned char *)bytes && more == 2 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
@@ -216,9 +224,9 @@ static void builder_run(Builder *builder, struct fy_diag *diag) {
     fy_parser_destroy(parser);
 }
 
-Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, int set,
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, ScenePlace origin,
                 SceneMessages *messages) {
-    Builder builder = {.arena = arena, .text = text, .messages = messages, .set = set};
+    Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
     if (!bytes_are_text(&builder, bytes, size))
         return NULL;
     if (size == 0) { // libfyaml takes length 0 for "count yourself"
@@ -239,14 +247,15 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     fy_diag_destroy(diag);
     if (builder.bad)
         return NULL;
-    if (!builder.root && set) { // PATH= with nothing behind it
+    if (!builder.root && origin.set) { // PATH= with nothing behind it
         builder.root = arena_new(arena, 1, sizeof *builder.root);
         if (builder.root) {
             builder.root->text = arena_text(arena, "", 0);
-            builder.root->place.set = set;
+            builder.root->place = origin;
         }
     } else if (!builder.root && !arena_failed(arena)) {
-        message_add(messages, text, (ScenePlace){0}, "the scene is empty; at least 'sheets' is needed");
+        message_add(messages, text, origin,
+                    origin.file ? "the file is empty" : "the scene is empty; at least 'sheets' is needed");
     }
     return builder.root;
 }

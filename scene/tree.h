@@ -18,8 +18,9 @@ typedef struct Node {
     struct Node *first, *last, *next;
 } Node;
 
-/// Reads one YAML document. NULL after a mistake or when out of memory. `set` is the number for places.
-Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, int set,
+/// Reads one YAML document. NULL after a mistake or when out of memory. `origin` has the numbers of the --set or the
+/// file for places.
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, ScenePlace origin,
                 SceneMessages *messages);
 
 /// Lays --set texts over a tree; their values' places name them. Returns false when out of memory.

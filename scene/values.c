@@ -212,27 +212,32 @@ void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **f
         value_wrong(reader, node, row);
 }
 
+// A name behind a folder, unless it begins at the root. NULL when out of memory.
+static char *value_join(SceneArena *arena, const char *folder, const char *slash, char *name) {
+    size_t length = strlen(folder) + strlen(slash) + strlen(name) + 1;
+    if (name[0] == '/' || !(folder[0] || slash[0]))
+        return name;
+    char *joined = arena_new(arena, length, 1);
+    if (joined)
+        snprintf(joined, length, "%s%s%s", folder, slash, name);
+    return joined;
+}
+
 void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFile *field) {
     if (!value_is_text(node) || strlen(node->text) > 4000) {
         value_wrong(reader, node, row);
         return;
     }
-    field->name = field->path = node->text;
     field->place = node->place;
-    if (!reader->base_dir)
+    field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
+    if (!reader->base_dir || !field->name)
         return;
-    if (node->text[0] != '/' && reader->base_dir[0]) {
-        size_t folder = strlen(reader->base_dir), length = strlen(node->text);
-        char *path = arena_new(reader->arena, folder + length + 2, 1);
-        if (!path)
-            return;
-        memcpy(path, reader->base_dir, folder);
-        path[folder] = '/';
-        memcpy(path + folder + 1, node->text, length);
-        field->path = path;
-    }
+    if (reader->base_dir[0])
+        field->path = value_join(reader->arena, reader->base_dir, "/", field->name);
     struct stat status;
     const char *fault = NULL;
+    if (!field->path)
+        return;
     if (stat(field->path, &status))
         fault = "there is no such file";
     else if (S_ISDIR(status.st_mode))

@@ -2,70 +2,26 @@
 #include "heat/rig.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "burn/burn.h"
+#include "bench/strip.h"
 
-typedef struct Front {
-    float thickening;
-    double speed;   ///< m/s
-    double hottest; ///< K
-} Front;
-
-/// Burns a strip of 3 cells' width from one end in steps of h; particles burnt to m_loss fall away.
-static Front burn_strip(float size, float h, const SingeMaterialDef *material) {
-    const double length = 0.12, first = 0.4 * length, last = 0.9 * length;
-    int n = (int)lround(length / (double)size);
-    RigDef def = rig_default(n, 3, size, size);
-    def.material = *material;
-    def.settings.ambient_temperature = 293.15f;
-    def.settings.tolerance = 1e-5f;
-    Rig rig;
-    rig_open(&rig, &def);
-    rig.h = h;
-    const Shell *shell = &rig.shell;
-    State *state = &rig.state;
-    double *partial = calloc((size_t)pool_blocks((int)shell->particle_count), sizeof *partial);
-    EventList events = {0};
-    Front front = {.thickening = heat_thickening(rig.plan, 0)};
-    for (uint32_t i = 0; i < shell->particle_count; i++)
-        if (rig_place(&rig, i)[0] < 0.02f) state->heat.temperature[i] = 1100;
-    double passed[2] = {0, 0}, before = 0, place = 0;
-    while (passed[1] == 0 && state->time < 60) {
-        rig_step(&rig);
-        assert_int_equal(burn_step(shell, state, NULL, rig.h, 1, &front.thickening, partial, &state->burn, &events,
-                                   &rig.error), SINGE_OK);
-        for (uint32_t i = 0; i < shell->particle_count; i++) {
-            if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
-            if (state->burn.mass[i] < field_at(shell->matter.mass_loss, i)) rig_remove(&rig, i);
-            else if (place > first) front.hottest = fmax(front.hottest, (double)state->heat.temperature[i]);
-        }
-        before = place;
-        for (int i = 0; i < n; i++) { // where the mass is 0.6
-            double a = (double)state->burn.mass[rig_vertex(&rig, i, 1)],
-                b = (double)state->burn.mass[rig_vertex(&rig, i + 1, 1)];
-            if (a < 0.6 && b >= 0.6) place = (double)size * (i + (0.6 - a) / (b - a));
-        }
-        for (int k = 0; k < 2; k++) {
-            double gate = k ? last : first;
-            if (before < gate && place >= gate)
-                passed[k] = state->time - (double)rig.h * (place - gate) / (place - before);
-        }
-    }
-    if (passed[1] > 0) front.speed = (last - first) / (passed[1] - passed[0]);
-    free(partial);
-    rig_close(&rig);
-    return front;
+/// Burns a strip of cells of `size` in steps of h.
+static StripResult burn_strip(float size, float h, const SingeMaterialDef *material) {
+    StripSetup setup = strip_setup(material);
+    StripResult result = {0};
+    SingeError error = {0};
+    setup.cell = size, setup.time_step = h;
+    if (strip_burn(&setup, &result, &error)) fail_msg("%s", error.message);
+    return result;
 }
 
 static void compare(const SingeMaterialDef *material, double slowest, double fastest) {
     const float sizes[] = {0.0005f, 0.001f, 0.002f, 0.004f};
     double reference = 0;
     for (int k = 0; k < 4; k++) {
-        Front front = burn_strip(sizes[k], 0.002f, material);
+        StripResult front = burn_strip(sizes[k], 0.002f, material);
         print_message("cells %.1f mm: F %.2f, front %.3f mm/s, hottest %.0f C\n", (double)sizes[k] * 1e3,
-                      (double)front.thickening,
-                      front.speed * 1e3, front.hottest - 273.15);
+                      front.thickening, front.speed * 1e3, front.hottest - 273.15);
         if (k == 0) reference = front.speed;
         CHECK_NEAR(front.speed / reference, 1, 0.05);
         if (front.speed < slowest || front.speed > fastest) fail_msg("%.2f mm/s", front.speed * 1e3);
@@ -97,14 +53,14 @@ static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
     (void)unused;
     static const struct { float grammage; double slowest, fastest; } sheets[] = {
         {0.080f, 4.4e-3, 7.0e-3}, {0.045f, 7.8e-3, 12.4e-3}, {0.020f, 17.5e-3, 28e-3}};
-    Front office = {0};
+    StripResult office = {0};
     for (int k = 0; k < 3; k++) {
         float grammage = sheets[k].grammage, ratio = grammage / 0.080f;
         SingeMaterialDef material = singe_default_material();
         material.grammage = singe_param(grammage);
-        Front same = burn_strip(0.001f, 0.002f, &material), shorter = burn_strip(0.001f, 0.002f * ratio, &material);
+        StripResult same = burn_strip(0.001f, 0.002f, &material), shorter = burn_strip(0.001f, 0.002f * ratio, &material);
         print_message("%.0f g/m2: F %.2f, front %.3f mm/s, hottest %.0f C; steps of %.1f ms: %.3f mm/s, %.0f C\n",
-                      (double)grammage * 1e3, (double)same.thickening, same.speed * 1e3, same.hottest - 273.15,
+                      (double)grammage * 1e3, same.thickening, same.speed * 1e3, same.hottest - 273.15,
                       2 * (double)ratio, shorter.speed * 1e3, shorter.hottest - 273.15);
         if (k == 0) office = same;
         CHECK_NEAR(same.speed * (double)ratio / office.speed, 1, 0.05);

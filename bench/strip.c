@@ -1,0 +1,144 @@
+#include "bench/strip.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double strip_length = 0.12, strip_lit = 0.02; // m
+static const double gate_first = 0.048, gate_last = 0.108;  // m, between which the front is looked at
+static const double patience = 40;                          // s without a new place reached at 80 g/m2: it is out
+enum { STRIP_ACROSS = 3 };                                  // cells
+
+typedef struct Strip {
+    SingeSim *sim;
+    uint32_t along; ///< cells
+    float *positions;
+    uint32_t *cells;
+    float *lit; ///< 1 where it is hot at the start
+} Strip;
+
+StripSetup strip_setup(const SingeMaterialDef *material) {
+    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step, .threads = 1};
+}
+
+static bool strip_mesh(Strip *strip, float cell) {
+    strip->along = (uint32_t)lround(strip_length / (double)cell);
+    uint32_t n = strip->along, row = n + 1, vertices = row * (STRIP_ACROSS + 1), count = n * STRIP_ACROSS;
+    strip->positions = malloc((size_t)3 * vertices * sizeof *strip->positions);
+    strip->lit = malloc(vertices * sizeof *strip->lit);
+    strip->cells = malloc((size_t)4 * count * sizeof *strip->cells);
+    if (!strip->positions || !strip->lit || !strip->cells) return false;
+    for (uint32_t v = 0; v < vertices; v++) {
+        float *x = strip->positions + (size_t)3 * v;
+        x[0] = (float)(v % row) * cell, x[1] = (float)(v / row) * cell, x[2] = 0;
+        strip->lit[v] = (double)x[0] < strip_lit;
+    }
+    for (uint32_t c = 0; c < count; c++) {
+        uint32_t v = c / n * row + c % n, *corner = strip->cells + (size_t)4 * c;
+        corner[0] = v, corner[1] = v + 1, corner[2] = v + row + 1, corner[3] = v + row;
+    }
+    return true;
+}
+
+/// A strip has neither uv nor the mesh's attributes, and one speed: the middle of what varies.
+static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
+    SingeMaterialDef material = *from;
+    SingeParam *params[] = {
+        &material.grammage, &material.specific_heat, &material.thickness, &material.diffusivity,
+        &material.layer_exchange, &material.convection, &material.emissivity, &material.loss_mass_floor,
+        &material.ignition_temperature, &material.heat_of_combustion, &material.heat_share, &material.mass_rate,
+        &material.rate_ceiling, &material.ash_exponent, &material.mass_min, &material.mass_loss, &material.ash_density,
+        &material.shrink_front, &material.shrink_back, &material.char_weight, &material.drag, &material.damping};
+    for (size_t i = 0; i < sizeof params / sizeof *params; i++)
+        if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
+    const SingeParam cold = material.temperature;
+    material.temperature = (SingeParam){.value = cold.field ? 0.5f * (cold.value + cold.to) : cold.value, .to = 1100,
+                                        .field = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
+    return material;
+}
+
+static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeAttribute lit = {"lit", strip->lit};
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    const float middle[3] = {(float)strip_length / 2, 0, 0};
+    sheet.vertex_count = (strip->along + 1) * (STRIP_ACROSS + 1), sheet.positions = strip->positions;
+    sheet.cell_count = strip->along * STRIP_ACROSS, sheet.cells = strip->cells;
+    sheet.attribute_count = 1, sheet.attributes = &lit;
+    sheet.material = strip_material(&setup->material);
+    SingeResult result = singe_sim_add_sheet(strip->sim, &sheet, &pin.sheet);
+    if (!result) result = singe_sim_commit(strip->sim);
+    pin.point_count = 1, pin.points = middle, pin.radius = 1; // all of it
+    return result ? result : singe_sim_add_pin(strip->sim, &pin, &pin_id);
+}
+
+/// How far along the middle the fire has come.
+static double strip_front(const Strip *strip, const SingeView *view) {
+    const float *ignited = view->time_ignited + (STRIP_ACROSS / 2) * (strip->along + 1);
+    uint32_t i = strip->along;
+    while (i > 0 && ignited[i] < 0) i--;
+    return (double)view->rest_position[i][0];
+}
+
+/// The line through places and times of ignition between the gates, by least squares.
+static double strip_speed(const Strip *strip, const SingeView *view) {
+    double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        double x = (double)view->rest_position[v][0], t = (double)view->time_ignited[v];
+        if (x < gate_first || x > gate_last || t < 0) continue;
+        n++, x1 += x, t1 += t, xt += x * t, tt += t * t;
+    }
+    (void)strip;
+    return (n * xt - x1 * t1) / (n * tt - t1 * t1);
+}
+
+static void strip_read(const Strip *strip, StripResult *result) {
+    SingeView view = singe_sim_view(strip->sim);
+    double area = 0, mass = 0;
+    result->thickening = (double)singe_sim_stats(strip->sim).thickening;
+    result->speed = strip_front(strip, &view) > gate_last ? strip_speed(strip, &view) : 0;
+    result->hottest = 0;
+    for (uint32_t i = 0; i < view.particle_count; i++) {
+        double x = (double)view.rest_position[i][0];
+        if (x < gate_first || x > gate_last) continue;
+        result->hottest = fmax(result->hottest, (double)view.temperature_peak[i]);
+        if (x > gate_first + (gate_last - gate_first) / 2) continue; // long burnt
+        area += (double)view.area[i], mass += (double)view.area[i] * (double)view.mass[i];
+    }
+    result->residue = mass / area;
+}
+
+static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult *result) {
+    double reached = 0, since = 0, wait = patience * fmax(1e-3, (double)setup->material.grammage.value / 0.080);
+    for (double time = 0; reached <= gate_last && time - since < wait; time += (double)setup->time_step) {
+        SingeResult failed = singe_sim_step(strip->sim);
+        if (failed) return failed;
+        SingeView view = singe_sim_view(strip->sim);
+        double front = strip_front(strip, &view);
+        if (front > reached) reached = front, since = time;
+    }
+    strip_read(strip, result);
+    return SINGE_OK;
+}
+
+SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError *error) {
+    Strip strip = {0};
+    SingeSimDef def = singe_default_sim();
+    def.time_step = setup->time_step;
+    def.thread_count = setup->threads;
+    def.solver.substeps = 1; // nothing moves
+    SingeResult code = strip_mesh(&strip, setup->cell) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    if (!code) code = singe_sim_create(&def, &strip.sim, error);
+    else *error = (SingeError){.code = code, .element = -1};
+    if (strip.sim) {
+        code = strip_fill(&strip, setup);
+        if (!code) code = strip_run(&strip, setup, result);
+        if (code) *error = *singe_sim_error(strip.sim);
+    }
+    singe_sim_destroy(strip.sim);
+    free(strip.positions);
+    free(strip.lit);
+    free(strip.cells);
+    return code;
+}
