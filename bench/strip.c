@@ -5,8 +5,8 @@
 
 static const double strip_length = 0.12, strip_lit = 0.02; // m
 static const double gate_first = 0.048, gate_last = 0.108;  // m, between which the front is looked at
-static const double patience = 40;                          // s without a new place reached at 80 g/m2: it is out
-enum { STRIP_ACROSS = 3 };                                  // cells
+enum { STRIP_ACROSS = 3 }; // cells
+enum { STRIP_PATIENCE = 20000 }; // steps without a new place reached: the fire is out
 
 typedef struct Strip {
     SingeSim *sim;
@@ -17,7 +17,8 @@ typedef struct Strip {
 } Strip;
 
 StripSetup strip_setup(const SingeMaterialDef *material) {
-    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step, .threads = 1};
+    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step, .threads = 1,
+                        .steps_most = 200000};
 }
 
 static bool strip_mesh(Strip *strip, float cell) {
@@ -82,14 +83,13 @@ static double strip_front(const Strip *strip, const SingeView *view) {
 }
 
 /// The line through places and times of ignition between the gates, by least squares.
-static double strip_speed(const Strip *strip, const SingeView *view) {
+static double strip_speed(const SingeView *view) {
     double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {
         double x = (double)view->rest_position[v][0], t = (double)view->time_ignited[v];
         if (x < gate_first || x > gate_last || t < 0) continue;
         n++, x1 += x, t1 += t, xt += x * t, tt += t * t;
     }
-    (void)strip;
     return (n * xt - x1 * t1) / (n * tt - t1 * t1);
 }
 
@@ -97,7 +97,7 @@ static void strip_read(const Strip *strip, StripResult *result) {
     SingeView view = singe_sim_view(strip->sim);
     double area = 0, mass = 0;
     result->thickening = (double)singe_sim_stats(strip->sim).thickening;
-    result->speed = strip_front(strip, &view) > gate_last ? strip_speed(strip, &view) : 0;
+    result->speed = strip_front(strip, &view) > gate_last ? strip_speed(&view) : 0;
     result->hottest = 0;
     for (uint32_t i = 0; i < view.particle_count; i++) {
         double x = (double)view.rest_position[i][0];
@@ -110,13 +110,14 @@ static void strip_read(const Strip *strip, StripResult *result) {
 }
 
 static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult *result) {
-    double reached = 0, since = 0, wait = patience * fmax(1e-3, (double)setup->material.grammage.value / 0.080);
-    for (double time = 0; reached <= gate_last && time - since < wait; time += (double)setup->time_step) {
+    double reached = 0;
+    for (int step = 0, since = 0; reached <= gate_last && step - since < STRIP_PATIENCE && step < setup->steps_most;
+         step++) {
         SingeResult failed = singe_sim_step(strip->sim);
         if (failed) return failed;
         SingeView view = singe_sim_view(strip->sim);
         double front = strip_front(strip, &view);
-        if (front > reached) reached = front, since = time;
+        if (front > reached) reached = front, since = step;
     }
     strip_read(strip, result);
     return SINGE_OK;

@@ -9,6 +9,7 @@ typedef struct StripSetup {
     float cell;                ///< m
     float time_step;           ///< s
     int threads;
+    int steps_most;            ///< when they are over the fire has gone out
 } StripSetup;
 
 typedef struct StripResult {
@@ -18,6 +19,7 @@ typedef struct StripResult {
     double thickening; ///< F
 } StripResult;
 
+/// A strip of cells of a millimetre, in default steps.
 StripSetup strip_setup(const SingeMaterialDef *material);
 SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError *error);
 

@@ -1,8 +1,12 @@
 // singe check: everything that run would trip over, and what the scene amounts to. Writes no files.
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "bench/strip.h"
 #include "cli/args.h"
+#include "cli/bench_materials.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
 
@@ -74,6 +78,48 @@ static void report_shell(const SingeCensus *c) {
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
 }
 
+enum { CHECK_MATERIALS = 4, CHECK_STRIP_STEPS = 40000 };
+
+/// What a strip of the material does in steps of that length, a second's work at most. False where it does not burn.
+static bool front_of(const BenchMaterial *material, float step, StripResult *result) {
+    StripSetup setup = strip_setup(&material->def);
+    SingeError error;
+    setup.time_step = step, setup.steps_most = CHECK_STRIP_STEPS;
+    return step < 10 && strip_burn(&setup, result, &error) == SINGE_OK && result->speed > 0;
+}
+
+/// Says how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster, and
+/// a front that is thickened by F burns as it would in steps 1/F as long.
+static void report_front(const Scene *scene, const BenchMaterial *material, float thickening) {
+    StripResult front, rough;
+    const float pace = scene->sim.pace, weight = material->def.grammage.value / 0.080f;
+    const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
+    if (!front_of(material, fine, &front)) return;
+    printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
+    if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
+    float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
+    if (step <= fine) return;
+    if (!front_of(material, step, &rough)) rough.speed = 0;
+    if (rough.speed < 0.9 * front.speed)
+        printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * (1 - rough.speed / front.speed));
+}
+
+/// The sheets' materials, those of a name and weight once, and how fast their fire is going to be.
+static void report_materials(const Scene *scene, float thickening) {
+    for (uint32_t i = 0, told = 0; i < scene->sheet_count && told < CHECK_MATERIALS; i++) {
+        const SceneMaterial *material = &scene->sheets[i].material;
+        const float grammage = material->def.grammage.value;
+        uint32_t j = 0;
+        while (memcmp(&scene->sheets[j].material, material, sizeof *material) != 0) j++;
+        if (j < i) continue;
+        BenchMaterial bench = bench_material(material);
+        printf("material      %s, %.4g g/m2", material->name ? material->name : "its own", 1e3 * (double)grammage);
+        report_front(scene, &bench, thickening);
+        printf("\n");
+        told++;
+    }
+}
+
 static void report_times(const Job *job, const CheckTimes *times, float thickening) {
     const Scene *scene = job->scene;
     char text[32];
@@ -97,6 +143,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         CheckTimes times = {0};
         SingeError error = {0};
         report_shell(&census);
+        report_materials(job.scene, thickening);
         if (time_steps(&job, sim, &times, &error)) {
             fflush(stdout);
             console_result(console, &error);

@@ -42,4 +42,6 @@ if(SINGE_PROGRAM)
     set_target_properties(singe_program PROPERTIES INSTALL_RPATH "$ORIGIN/${singe_bin_to_lib}")
   endif()
   install(TARGETS singe_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # the program has these inside; here they are to be read and copied
+  install(DIRECTORY materials DESTINATION ${CMAKE_INSTALL_DATADIR}/singe FILES_MATCHING PATTERN "*.yaml")
 endif()

@@ -18,6 +18,7 @@ TINY = (
     ("step", ["--springs", "1000", "--steps", "3"], ["step_ms", "heat_ms", "contacts"]),
     ("heat", ["--springs", "1000", "--steps", "3"], ["stage_ms"]),
     ("ablate", ["--springs", "1000", "--steps", "3"], ["springs_gone"]),
+    ("front", ["--material", "tissue", "--quick"], ["speed_mm_s_is", "hottest_C_from", "finding"]),
     ("memory", ["--springs", "1000"], ["bytes_spring", "all_bytes_spring"]),
     ("compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio", "no_more_error"]),
     ("--compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio"]),

@@ -1,0 +1,87 @@
+"""Materials on the command line: check, runs that need no material file any more, bench front on one's own."""
+
+import json
+import os
+import unittest
+
+from support import Case
+
+MINE = """\
+base: newsprint
+grammage: 60 g/m2
+measured: {speed: [1 mm/s, 2 mm/s]}
+"""
+
+
+class Materials(Case):
+    def write_mine(self, text=MINE):
+        os.makedirs(self.path("materials"), exist_ok=True)
+        with open(self.path("materials", "mine.yaml"), "w") as file:
+            file.write(text)
+
+    def write_scene_of(self, material, name="tiny.yaml"):
+        path = self.write_scene(name)
+        with open(path) as file:
+            text = file.read()
+        with open(path, "w") as file:
+            file.write(text.replace("sources:", "    material: %s\nsources:" % material))
+        return path
+
+    def test_check_tells_the_front(self):
+        for material, line in (("newsprint", "newsprint, 45 g/m2: a level front of 9."),
+                               ("{grammage: 160 g/m2}", "its own, 160 g/m2: a level front of 2."),
+                               ("{base: tissue, name: kerchief}", "kerchief, 20 g/m2: a level front of 2"),
+                               ("{heat_share: 0}", "its own, 80 g/m2\n")):
+            with self.subTest(material):
+                out, _ = self.singe("check", self.write_scene_of(material))
+                self.assertIn("material      " + line, out)
+                self.assertEqual("at this pace" in out, "front" in line)
+
+    def test_check_tells_of_long_steps(self):
+        scene = self.write_scene_of("{base: tissue, thickening: 1}")
+        out, _ = self.singe("check", scene, "--set", "pace=16")
+        self.assertIn("slower: raise `steps`", out)
+        self.assertNotIn("slower", self.singe("check", scene, "--set", "pace=1", "--set", "steps=20")[0])
+
+    def test_set_material(self):
+        out, _ = self.singe("check", self.write_scene_of("office-paper"), "--set", "sheets.0.material.base=tissue")
+        self.assertIn("tissue, 20 g/m2", out)
+        _, err = self.singe("check", self.scene, "--set", "sheets.0.material=tisue", expect=2)
+        self.assertIn("did you mean 'tissue'?", err)
+
+    def test_a_run_keeps_its_material(self):
+        """Pictures can be drawn again and runs go on without the material's file; one that has changed is another scene."""
+        self.write_mine()
+        self.write_scene_of("materials/mine.yaml")
+        self.run_scene("o", "--quiet", "--frames", "3")
+        self.run_scene("whole", "--quiet")
+        material = self.record("o")["scene"]["sheets"][0]["material"]
+        self.assertEqual((material["name"], material["grammage"]), ("mine", 0.06))
+        self.assertNotIn("base", material)
+        self.run_scene("o", "--resume", "--quiet")
+        self.assertEqual(self.plys("o"), self.plys("whole"))
+        self.write_mine(MINE.replace("60", "61"))
+        _, err = self.run_scene("o", "--resume", "--quiet", expect=2)
+        self.assertIn("scene", err)
+        resolved = self.path("resolved.json")
+        with open(resolved, "w") as file:
+            json.dump(self.record("whole")["scene"], file)
+        os.remove(self.path("materials", "mine.yaml"))
+        self.singe("run", resolved, "-o", self.path("again"), "--no-preview", "--quiet")
+        self.assertEqual(self.plys("again"), self.plys("whole"))
+
+    def test_bench_front_on_ones_own(self):
+        self.write_mine()
+        out, _ = self.singe("bench", "front", "--quick", "--json", "--material", "materials/mine.yaml,tissue", cwd=self.dir)
+        mine, tissue = json.loads(out)["rows"]
+        self.assertEqual((mine["material"], mine["g_m2"], mine["finding"]), ("mine", 60, "faster"))
+        self.assertEqual((tissue["material"], tissue["finding"]), ("tissue", "as sources say"))
+        self.write_mine("base: newsprint\nthikness: 1\n")
+        _, err = self.singe("bench", "front", "--material", "materials/mine.yaml", cwd=self.dir, expect=2)
+        self.assertIn("mine.yaml:2:1: error: unknown key 'thikness' in a material; did you mean 'thickness'?", err)
+        _, err = self.singe("bench", "front", "--material", "newsprint," * 17, expect=2)
+        self.assertIn("at most 16 materials", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
