@@ -2,7 +2,11 @@
 //
 // Sequence: R2 (M. Roberts 2018), x_i = frac(a + i/g), y_i = frac(b + i/g^2) with g = 1.3247..., the root of
 // g^3 = g + 1; turned per pixel (Cranley & Patterson 1976) by interleaved gradient noise (Jimenez 2014), whose
-// neighbours differ, so that what is left of the noise is fine-grained.
+// neighbours differ, so that what is left of the noise is fine-grained. The lens takes its points from R3, the time
+// from R1, so that they are not tied to the light's.
+//
+// Thin lens of radius R, sharp at distance f: rays from its points c meet at f. A point at depth z is spread over
+// R |1/f - 1/z| at distance 1.
 
 #include "preview/internal.h"
 
@@ -20,13 +24,28 @@ Camera camera_make(const PreviewDef *def) {
     camera.up = v3_scale(v3_cross(right, camera.forward), half);
     camera.right = v3_scale(right, half * aspect);
     camera.pixel = 2 * half / (float)def->height;
+    camera.lens = 0.5f * def->camera.aperture;
+    camera.focus = def->camera.focus > 0 ? def->camera.focus : camera.reach;
+    camera.lens_right = v3_scale(right, camera.lens);
+    camera.lens_up = v3_scale(v3_cross(right, camera.forward), camera.lens);
     return camera;
 }
 
 /// x and y run from -1 to 1, left to right and bottom to top.
-V3 camera_ray(const Camera *camera, float x, float y) {
+void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 *origin, V3 *direction) {
     V3 d = v3_mad(v3_mad(camera->forward, camera->right, x), camera->up, y);
-    return v3_scale(d, 1 / v3_length(d));
+    *origin = camera->eye;
+    if (camera->lens > 0) {
+        V3 aside = v3_mad(v3_scale(camera->lens_right, disc[0]), camera->lens_up, disc[1]);
+        *origin = v3_add(camera->eye, aside);
+        d = v3_mad(d, aside, -1 / camera->focus);
+    }
+    *direction = v3_scale(d, 1 / v3_length(d));
+}
+
+float camera_blur(const Camera *camera, float depth) {
+    if (!(camera->lens > 0)) return 0;
+    return camera->lens * fabsf(1 / camera->focus - 1 / depth) / camera->pixel;
 }
 
 static float fraction(float x) { return x - (float)(int)x; }
@@ -35,6 +54,13 @@ void sample_square(uint32_t index, float a, float b, float out[2]) {
     out[0] = fraction(a + 0.75487767f * (float)index);
     out[1] = fraction(b + 0.56984029f * (float)index);
 }
+
+void sample_lens(uint32_t index, float a, float b, float out[2]) {
+    out[0] = fraction(a + 0.35f + 0.81917251f * (float)index);
+    out[1] = fraction(b + 0.70f + 0.67104360f * (float)index);
+}
+
+float sample_time(uint32_t index, float a) { return fraction(7 * a + 0.61803399f * (float)index); }
 
 void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
     float px = (float)(x + (int)(seed & 63)), py = (float)(y + (int)(seed >> 6 & 63));

@@ -26,39 +26,53 @@ static void place_sample(int sample, float at[2]) {
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
 
-static void aim_block(const Preview *preview, Block *block, const float at[2]) {
+/// Rays of a sample through the pixels, each with its place on the lens and its time; SAMPLE_MIDDLE: of both the middle.
+static void aim_block(const Preview *preview, Block *block, int sample, const float at[2]) {
+    bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
     for (int i = 0; i < LANES; i++) {
         float x = 2 * ((float)block->x[i] + 0.5f + at[0]) / (float)preview->def.width - 1;
         float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
-        block->direction[i] = camera_ray(&preview->camera, x, y);
+        float square[2], disc[2] = {0, 0};
+        if (lens) {
+            sample_lens((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
+            sample_disc(square, disc);
+        }
+        camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
+        block->time[i] = shutter ? sample_time((uint32_t)sample, block->turn[i][0]) : 0.5f;
     }
 }
 
-static void start_point(Point *point, const Preview *preview, V3 direction, float distance) {
-    *point = (Point){.lit = true, .view = v3_scale(direction, -1)};
-    point->position = v3_mad(preview->camera.eye, direction, distance);
+static void start_point(Point *point, const Preview *preview, V3 origin, V3 direction, float distance) {
+    *point = (Point){.lit = true, .view = v3_scale(direction, -1), .distance = distance, .sheet = -1, .piece = -1};
+    point->position = v3_mad(origin, direction, distance);
     point->footprint = preview->camera.pixel * distance;
 }
 
+static void miss_point(Point *point, const Preview *preview, V3 direction) {
+    *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
+}
+
 /// The look of the sheet at a hit; false at a hole.
-static bool hit_paper(const Preview *preview, const struct RTCHit16 *hit, int lane, float distance, V3 direction,
-                      Point *point) {
+static bool hit_paper(const Preview *preview, const Block *block, int lane, float distance, Point *point) {
+    const struct RTCHit16 *hit = &block->rays.hit;
     const uint32_t *t = preview->scene.triangles[hit->primID[lane]];
     const PaperVertex *vertices = preview->scene.vertices;
     const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
     float u = hit->u[lane], v = hit->v[lane];
-    start_point(point, preview, direction, distance);
+    start_point(point, preview, block->origin[lane], block->direction[lane], distance);
     V3 geometric = v3_unit(v3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
     V3 normal = v3_unit(v3_blend(a->normal, b->normal, c->normal, u, v), geometric);
     point->geometric = v3_dot(geometric, point->view) >= 0 ? geometric : v3_scale(geometric, -1);
     point->normal = v3_dot(normal, point->geometric) >= 0 ? normal : v3_scale(normal, -1);
     PaperState state;
     paper_state(&preview->scene, hit->primID[lane], u, v, &state);
+    point->hit = true, point->sheet = state.sheet, point->piece = state.piece;
+    point->temperature = state.temperature, point->burn = state.burn;
     return paper_shade(preview, &state, point);
 }
 
-static float hit_ground(const Preview *preview, V3 direction) {
-    float height = preview->camera.eye.z - preview->def.ground_height;
+static float hit_ground(const Preview *preview, V3 origin, V3 direction) {
+    float height = origin.z - preview->def.ground_height;
     if (!isfinite(preview->def.ground_height) || height <= 0 || direction.z >= -1e-5f) return INFINITY;
     float t = -height / direction.z;
     return t < 1e4f ? t : INFINITY;
@@ -72,36 +86,38 @@ static size_t pixel_index(const Preview *preview, const Block *block, int lane) 
 static void see_ground(const Preview *preview, Block *block, int lane) {
     V3 d = block->direction[lane];
     Point *point = &block->point[lane];
-    float distance = hit_ground(preview, d);
+    float distance = hit_ground(preview, block->origin[lane], d);
     if (!isfinite(distance)) {
-        *point = (Point){.emission = background_colour(preview, d)};
+        miss_point(point, preview, d);
         return;
     }
-    start_point(point, preview, d, distance);
-    ground_shade(preview, distance, preview->table[pixel_index(preview, block, lane)], point);
+    start_point(point, preview, block->origin[lane], d, distance);
+    ground_shade(preview, distance, &preview->table[pixel_index(preview, block, lane)], point);
 }
 
 /// What the ray of a lane sees; false when it passes through a hole and must go on.
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
-    V3 d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
+    V3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
     Point *point = &block->point[lane];
     bool paper = block->rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
     float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
     const PreviewShape *shape = NULL;
+    float moment = shutter_moment(preview, block->time[lane]);
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        float t = shape_intersect(&preview->shapes[k], preview->camera.eye, d, 0, distance, &normal);
+        float t = shape_intersect(&preview->shapes[k], moment, o, d, 0, distance, &normal);
         if (t > 0) distance = t, shape = &preview->shapes[k], found = normal;
     }
-    if (hit_ground(preview, d) < distance) {
+    if (hit_ground(preview, o, d) < distance) {
         see_ground(preview, block, lane);
     } else if (shape) {
-        start_point(point, preview, d, distance);
+        start_point(point, preview, o, d, distance);
+        point->hit = true, point->temperature = shape->temperature;
         point->normal = point->geometric = v3_dot(found, point->view) >= 0 ? found : v3_scale(found, -1);
-        shape_shade(preview, shape, point);
+        shape_shade(preview, shape, moment, point);
     } else if (paper) {
-        return hit_paper(preview, &block->rays.hit, lane, distance, d, point) || last;
+        return hit_paper(preview, block, lane, distance, point) || last;
     } else {
-        *point = (Point){.emission = background_colour(preview, d)};
+        miss_point(point, preview, d);
     }
     return true;
 }
@@ -109,7 +125,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
 static void find_points(const Preview *preview, Block *block, const int *active) {
     int left = 0;
     for (int i = 0; i < LANES; i++) {
-        aim_ray(&block->rays.ray, i, preview->camera.eye, block->direction[i], 0, INFINITY);
+        aim_ray(&block->rays.ray, i, block->origin[i], block->direction[i], 0, INFINITY, block->time[i]);
         block->valid[i] = active[i], left += active[i] != 0;
     }
     for (int pass = 0; pass < HOLE_LIMIT && left; pass++) {
@@ -137,7 +153,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         const Point *point = &block->point[i];
-        V3 colour = v3_add(block->light[i], point->emission);
+        V3 colour = v3_add(block->light[i], point->glow);
         float l = v3_luminance(colour), shown = l / (1 + l);
         block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
         if (point->lit && preview->scene.light_count)
@@ -145,15 +161,19 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = v3_add(block->sum[i], colour);
+        layers_add(preview, point, block->direction[i], &block->layer[i]);
     }
 }
 
+/// Of a bare block the rays stay the same, unless the lens spreads them.
 static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int stride) {
-    if (!bare) {
+    if (!bare || preview->camera.lens > 0) {
         float at[2];
         place_sample(sample, at);
-        aim_block(preview, block, at);
-        find_points(preview, block, active);
+        aim_block(preview, block, sample, at);
+        if (!bare) find_points(preview, block, active);
+        for (int i = 0; bare && i < LANES; i++)
+            if (active[i]) see_ground(preview, block, i);
     }
     add_light(preview, block, active, sample, stride);
 }
@@ -176,14 +196,19 @@ static void start_block(const Preview *preview, Block *block, int *active) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->sum[i] = v3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
+        block->time[i] = 0.5f;
+        layers_begin(&block->layer[i]);
     }
 }
 
 /// The picture gets the mean of what was summed.
 static void write_block(Preview *preview, const Block *block, const int *active, const int *taken) {
-    for (int i = 0; i < LANES; i++)
-        if (active[i])
-            preview->picture[pixel_index(preview, block, i)] = v3_scale(block->sum[i], 1 / (float)taken[i]);
+    for (int i = 0; i < LANES; i++) {
+        if (!active[i]) continue;
+        size_t pixel = pixel_index(preview, block, i);
+        preview->picture[pixel] = v3_scale(block->sum[i], 1 / (float)taken[i]);
+        layers_write(preview, pixel, preview->picture[pixel], &block->layer[i]);
+    }
 }
 
 /// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it.
@@ -201,7 +226,7 @@ static void draw_block(Preview *preview, Block *block) {
     start_block(preview, block, active);
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
-        aim_block(preview, block, (const float[2]){0, 0});
+        aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
         for (int i = 0; i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
@@ -216,23 +241,31 @@ static void draw_block(Preview *preview, Block *block) {
 
 /// The table's own colour in every pixel. The camera stands still, so it is found once.
 static void fill_table(Preview *preview, Block *block) {
-    enum { SAMPLES = 4 };
-    V3 sum[LANES] = {{0, 0, 0}};
-    int count[LANES] = {0};
-    for (int s = 0; s < SAMPLES; s++) {
+    Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
+    int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
+    for (int i = 0; i < LANES; i++) sample_pixel(block->x[i], block->y[i], preview->def.seed, block->turn[i]);
+    for (int s = 0; s < samples; s++) {
         float at[2];
         place_sample(s, at);
-        aim_block(preview, block, at);
+        aim_block(preview, block, s, at);
         for (int i = 0; i < LANES; i++) {
-            float distance = hit_ground(preview, block->direction[i]);
+            float distance = hit_ground(preview, block->origin[i], block->direction[i]);
             if (!isfinite(distance)) continue;
-            sum[i] = v3_add(sum[i], ground_albedo(preview, block->direction[i], distance));
+            Table look;
+            V3 place = v3_mad(block->origin[i], block->direction[i], distance);
+            ground_look(preview, place, block->direction[i].z, distance, &look);
+            sum[i].albedo = v3_add(sum[i].albedo, look.albedo), sum[i].polish += look.polish;
+            sum[i].tilt[0] += look.tilt[0], sum[i].tilt[1] += look.tilt[1];
             count[i]++;
         }
     }
-    for (int i = 0; i < LANES; i++)
-        if (block->x[i] < preview->def.width && block->y[i] < preview->def.height)
-            preview->table[pixel_index(preview, block, i)] = v3_scale(sum[i], 1 / maxf((float)count[i], 1));
+    for (int i = 0; i < LANES; i++) {
+        if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
+        float share = 1 / maxf((float)count[i], 1);
+        preview->table[pixel_index(preview, block, i)] =
+            (Table){.albedo = v3_scale(sum[i].albedo, share), .polish = share * sum[i].polish,
+                    .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
+    }
 }
 
 static void *draw_tiles(void *context) {
@@ -264,16 +297,24 @@ static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
 }
 
 SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb, SingeError *error) {
+    return preview_draw_layers(preview, surface, time, rgb, &(PreviewLayers){NULL}, error);
+}
+
+SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
+                                const PreviewLayers *layers, SingeError *error) {
     if (!isfinite(time)) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite");
+    preview->time = time;
     SingeResult result = tracer_load(preview, surface, error);
     if (result) return result;
-    preview->time = time;
+    preview->layers = *layers;
     light_gather(preview);
     mask_fill(preview);
     if (!preview->table_known) draw_all(preview, fill_table);
     preview->table_known = true;
     draw_all(preview, draw_block);
-    bloom_apply(preview);
-    tonemap_write(preview, rgb);
+    if (rgb) {
+        bloom_apply(preview);
+        tonemap_write(preview, rgb);
+    }
     return SINGE_OK;
 }

@@ -41,8 +41,12 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
     RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (built && geometry) {
         rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions, 0,
-                                   sizeof *scene->positions, scene->vertex_count);
+        bool moves = preview->def.shutter > 0;
+        rtcSetGeometryTimeStepCount(geometry, moves ? 2 : 1);
+        for (unsigned step = 0; step < (moves ? 2u : 1u); step++)
+            rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
+                                       moves ? scene->moved[step] : scene->positions, 0, sizeof *scene->positions,
+                                       scene->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
                                    sizeof *scene->triangles, scene->triangle_count);
         rtcSetGeometryUserData(geometry, preview);
@@ -101,10 +105,11 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
     rtcIntersect16(wanted, scene->embree, &context, rays);
 }
 
-static bool shape_blocks(const Preview *preview, V3 o, V3 d, float far) {
+static bool shape_blocks(const Preview *preview, float time, V3 o, V3 d, float far) {
     V3 normal;
+    float moment = shutter_moment(preview, time);
     for (uint32_t k = 0; k < preview->shape_count; k++)
-        if (shape_intersect(&preview->shapes[k], o, d, preview->scene.epsilon, far, &normal) > 0) return true;
+        if (shape_intersect(&preview->shapes[k], moment, o, d, preview->scene.epsilon, far, &normal) > 0) return true;
     return false;
 }
 
@@ -115,7 +120,7 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, bo
         blocked[i] = false;
         if (!valid[i]) continue;
         V3 o = v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
-        blocked[i] = shape_blocks(preview, o, d, ray->tfar[i]);
+        blocked[i] = shape_blocks(preview, ray->time[i], o, d, ray->tfar[i]);
         if (blocked[i] || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }

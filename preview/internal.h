@@ -20,6 +20,8 @@ enum {
 #define BLACKBODY_MIN 780.0f
 #define BLACKBODY_STEP 10.0f
 #define PI_F 3.14159265f
+/// Exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8.
+#define FILM_SPEED 0.45f
 
 /// What shading reads of a vertex.
 typedef struct PaperVertex {
@@ -34,6 +36,9 @@ typedef struct PaperVertex {
     int32_t sheet;       ///< -1: none
     float rim;           ///< 1 on the border of a piece, 0 inside
     float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
+    float spacing;       ///< m, size of the triangles about it at rest
+    float age;           ///< s since it caught fire, as a fire of real pace has it; 0: not yet
+    int32_t piece;
 } PaperVertex;
 
 /// A sheet's picture with its smaller copies. Level 0 is the caller's.
@@ -50,8 +55,25 @@ typedef struct EmberLights {
     V3 strength[LIGHT_LIMIT];    ///< radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
+/// The light of the sky and what the ground sends back of it, as seen from a place in the open.
+enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
+typedef struct Sky {
+    V3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
+    V3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as a dull surface mirrors it
+    V3 ambient[9];                     ///< spherical harmonics of what white paper sends back
+} Sky;
+
+/// The table at a pixel.
+typedef struct Table {
+    V3 albedo;
+    float tilt[2]; ///< slope of its surface along x and y
+    float polish;  ///< how much it mirrors
+} Table;
+
 typedef struct Camera {
     V3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
+    V3 lens_right, lens_up;     ///< the lens' radius
+    float lens, focus;          ///< m, its radius and the distance that is sharp
     float pixel;                ///< size of a pixel at distance 1
     float reach;                ///< m, eye to target
 } Camera;
@@ -59,9 +81,11 @@ typedef struct Camera {
 typedef struct Scene {
     RTCScene embree; ///< NULL when there is no triangle
     PaperVertex *vertices;
-    float (*positions)[4];
+    float (*positions)[4];    ///< in the middle of the exposure
+    float (*moved[2])[4];     ///< when it begins and ends; not used without a shutter
     uint32_t (*triangles)[3];
-    uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
+    uint32_t vertex_count, triangle_count;
+    uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
     V3 low, high;    ///< bounds of the drawn triangles
     float epsilon;   ///< m, distance by which secondary rays leave a surface
     EmberLights lights;
@@ -74,7 +98,8 @@ struct Preview {
     RTCDevice device;
     Camera camera;
     V3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
-    V3 sun_light, sky_light;   ///< what white paper sends back of them
+    V3 sun_light;              ///< what white paper sends back of it
+    Sky sky;
     float sun_spread;          ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
@@ -82,23 +107,29 @@ struct Preview {
     float linear[256];         ///< sRGB byte to linear
     V3 blackbody[BLACKBODY_COUNT];
     V3 *picture;               ///< [height * width] radiance
-    V3 *table;                 ///< [height * width] albedo of the table, once `table_known`
+    Table *table;              ///< [height * width], once `table_known`
     bool table_known;
     uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
     V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
     Scene scene;
+    PreviewLayers layers;      ///< being drawn
     double time;
 };
 
 /// A point to be lit. All normals face the viewer.
 typedef struct Point {
     V3 position, normal, geometric, view; ///< view: unit, towards the eye
-    V3 albedo, emission;
+    V3 albedo, glow;    ///< glow: what it gives off itself
     float transmission; ///< share of the light from behind that comes through
-    float gloss, shininess; ///< Blinn-Phong lobe
+    float gloss, shininess; ///< Blinn-Phong lobe of the sun
+    float mirror;       ///< share of the blurred sky that it mirrors
     float footprint;    ///< m, a pixel's size here
     float fade;         ///< 0 here to 1 lost in the background
-    bool lit;           ///< false: emission is all
+    bool lit;           ///< false: glow is all
+    float distance;     ///< m, from the lens; infinite: nothing there
+    float temperature, burn;
+    int32_t sheet, piece; ///< -1: none
+    bool hit;           ///< a sheet or a shape
 } Point;
 
 // preview.c
@@ -108,9 +139,15 @@ void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_si
 
 // camera.c
 Camera camera_make(const PreviewDef *def);
-V3 camera_ray(const Camera *camera, float x, float y);
+/// A ray through a point of the lens, `disc` within the unit circle.
+void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 *origin, V3 *direction);
+/// Radius, in pixels, over which a point at that depth is spread.
+float camera_blur(const Camera *camera, float depth);
 /// Point `index` of a low-discrepancy sequence in the square, turned by (a, b).
 void sample_square(uint32_t index, float a, float b, float out[2]);
+/// The same for the lens, and a number for the time, that have nothing to do with the others.
+void sample_lens(uint32_t index, float a, float b, float out[2]);
+float sample_time(uint32_t index, float a);
 /// Two numbers for a pixel that differ well from its neighbours'.
 void sample_pixel(int x, int y, uint32_t seed, float out[2]);
 V3 sample_cosine(V3 normal, const float square[2]);
@@ -136,12 +173,21 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
 /// blocked[i] tells of the lanes with valid = -1 whether anything, shapes included, is in the way. Changes `valid`.
 void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, bool blocked[LANES]);
 
-// shape.c
-/// Distance to the shape in (near, far), or -1; *normal points outward.
-float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float near, float far, V3 *normal);
+// environment.c
+void sky_fill(Preview *preview);
+/// What white paper with that normal sends back of all the light but the sun's.
+V3 sky_ambient(const Sky *sky, V3 normal);
+V3 sky_mirrored(const Sky *sky, V3 direction);
 
-/// Radius of a sphere about its position that holds the shape.
-float shape_extent(const PreviewShape *shape);
+// shape.c
+/// Seconds from the middle of the exposure, for a ray's time in [0, 1].
+static inline float shutter_moment(const Preview *preview, float time) { return (time - 0.5f) * preview->def.shutter; }
+/// Distance to the shape in (near, far), or -1; *normal points outward.
+float shape_intersect(const PreviewShape *shape, float moment, V3 origin, V3 direction, float near, float far,
+                      V3 *normal);
+
+/// Radius of a sphere about its position that holds the shape while the shutter is open.
+float shape_extent(const PreviewShape *shape, float shutter);
 
 // mask.c
 size_t mask_size(const Preview *preview);
@@ -160,8 +206,9 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
     V3 rest;
-    float uv[2], temperature, peak, burn, burn_rate, gradient, rim;
-    int32_t sheet;
+    float uv[2], temperature, peak, burn, burn_rate, gradient, rim, spacing;
+    float age; ///< s since it caught fire, as a fire of real pace has it; 0: not yet
+    int32_t sheet, piece;
 } PaperState;
 /// The sheet's fields at a place in a triangle.
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
@@ -170,20 +217,24 @@ bool paper_is_hole(const PaperState *state, float footprint);
 #define PAPER_WHOLE 0.35f
 /// False where there is a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
+
+// shade_ember.c
 /// Width of the glowing line, m, and the share of burn around which it lies.
-#define EMBER_WIDTH 0.00045f
+#define EMBER_WIDTH 0.00042f
 #define EMBER_BURN 0.74f
-#define EMBER_GAIN 3.0f
+#define EMBER_GAIN 3.4f
 /// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
 static inline float ember_temperature(float mean) { return mean + 110; }
 /// How readily a place glows, 0 to 1, by its rate of burning (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
+/// The air that reaches a place now, about 1: it comes and goes.
+float ember_air(const Preview *preview, V3 position);
 
 // shade_ground.c
-V3 ground_albedo(const Preview *preview, V3 direction, float distance);
-void ground_shade(const Preview *preview, float distance, V3 albedo, Point *point);
+void ground_look(const Preview *preview, V3 place, float cosine, float distance, Table *table);
+void ground_shade(const Preview *preview, float distance, const Table *table, Point *point);
 V3 background_colour(const Preview *preview, V3 direction);
-void shape_shade(const Preview *preview, const PreviewShape *shape, Point *point);
+void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point);
 
 // bloom.c, tonemap.c
 void bloom_apply(Preview *preview);

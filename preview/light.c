@@ -30,10 +30,11 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
     V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
     V3 radiance = v3_scale(glow, 0.4f * EMBER_GAIN * ember_activity(rate));
-    V3 strength = v3_scale(radiance, area * share / (2 * PI_F));
+    V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3);
+    V3 strength = v3_scale(radiance, ember_air(preview, place) * area * share / (2 * PI_F));
     float weight = v3_luminance(strength);
     if (!(weight > 0)) return;
-    V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3), size = v3_sub(scene->high, scene->low);
+    V3 size = v3_sub(scene->high, scene->low);
     int cell[3];
     float at[3] = {(place.x - scene->low.x) / maxf(size.x, 1e-6f), (place.y - scene->low.y) / maxf(size.y, 1e-6f),
                    (place.z - scene->low.z) / maxf(size.z, 1e-6f)};

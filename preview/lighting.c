@@ -1,9 +1,9 @@
 // The light at the points that a block of rays sees. Radiance of a diffuse surface of albedo a:
 //
-//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (sky (1 + n_z)/2 + bounce (1 - n_z)/2) A + embers ]
+//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + embers ] + m S(r) F A
 //
-// with V, A the visibilities and tau the paper's transmission; V by a ray to a random point of the sun's disc, A by
-// an ambient-occlusion ray.
+// with V, A the visibilities, tau the paper's transmission and E the light of all around (environment.c); V by a ray to
+// a random point of the sun's disc, A by an ambient-occlusion ray. What shines mirrors the blurred sky S along r.
 
 #include "preview/block.h"
 
@@ -47,7 +47,7 @@ void light_add_sun(const Preview *preview, Block *block, const int *active, int 
         reflected[i] = reflect(point, l);
         if (reflected[i].x + reflected[i].y + reflected[i].z < 1e-4f) continue;
         float side = v3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
-        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, side), l, 0, INFINITY);
+        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
         block->valid[i] = -1;
     }
     int asked[LANES];
@@ -70,7 +70,7 @@ static float sky_reach(const Scene *scene) { return 0.28f * v3_length(v3_sub(sce
 static bool sky_may_be_hidden(const Preview *preview, V3 p, float reach) {
     if (within(&preview->scene, p, reach)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        float near = shape_extent(&preview->shapes[k]) + reach;
+        float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
         V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
         if (v3_dot(to, to) < near * near) return true;
     }
@@ -85,7 +85,7 @@ static bool sun_may_be_hidden(const Preview *preview, V3 p, float margin) {
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
-        float along = v3_dot(to, sun), extent = shape_extent(&preview->shapes[k]);
+        float along = v3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         V3 aside = v3_mad(to, sun, -along);
         float near = extent + margin + spread * maxf(along + extent, 0);
         if (along > -extent - margin && v3_dot(aside, aside) < near * near) return true;
@@ -111,8 +111,14 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
            sun_may_be_hidden(preview, p, spread);
 }
 
+/// The sky in a dull gloss, more of it at grazing angles (Schlick 1994).
+static V3 mirror_sky(const Sky *sky, const Point *point) {
+    float cosine = maxf(v3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
+    V3 out = v3_mad(v3_scale(point->view, -1), point->normal, 2 * cosine);
+    return v3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.94f * rest2 * rest2 * rest));
+}
+
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample) {
-    const PreviewDef *def = &preview->def;
     float reach = sky_reach(&preview->scene);
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
@@ -124,21 +130,21 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
         V3 d = sample_cosine(point->normal, square);
         if (v3_dot(d, point->geometric) <= 0.01f) continue;
-        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, preview->scene.epsilon), d, 0, reach);
+        aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, preview->scene.epsilon), d, 0, reach,
+                block->time[i]);
         block->valid[i] = -1;
     }
     tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
-    bool table = isfinite(def->ground_height);
-    V3 sky = preview->sky_light, sun = v3_scale(preview->sun_light, maxf(preview->sun.z, 0));
-    V3 bounce = table ? v3_mul(v3_load(def->ground_colour), v3_mad(sky, sun, 0.8f)) : v3_scale(sky, 0.5f);
     for (int i = 0; i < LANES; i++) {
         if (!is_lit(block, active, i)) continue;
         const Point *point = &block->point[i];
-        float open = block->blocked[i] ? occluded_sky : 1;
-        V3 ambient = v3_mix(bounce, sky, 0.5f + 0.5f * point->normal.z);
+        V3 ambient = sky_ambient(&preview->sky, point->normal);
         // thin paper also passes some of what falls on its other side
-        ambient = v3_mad(ambient, v3_mix(sky, bounce, 0.5f + 0.5f * point->normal.z), point->transmission);
-        block->light[i] = v3_mad(block->light[i], v3_mul(point->albedo, ambient), open);
+        if (point->transmission > 0)
+            ambient = v3_mad(ambient, sky_ambient(&preview->sky, v3_scale(point->normal, -1)), point->transmission);
+        V3 light = v3_mul(point->albedo, ambient);
+        if (point->mirror > 0) light = v3_add(light, mirror_sky(&preview->sky, point));
+        block->light[i] = v3_mad(block->light[i], light, block->blocked[i] ? occluded_sky : 1);
     }
 }
 

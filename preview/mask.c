@@ -17,19 +17,21 @@ static int blocks_down(const Preview *preview) { return (preview->def.height + B
 
 size_t mask_size(const Preview *preview) { return (size_t)blocks_across(preview) * (size_t)blocks_down(preview); }
 
-/// Widens the rectangle, in pixels, to hold a point. Behind the camera or too near to it: everything.
+/// Widens the rectangle, in pixels, to hold a point as the lens spreads it. Behind the camera or too near to it: everything.
 static void include(const Preview *preview, V3 p, Rectangle *r) {
     const Camera *camera = &preview->camera;
     V3 d = v3_sub(p, camera->eye);
     float depth = v3_dot(d, camera->forward);
-    if (!(depth > 1e-3f * camera->reach)) {
+    if (!(depth > 1e-3f * camera->reach + camera->lens)) {
         *r = everywhere;
         return;
     }
     float x = v3_dot(d, camera->right) / (v3_dot(camera->right, camera->right) * depth);
     float y = v3_dot(d, camera->up) / (v3_dot(camera->up, camera->up) * depth);
     float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
-    for (int c = 0; c < 2; c++) r->low[c] = minf(r->low[c], at[c]), r->high[c] = maxf(r->high[c], at[c]);
+    float blur = camera_blur(camera, depth);
+    for (int c = 0; c < 2; c++)
+        r->low[c] = minf(r->low[c], at[c] - blur), r->high[c] = maxf(r->high[c], at[c] + blur);
 }
 
 static void mark(Preview *preview, const Rectangle *r) {
@@ -45,15 +47,21 @@ static void mark(Preview *preview, const Rectangle *r) {
 
 void mask_fill(Preview *preview) {
     const Scene *scene = &preview->scene;
+    bool moves = preview->def.shutter > 0;
     memset(preview->mask, 0, mask_size(preview));
     for (uint32_t t = 0; t < scene->triangle_count; t++) {
         Rectangle r = nowhere;
-        for (int k = 0; k < 3; k++) include(preview, v3_load(scene->positions[scene->triangles[t][k]]), &r);
+        for (int k = 0; k < 3; k++) {
+            uint32_t v = scene->triangles[t][k];
+            if (moves)
+                include(preview, v3_load(scene->moved[0][v]), &r), include(preview, v3_load(scene->moved[1][v]), &r);
+            else include(preview, v3_load(scene->positions[v]), &r);
+        }
         mark(preview, &r);
     }
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         V3 centre = v3_load(preview->shapes[k].position);
-        float extent = shape_extent(&preview->shapes[k]);
+        float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Rectangle r = nowhere;
         for (int corner = 0; corner < 8; corner++)
             include(preview,

@@ -34,7 +34,7 @@ PreviewDef preview_default(void) {
         .sun_direction = {-0.55f, 0.45f, 0.62f}, .sun_angle = 0.045f,
         .sun_colour = {2.2f, 2.05f, 1.85f}, .sky_colour = {0.4f, 0.45f, 0.53f},
         .ground_height = 0, .ground_colour = {0.235f, 0.145f, 0.085f}, .background = {0.16f, 0.15f, 0.145f},
-        .exposure = 1,
+        .exposure = 1, .pace = 1,
     };
 }
 
@@ -57,12 +57,16 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
     if (!(v3_dot(up, up) > 1e-12f)) return refuse(error, -1, "camera: up has no direction");
     if (!(camera->fov > 0.001f && camera->fov < 3.1f))
         return refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
+    if (!(camera->aperture >= 0 && camera->aperture <= 10))
+        return refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
+    if (!(camera->focus >= 0 && camera->focus <= 1e4f))
+        return refuse(error, -1, "camera: focus must lie between 0 and 10 km");
     return SINGE_OK;
 }
 
 static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeError *error) {
-    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->colour, 3, 0, 1e4f) &&
-                shape->temperature >= 0 && shape->temperature < 1e5f;
+    bool good = all_between(shape->position, 3, -1e4f, 1e4f) && all_between(shape->velocity, 3, -1e4f, 1e4f) &&
+                all_between(shape->colour, 3, 0, 1e4f) && shape->temperature >= 0 && shape->temperature < 1e5f;
     const float *q = shape->rotation;
     float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     switch (shape->kind) {
@@ -87,6 +91,11 @@ static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, Sing
     return SINGE_OK;
 }
 
+static bool image_is_good(const Image *image) {
+    return image->rgb && image->width >= 1 && image->height >= 1 && image->width <= SIZE_LIMIT &&
+           image->height <= SIZE_LIMIT;
+}
+
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     V3 sun = v3_load(def->sun_direction);
     if (!v3_finite(sun) || !(v3_dot(sun, sun) > 1e-20f) || !(v3_dot(sun, sun) < 1e20f))
@@ -97,15 +106,17 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
         !all_between(def->ground_colour, 3, 0, 1e4f) || !all_between(def->background, 3, 0, 1e4f))
         return refuse(error, -1, "colours must be finite and not negative");
     if (!(def->exposure > 0 && def->exposure < 1e4f)) return refuse(error, -1, "exposure must be above 0");
+    if (!(def->shutter >= 0 && def->shutter <= 1e4f)) return refuse(error, -1, "shutter must lie between 0 and 1e4 s");
+    if (!(def->pace > 0 && def->pace <= 1e9f)) return refuse(error, -1, "pace must be above 0");
+    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return refuse(error, -1, "ground is none of those there are");
+    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return refuse(error, -1, "sky is none of those there are");
+    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f) return refuse(error, -1, "sky_turn must be finite");
+    if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
+        return refuse(error, -1, "sky_picture is missing, empty or too large");
     float ground = def->ground_height;
     if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
         return refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
     return SINGE_OK;
-}
-
-static bool image_is_good(const Image *image) {
-    return image->rgb && image->width >= 1 && image->height >= 1 && image->width <= SIZE_LIMIT &&
-           image->height <= SIZE_LIMIT;
 }
 
 static SingeResult check_def(const PreviewDef *def, SingeError *error) {
@@ -136,7 +147,7 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
-    preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Table));
     preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
     for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
@@ -156,13 +167,11 @@ static void aim(Preview *preview) {
     preview->camera = camera_make(&preview->def);
     preview->sun = v3_unit(v3_load(preview->def.sun_direction), v3(0, 0, 1));
     v3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
-    // exposed for white paper: a sun of 2.2 and a sky of 0.4 bring it to about 0.8
-    const float speed = 0.45f;
-    preview->sun_light = v3_scale(v3_load(preview->def.sun_colour), speed);
-    preview->sky_light = v3_scale(v3_load(preview->def.sky_colour), speed);
+    preview->sun_light = v3_scale(v3_load(preview->def.sun_colour), FILM_SPEED);
     preview->sun_spread = tanf(preview->def.sun_angle);
     tonemap_fill_linear(preview->linear);
     blackbody_fill(preview->blackbody);
+    sky_fill(preview);
 }
 
 SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Preview **out, SingeError *error) {
@@ -207,7 +216,7 @@ void preview_destroy(Preview *preview) {
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
-    preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     preview_resize(&allocator, preview->mask, mask_size(preview), 0);
     for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);
     preview_resize(&allocator, preview, sizeof *preview, 0);

@@ -7,15 +7,33 @@
 typedef struct PreviewCamera {
     float eye[3], target[3], up[3]; ///< m
     float fov;                      ///< vertical, radians
+    float aperture;                 ///< m, diameter of the lens; 0: all is sharp
+    float focus;                    ///< m, distance along the view that is sharp; 0: the target's
 } PreviewCamera;
 
 /// A primitive that is drawn: the scene's colliders and hot balls at the frame's time.
 typedef struct PreviewShape {
     SingeColliderKind kind;
     float position[3], rotation[4], radius, half_size[3], height;
+    float velocity[3];  ///< m/s, for the blur of what moves
     float colour[3];    ///< linear albedo
     float temperature;  ///< K; glows by black-body colour above about 800 K
 } PreviewShape;
+
+/// The light from all around, of mean `sky_colour`.
+typedef enum PreviewSky {
+    PREVIEW_SKY_EVEN,    ///< the same from everywhere above
+    PREVIEW_SKY_STUDIO,  ///< a dim room with a tall window, a lamp behind and a pale ceiling
+    PREVIEW_SKY_OPEN,    ///< outdoors: pale towards the horizon and about the sun
+    PREVIEW_SKY_PICTURE, ///< `sky_picture`
+} PreviewSky;
+
+/// What the table is made of.
+typedef enum PreviewGround {
+    PREVIEW_GROUND_WOOD,
+    PREVIEW_GROUND_STONE,
+    PREVIEW_GROUND_PLAIN,
+} PreviewGround;
 
 typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
@@ -25,10 +43,16 @@ typedef struct PreviewDef {
     float sun_angle;         ///< radians, apparent radius: how soft shadows are
     float sun_colour[3];     ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
     float sky_colour[3];     ///< ambient light from above
+    PreviewSky sky;
+    const Image *sky_picture; ///< latitudes from the top, longitudes about z; its middle lies towards +y
+    float sky_turn;           ///< radians about z, counted from above
     float ground_height;     ///< m, z of the ground; -INFINITY for none
+    PreviewGround ground;
     float ground_colour[3];  ///< linear
     float background[3];
     float exposure;          ///< multiplies before tone mapping
+    float shutter;           ///< s that a frame is open, its time in the middle; 0: nothing blurs
+    float pace;              ///< how many times as fast as a real one fire burns: ages are told by it
     uint32_t seed;
     const Image *const *pictures;  ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];     ///< [sheet_count] tint of each sheet, linear
@@ -51,6 +75,23 @@ SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewSh
 /// share their vertices: by that its borders are known.
 SINGE_NODISCARD SingeResult preview_draw(Preview *preview, const SingeSurface *surface, double time, uint8_t *rgb,
                                          SingeError *error);
+
+/// Pictures beside the one that is seen, [height * width], rows from the top. NULL: not wanted. *Mean* is over all
+/// samples of a pixel, *of hits* over those that met a sheet or a shape (0 where none did), *first* that of one sample.
+typedef struct PreviewLayers {
+    float (*beauty)[3];   ///< mean; linear Rec. 709, before halo, exposure and film
+    float (*glow)[3];     ///< mean; the part of beauty that what is hot gives off itself
+    float *coverage;      ///< share of the samples that are hits
+    float (*normal)[3];   ///< of hits, in the world's axes, towards the eye
+    float *temperature;   ///< of hits, K
+    float *burn;          ///< of hits, 0 fresh to 1 ash; 0 on shapes
+    float *depth;         ///< first, m along the camera's view; infinite where there is nothing
+    int32_t *sheet, *piece; ///< first; -1 where there is none
+} PreviewLayers;
+
+/// As preview_draw, and fills the layers. `rgb` may be NULL.
+SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time,
+                                                uint8_t *rgb, const PreviewLayers *layers, SingeError *error);
 void preview_destroy(Preview *preview);
 
 #endif

@@ -1,32 +1,98 @@
-// The table and what lies behind it. The table is planks of wood along x: each plank has its own tone and grain;
-// the grain is noise stretched along the plank and bent by slower noise, as year rings are where a saw cut them
-// at a low angle. Every octave fades when a pixel no longer resolves it.
+// The table and what lies behind it.
+//
+// Wood is planks along x, each cut from a trunk of its own: its year rings are cylinders about an axis that lies askew
+// to the plank, so that the saw shows them as parallel lines or as pointed arches. A ring darkens towards its end, the
+// late wood, and breaks off there. Stone is a honed slab: clouds, grains and a few pale veins, with an uneven face.
+// Every octave fades when a pixel no longer resolves it.
 
 #include "preview/internal.h"
 
-static const float plank_width = 0.145f;
+#define PLANK_WIDTH 0.118f
+#define PLANK_LENGTH 1.3f
 
 static float visible(float metres, float footprint) { return clampf(1.5f - 0.9f * footprint / metres, 0, 1); }
 
-static V3 wood(const Preview *preview, float x, float y, float footprint) {
+typedef struct Plank {
+    float along, across;    ///< m, from its own corner
+    float edge;             ///< m to the nearest joint
+    float tone, hue, shift; ///< its own
+} Plank;
+
+static Plank find_plank(uint32_t seed, float x, float y) {
+    float across, along;
+    int row = noise_floor(y / PLANK_WIDTH, &across);
+    float offset = hash_unit((uint32_t)row * 0x9e3779b1u + seed);
+    int column = noise_floor(x / PLANK_LENGTH + offset, &along);
+    uint32_t key = hash_u32((uint32_t)row * 0x9e3779b1u + (uint32_t)column * 0x85ebca6bu + seed);
+    float side = minf(across, 1 - across) * PLANK_WIDTH, end = minf(along, 1 - along) * PLANK_LENGTH;
+    return (Plank){.along = along * PLANK_LENGTH, .across = (across - 0.5f) * PLANK_WIDTH, .edge = minf(side, end),
+                   .tone = hash_unit(key), .hue = hash_unit(key + 1), .shift = 60 * hash_unit(key + 2)};
+}
+
+/// Late wood, 0 to 1, of the year rings.
+static float year_rings(const Plank *p, uint32_t seed, float footprint) {
+    float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
+    bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
+    // the trunk's axis is below the plank and rises along it
+    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend, depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
+    float radius = sqrtf(aside * aside + depth * depth), year = radius / (0.0034f + 0.0018f * p->hue);
+    year += 0.35f * noise2(u * 1.3f, radius * 60, seed + 2);
+    float within;
+    int ring = noise_floor(year, &within);
+    float strength = 0.45f + 0.55f * hash_unit((uint32_t)ring * 0x27d4eb2fu + seed + (uint32_t)(1024 * p->tone));
+    float slope = maxf(fabsf(aside) / maxf(radius, 1e-4f), 0.12f); // how steeply the saw cuts the rings
+    float late = stepf(0.25f, 0.9f, within) * (1 - stepf(0.9f, 1.0f, within));
+    return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
+}
+
+static void wood(const Preview *preview, V3 place, float footprint, Table *table) {
     uint32_t seed = preview->def.seed + 77;
-    float across, lane = y / plank_width;
-    int plank = noise_floor(lane, &across);
-    uint32_t key = hash_u32((uint32_t)plank * 0x9e3779b1u + seed);
-    float tone = hash_unit(key), shift = 40 * hash_unit(key + 1), u = x + shift, v = y;
-    float bend = 0.020f * noise2(u * 2.1f, v * 9 + shift, seed) + 0.006f * noise2(u * 7, v * 26, seed + 1);
-    float rings = noise2((u + bend) * 0.7f, (v + bend) * 95, seed + 2) * visible(0.012f, footprint);
-    float fine = noise2(u * 6, (v + 0.6f * bend) * 420, seed + 3) * visible(0.0024f, footprint);
-    float pores = noise2(u * 60, v * 1500, seed + 4) * visible(0.0008f, footprint);
-    float blotch = noise2(u * 3.3f, v * 5, seed + 5);
-    float value = 0.86f + 0.22f * (tone - 0.5f) + 0.17f * rings + 0.10f * fine + 0.07f * blotch;
-    value -= 0.22f * stepf(0.35f, 0.8f, pores);
-    // a dark, slightly soft joint between planks
-    float edge = minf(across, 1 - across) * plank_width, soft = maxf(0.0011f, 0.7f * footprint);
-    value *= 1 - 0.68f * (1 - stepf(0.0003f, soft + 0.0003f, edge)) * minf(1, 0.0016f / footprint);
-    // what is dark is also redder
-    float warm = clampf(0.95f - value, -0.3f, 0.5f);
-    return v3_scale(v3(1 + 0.14f * warm, 1 - 0.06f * warm, 1 - 0.24f * warm), maxf(value, 0.05f));
+    Plank p = find_plank(seed, place.x, place.y);
+    float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
+    float fibre = noise2(u * 7, place.y * 460, seed + 3) * visible(0.0022f, footprint);
+    float pores = noise2(u * 55, place.y * 1500, seed + 4) * visible(0.0008f, footprint);
+    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(place.x * 5, place.y * 5, seed + 6);
+    float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.46f * late + 0.13f * fibre + 0.10f * blotch + 0.05f * wear;
+    value *= 1 - 0.30f * stepf(0.3f, 0.8f, pores);
+    // a joint: dark and a little soft, with a bevel beside it
+    float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
+    value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
+    // late wood is redder, early wood more golden; planks differ
+    float red = clampf(0.35f * late + 0.5f * (p.hue - 0.5f), -0.3f, 0.5f);
+    table->albedo = v3_scale(v3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
+    table->polish = (0.55f - 0.2f * late + 0.12f * wear) * (1 - 0.8f * joint);
+    table->tilt[0] = 0.004f * wear;
+    table->tilt[1] = 0.012f * blotch + 0.02f * fibre;
+}
+
+/// Noise of the slab, its slope added to the tilt.
+static float uneven(float x, float y, float millimetres, float height, uint32_t seed, float footprint, Table *table) {
+    float scale = 1000 / millimetres, e = 0.25f, shown = visible(millimetres * 1e-3f, footprint);
+    if (shown <= 0) return 0;
+    float n = noise2(x * scale, y * scale, seed);
+    table->tilt[0] -= shown * height * (noise2(x * scale + e, y * scale, seed) - n) / e;
+    table->tilt[1] -= shown * height * (noise2(x * scale, y * scale + e, seed) - n) / e;
+    return shown * n;
+}
+
+static void stone(const Preview *preview, V3 place, float footprint, Table *table) {
+    uint32_t seed = preview->def.seed + 177;
+    float x = 0.921f * place.x - 0.389f * place.y, y = 0.389f * place.x + 0.921f * place.y;
+    float warp = 0.03f * noise2(x * 9, y * 9, seed), fold = 0.012f * noise2(x * 31 + 7, y * 31, seed + 1);
+    float cloud = noise2(x * 7, y * 7, seed + 2), patch = uneven(x, y, 38, 0.010f, seed + 3, footprint, table);
+    float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
+    float grain = uneven(x, y, 1.6f, 0.03f, seed + 5, footprint, table);
+    float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
+    float value = 0.98f + 0.20f * cloud + 0.16f * patch + 0.10f * rough + 0.09f * grain;
+    value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
+    // pale veins, thick and thin by turns, that break off
+    float line = fabsf(noise2((x + warp) * 5.5f + 3, (y + fold + warp) * 2.1f, seed + 7));
+    float width = 0.004f + 0.010f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
+    float vein = (1 - stepf(0.3f * width, width + 1.5f * footprint, line)) * stepf(-0.25f, 0.4f, noise2(x * 3, y * 3, seed + 9));
+    value += 0.85f * vein * minf(1, 0.003f / footprint + 0.35f);
+    float warm = 0.5f * cloud - 0.3f * patch;
+    table->albedo = v3_scale(v3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
+    table->polish = 0.42f + 0.12f * patch - 0.1f * vein;
 }
 
 V3 background_colour(const Preview *preview, V3 direction) {
@@ -40,21 +106,22 @@ static float footprint(const Preview *preview, float distance, float cosine) {
     return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
 }
 
-V3 ground_albedo(const Preview *preview, V3 direction, float distance) {
-    V3 p = v3_mad(preview->camera.eye, direction, distance);
-    return v3_mul(v3_load(preview->def.ground_colour),
-                  wood(preview, p.x, p.y, footprint(preview, distance, direction.z)));
+void ground_look(const Preview *preview, V3 place, float cosine, float distance, Table *table) {
+    float size = footprint(preview, distance, cosine);
+    *table = (Table){.albedo = {1, 1, 1}, .polish = 0.1f};
+    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, place, size, table);
+    if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, place, size, table);
+    table->albedo = v3_mul(table->albedo, v3_load(preview->def.ground_colour));
 }
 
-void ground_shade(const Preview *preview, float distance, V3 albedo, Point *point) {
-    float cosine = maxf(fabsf(point->view.z), 0.02f);
-    point->footprint = footprint(preview, distance, cosine);
+void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
+    float side = point->view.z >= 0 ? 1.0f : -1.0f;
+    point->footprint = footprint(preview, distance, maxf(fabsf(point->view.z), 0.02f));
     float far = distance / (9 * preview->camera.reach);
     point->fade = 1 - expf(-far * far * far);
-    point->normal = point->geometric = v3(0, 0, point->view.z >= 0 ? 1.0f : -1.0f);
-    point->albedo = albedo;
-    point->gloss = 0.045f, point->shininess = 26;
-    // a waxed table mirrors a little of the sky at grazing angles (Schlick)
-    float grazing = 1 - cosine, mirror = 0.22f * grazing * grazing * grazing * grazing * grazing;
-    point->emission = v3_scale(v3_load(preview->def.background), mirror);
+    point->geometric = v3(0, 0, side);
+    point->normal = v3_unit(v3(table->tilt[0], table->tilt[1], side), point->geometric);
+    point->albedo = table->albedo;
+    point->gloss = 0.10f * table->polish, point->shininess = 26;
+    point->mirror = table->polish;
 }

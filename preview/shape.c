@@ -62,8 +62,9 @@ static float capsule(const PreviewShape *shape, V3 o, V3 d, float near, float fa
     return best;
 }
 
-float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float near, float far, V3 *normal) {
-    V3 offset = v3_sub(origin, v3_load(shape->position));
+float shape_intersect(const PreviewShape *shape, float moment, V3 origin, V3 direction, float near, float far,
+                      V3 *normal) {
+    V3 offset = v3_mad(v3_sub(origin, v3_load(shape->position)), v3_load(shape->velocity), -moment);
     if (shape->kind == SINGE_COLLIDER_SPHERE) {
         float t = sphere(offset, direction, shape->radius, near, far);
         if (t > 0) *normal = v3_scale(v3_mad(offset, direction, t), 1 / shape->radius);
@@ -77,7 +78,8 @@ float shape_intersect(const PreviewShape *shape, V3 origin, V3 direction, float 
     return t;
 }
 
-float shape_extent(const PreviewShape *shape) {
-    if (shape->kind == SINGE_COLLIDER_BOX) return v3_length(v3_load(shape->half_size));
-    return shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
+float shape_extent(const PreviewShape *shape, float shutter) {
+    float way = 0.5f * shutter * v3_length(v3_load(shape->velocity));
+    if (shape->kind == SINGE_COLLIDER_BOX) return way + v3_length(v3_load(shape->half_size));
+    return way + shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
 }

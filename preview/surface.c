@@ -6,6 +6,8 @@
 
 #include "preview/internal.h"
 
+#include <string.h>
+
 static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint32_t count, size_t size) {
     void **array = array_pointer;
     if (count <= *capacity) return true;
@@ -19,18 +21,12 @@ static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint
 
 static bool reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
     Scene *scene = &preview->scene;
-    uint32_t capacity = scene->vertex_capacity;
-    if (!grow(preview, &scene->vertices, &capacity, vertices, sizeof *scene->vertices)) return false;
-    uint32_t positions = scene->vertex_capacity;
-    if (!grow(preview, &scene->positions, &positions, vertices, sizeof *scene->positions)) {
-        // keep both arrays the same length; shrinking back cannot be relied on, so drop them
-        preview_resize(&preview->allocator, scene->vertices, capacity * sizeof *scene->vertices, 0);
-        preview_resize(&preview->allocator, scene->positions, positions * sizeof *scene->positions, 0);
-        scene->vertices = NULL, scene->positions = NULL, scene->vertex_capacity = 0;
-        return false;
-    }
-    scene->vertex_capacity = capacity;
-    return grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
+    size_t place = sizeof *scene->positions;
+    bool done = grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
+                grow(preview, &scene->positions, &scene->position_capacity, vertices, place);
+    for (int i = 0; done && preview->def.shutter > 0 && i < 2; i++)
+        done = grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, place);
+    return done && grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
 }
 
 static float finite_or(float x, float otherwise) { return isfinite(x) ? x : otherwise; }
@@ -39,7 +35,8 @@ static bool near_enough(const float p[3]) {
     return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
 }
 
-static void pack_vertex(const SingeSurface *surface, uint32_t i, PaperVertex *out, float position[4]) {
+static void pack_vertex(const Preview *preview, const SingeSurface *surface, uint32_t i, PaperVertex *out,
+                        float position[4]) {
     const float zero[3] = {0, 0, 0};
     const float *rest = near_enough(surface->rest_position[i]) ? surface->rest_position[i] : zero;
     V3 normal = v3_unit(v3_load(surface->normal[i]), v3(0, 0, 0));
@@ -52,9 +49,26 @@ static void pack_vertex(const SingeSurface *surface, uint32_t i, PaperVertex *ou
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
         .burn_rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f),
         .sheet = surface->sheet[i],
+        .piece = surface->piece ? surface->piece[i] : -1,
     };
+    // what burnt at an unknown time did so long ago
+    if (surface->time_ignited && surface->time_ignited[i] >= 0)
+        out->age = clampf((float)(preview->time - (double)surface->time_ignited[i]) * preview->def.pace, 0, 1e6f);
+    else if (out->burn > 0) out->age = 60;
     for (int c = 0; c < 3; c++) position[c] = surface->position[i][c];
     position[3] = 0;
+}
+
+/// Where the vertex is as the exposure begins and ends.
+static void move_vertex(Preview *preview, const SingeSurface *surface, uint32_t i) {
+    const float zero[3] = {0, 0, 0}, *position = preview->scene.positions[i];
+    const float *velocity = surface->velocity ? surface->velocity[i] : zero;
+    for (int end = 0; end < 2; end++) {
+        float *moved = preview->scene.moved[end][i], half = (end ? 0.5f : -0.5f) * preview->def.shutter;
+        for (int c = 0; c < 3; c++) moved[c] = position[c] + half * velocity[c];
+        if (!near_enough(moved)) memcpy(moved, position, 3 * sizeof *moved);
+        moved[3] = 0;
+    }
 }
 
 /// Adds the triangle's share of the gradient to its corners: times area into `slope`, the area into `gradient`.
@@ -70,6 +84,7 @@ static void add_gradient(Scene *scene, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++) {
         v[k]->slope[0] += area * g.x, v[k]->slope[1] += area * g.y, v[k]->slope[2] += area * g.z;
         v[k]->gradient += area;
+        v[k]->spacing += 1;
     }
 }
 
@@ -91,13 +106,18 @@ static bool keep_triangle(const SingeSurface *surface, const uint32_t t[3]) {
     return v3_dot(n, n) > 1e-30f;
 }
 
-static void bound(Scene *scene) {
+static void bound_vertex(const float *p, V3 *low, V3 *high) {
+    *low = v3(minf(low->x, p[0]), minf(low->y, p[1]), minf(low->z, p[2]));
+    *high = v3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
+}
+
+static void bound(Scene *scene, bool moves) {
     V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t t = 0; t < scene->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
-            const float *p = scene->positions[scene->triangles[t][k]];
-            low = v3(minf(low.x, p[0]), minf(low.y, p[1]), minf(low.z, p[2]));
-            high = v3(maxf(high.x, p[0]), maxf(high.y, p[1]), maxf(high.z, p[2]));
+            uint32_t v = scene->triangles[t][k];
+            bound_vertex(scene->positions[v], &low, &high);
+            for (int end = 0; moves && end < 2; end++) bound_vertex(scene->moved[end][v], &low, &high);
         }
     if (!scene->triangle_count) low = high = v3(0, 0, 0);
     scene->epsilon = maxf(2e-4f * v3_length(v3_sub(high, low)), 1e-6f);
@@ -151,8 +171,11 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices",
                             surface->vertex_count);
 
-    for (uint32_t i = 0; i < surface->vertex_count; i++)
-        pack_vertex(surface, i, &scene->vertices[i], scene->positions[i]);
+    bool moves = preview->def.shutter > 0;
+    for (uint32_t i = 0; i < surface->vertex_count; i++) {
+        pack_vertex(preview, surface, i, &scene->vertices[i], scene->positions[i]);
+        if (moves && near_enough(scene->positions[i])) move_vertex(preview, surface, i);
+    }
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         if (!keep_triangle(surface, surface->triangles[t])) continue;
         uint32_t *kept = scene->triangles[scene->triangle_count++];
@@ -163,13 +186,17 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
     scene->vertex_count = surface->vertex_count;
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         PaperVertex *v = &scene->vertices[i];
+        // a triangle of area A has edges of about sqrt(2 A)
+        v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
         v->gradient = v->gradient > 0 ? v3_length(v3_load(v->slope)) / v->gradient : 0;
         v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);
         // no triangle of the scene uses these; the builder still reads them
         float *p = scene->positions[i];
-        if (!near_enough(p)) p[0] = p[1] = p[2] = 0;
+        if (near_enough(p)) continue;
+        p[0] = p[1] = p[2] = 0;
+        for (int end = 0; moves && end < 2; end++) memset(scene->moved[end][i], 0, sizeof *scene->moved[end]);
     }
-    bound(scene);
+    bound(scene, moves);
     measure_textures(preview);
     return tracer_build(preview, error);
 }
@@ -178,7 +205,10 @@ void tracer_free(Preview *preview) {
     Scene *scene = &preview->scene;
     tracer_release(preview);
     preview_resize(&preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
-    preview_resize(&preview->allocator, scene->positions, scene->vertex_capacity * sizeof *scene->positions, 0);
+    preview_resize(&preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
+    for (int end = 0; end < 2; end++)
+        preview_resize(&preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
+                       0);
     preview_resize(&preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
     *scene = (Scene){0};
 }

@@ -21,11 +21,12 @@ static void default_preview(ScenePreview *preview) {
     preview->camera.fov = 35 * DEGREE;
     set3(preview->light_direction, -0.5f, -0.7f, 1);
     preview->light_angle = 3 * DEGREE;
-    set3(preview->light_colour, 2.2f, 2.1f, 2);
-    set3(preview->sky, 0.4f, 0.43f, 0.5f);
+    set3(preview->light_colour, 2.3f, 1.95f, 1.55f);
+    set3(preview->sky, 0.27f, 0.31f, 0.38f);
+    preview->environment = PREVIEW_SKY_STUDIO;
     preview->ground_height = -INFINITY;
-    set3(preview->ground_colour, 0.25f, 0.2f, 0.16f);
-    set3(preview->background, 0.03f, 0.03f, 0.035f);
+    set3(preview->ground_colour, 0.20f, 0.105f, 0.052f);
+    set3(preview->background, 0.022f, 0.024f, 0.03f);
     preview->exposure = 1;
 }
 

@@ -147,6 +147,8 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
         if (scene->sources[i].picture.name)
             load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
+    if (scene->preview.environment_picture.name && !loader.no_memory)
+        (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
     if (message_total(messages) == before && !loader.no_memory)
         return SINGE_OK;
     if (!loader.no_memory)
@@ -172,6 +174,7 @@ void scene_assets_free(SceneAssets *assets) {
     }
     for (uint32_t i = 0; i < assets->source_count && assets->source_pictures; i++)
         picture_free(&assets->source_pictures[i]);
+    image_free(&assets->sky);
     free(assets->meshes);
     free(assets->images);
     free(assets->pictures);

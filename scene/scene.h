@@ -147,10 +147,15 @@ typedef struct ScenePreview {
     bool camera_given; ///< its eye or target; otherwise scene_frame places it
     float light_direction[3], light_angle, light_colour[3];
     float sky[3];
+    PreviewSky environment;        ///< of the sky, if it has no picture
+    SceneFile environment_picture;
+    float environment_turn;        ///< radians
+    PreviewGround ground;
     float ground_height; ///< -INFINITY for none
     float ground_colour[3];
     float background[3];
     float exposure;
+    float shutter; ///< share of a frame's time
 } ScenePreview;
 
 typedef struct Scene {
@@ -208,6 +213,7 @@ typedef struct SceneAssets {
     float (*colours)[3];          ///< [sheet_count], for PreviewDef
     SingePicture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
     SingePicture *source_pictures; ///< [source_count]
+    Image sky;                    ///< zeroed where there is none
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at

@@ -16,6 +16,12 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .sun_angle = preview->light_angle,
         .ground_height = preview->ground_height,
         .exposure = preview->exposure,
+        .shutter = preview->shutter / scene->fps,
+        .pace = (float)scene->sim.pace,
+        .sky = assets->sky.rgb ? PREVIEW_SKY_PICTURE : preview->environment,
+        .sky_picture = assets->sky.rgb ? &assets->sky : NULL,
+        .sky_turn = preview->environment_turn,
+        .ground = preview->ground,
         .seed = (uint32_t)scene->sim.seed,
         .pictures = assets->pictures,
         .colours = (const float(*)[3])assets->colours,
@@ -51,6 +57,16 @@ static void shape_pose(const SceneKey *keys, uint32_t count, double time, Previe
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
 }
 
+/// Where the shape goes: its way over a thousandth of a second. Turning blurs nothing.
+static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
+    PreviewShape later = *shape;
+    const float span = 1e-3f;
+    shape_pose(keys, count, time, shape);
+    shape_pose(keys, count, time + (double)span, &later);
+    for (int i = 0; i < 3; i++)
+        shape->velocity[i] = fmaxf(-1e4f, fminf((later.position[i] - shape->position[i]) / span, 1e4f));
+}
+
 static bool source_shape(const SceneSource *source, double time, PreviewShape *shape) {
     bool drawn = source->def.kind == SINGE_SOURCE_BALL && source->visible && source->key_count &&
                  source->def.radius > 0 && time >= (double)source->def.start && time <= (double)source->def.end;
@@ -60,7 +76,7 @@ static bool source_shape(const SceneSource *source, double time, PreviewShape *s
                             .radius = source->def.radius,
                             .colour = {0.05f, 0.05f, 0.05f},
                             .temperature = source->def.temperature};
-    shape_pose(source->keys, source->key_count, time, shape);
+    shape_move(source->keys, source->key_count, time, shape);
     return true;
 }
 
@@ -72,7 +88,7 @@ static bool collider_shape(const Scene *scene, const SceneCollider *collider, do
                             .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
     memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
     memcpy(shape->colour, collider->colour, sizeof shape->colour);
-    shape_pose(collider->keys, collider->key_count, time, shape);
+    shape_move(collider->keys, collider->key_count, time, shape);
     return true;
 }
 

@@ -1,0 +1,36 @@
+// What a frame's pixels are made of, for compositors and for measuring: sums over a pixel's samples, written as the
+// pixel is done.
+
+#include "preview/block.h"
+
+void layers_begin(LayerSum *sum) { *sum = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1}; }
+
+void layers_add(const Preview *preview, const Point *point, V3 direction, LayerSum *sum) {
+    if (!sum->samples++) {
+        sum->depth = point->distance * v3_dot(direction, preview->camera.forward);
+        sum->sheet = point->sheet, sum->piece = point->piece;
+    }
+    if (!point->hit) return;
+    sum->hits++;
+    sum->glow = v3_add(sum->glow, point->glow);
+    sum->normal = v3_add(sum->normal, point->normal);
+    sum->temperature += point->temperature, sum->burn += point->burn;
+}
+
+static void store(float (*layer)[3], size_t pixel, V3 value) {
+    if (layer) layer[pixel][0] = value.x, layer[pixel][1] = value.y, layer[pixel][2] = value.z;
+}
+
+void layers_write(const Preview *preview, size_t pixel, V3 colour, const LayerSum *sum) {
+    const PreviewLayers *layers = &preview->layers;
+    float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
+    store(layers->beauty, pixel, colour);
+    store(layers->glow, pixel, v3_scale(sum->glow, sample));
+    store(layers->normal, pixel, v3_unit(sum->normal, v3(0, 0, 0)));
+    if (layers->coverage) layers->coverage[pixel] = (float)sum->hits * sample;
+    if (layers->temperature) layers->temperature[pixel] = sum->temperature * hit;
+    if (layers->burn) layers->burn[pixel] = sum->burn * hit;
+    if (layers->depth) layers->depth[pixel] = sum->depth;
+    if (layers->sheet) layers->sheet[pixel] = sum->sheet;
+    if (layers->piece) layers->piece[pixel] = sum->piece;
+}
