@@ -20,6 +20,7 @@ Folder folder_name(const char *path, const char *name) {
     folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
     folder.video = text_format("%s/preview.mp4", folder.path);
     folder.sheet = text_format("%s/sheet.png", folder.path);
+    folder.gif = text_format("%s/preview.gif", folder.path);
     return folder;
 }
 
@@ -31,6 +32,7 @@ void folder_free(Folder *folder) {
     free(folder->checkpoint);
     free(folder->video);
     free(folder->sheet);
+    free(folder->gif);
     *folder = (Folder){0};
 }
 
@@ -65,17 +67,22 @@ SingeResult folder_make(const char *path, SingeError *error) {
     return result;
 }
 
-SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error) {
-    static const char *const inner[] = {"ply", "frames"};
-    SingeResult result = folder_make(folder->path, error);
-    for (int i = 0; i < 1 + pictures && !result; i++) {
-        char *path = text_format("%s/%s", folder->path, inner[i]);
-        result = make_one(path, error);
-        if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
-        free(path);
-    }
+static SingeResult make_inner(const Folder *folder, const char *inner, SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner);
+    SingeResult result = make_one(path, error);
+    if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
+    free(path);
     return result;
 }
+
+SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error) {
+    SingeResult result = folder_make(folder->path, error);
+    if (!result) result = make_inner(folder, "ply", error);
+    if (!result && pictures) result = make_inner(folder, "frames", error);
+    return result;
+}
+
+SingeResult folder_create_exr(const Folder *folder, SingeError *error) { return make_inner(folder, "exr", error); }
 
 char *folder_ply(const Folder *folder, int frame) {
     return text_format("%s/ply/%s.%04d.ply", folder->path, folder->name, frame);
@@ -83,6 +90,10 @@ char *folder_ply(const Folder *folder, int frame) {
 
 char *folder_png(const Folder *folder, int frame) {
     return text_format("%s/frames/%s.%04d.png", folder->path, folder->name, frame);
+}
+
+char *folder_exr(const Folder *folder, int frame) {
+    return text_format("%s/exr/%s.%04d.exr", folder->path, folder->name, frame);
 }
 
 /// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
@@ -157,7 +168,15 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     SingeResult result = clean_top(folder, &removed, error);
     if (!result) result = clean_frames(folder, "ply", ".ply", false, &removed, error);
     if (!result) result = clean_frames(folder, "frames", ".png", false, &removed, error);
+    if (!result) result = clean_frames(folder, "exr", ".exr", false, &removed, error);
     return result;
+}
+
+/// Fails, and may, where something else is in it.
+static void remove_empty(const Folder *folder, const char *inner) {
+    char *path = text_format("%s/%s", folder->path, inner);
+    rmdir(path);
+    free(path);
 }
 
 SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error) {
@@ -165,13 +184,12 @@ SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, Sing
     // the checkpoint goes first: without its frames it must not be resumed from
     SingeResult result = remove_file(folder->checkpoint, removed, error);
     if (!result) result = remove_file(folder->video, removed, error);
+    if (!result) result = remove_file(folder->gif, removed, error);
     if (!result) result = clean_frames(folder, "ply", ".ply", true, removed, error);
     if (!result) result = clean_frames(folder, "frames", ".png", true, removed, error);
-    if (!result && !pictures) {
-        char *frames = text_format("%s/frames", folder->path);
-        rmdir(frames); // fails, and may, where something else is in it
-        free(frames);
-    }
+    if (!result) result = clean_frames(folder, "exr", ".exr", true, removed, error);
+    if (!result) remove_empty(folder, "exr");
+    if (!result && !pictures) remove_empty(folder, "frames");
     return result;
 }
 

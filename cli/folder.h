@@ -1,4 +1,5 @@
-// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/frames/NAME.0001.png and those that exist once.
+// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/frames/NAME.0001.png, DIR/exr/NAME.0001.exr and those that exist
+// once.
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
@@ -12,6 +13,7 @@ typedef struct Folder {
     char *checkpoint; ///< DIR/checkpoint.singe
     char *video;      ///< DIR/preview.mp4
     char *sheet;      ///< DIR/sheet.png
+    char *gif;        ///< DIR/preview.gif
 } Folder;
 
 /// Names only; nothing is made. `path` NULL is out/NAME.
@@ -23,12 +25,15 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
 /// Makes the folder, those above it, ply/ and, for `pictures`, frames/ in it.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error);
+/// Makes exr/ in it.
+SINGE_NODISCARD SingeResult folder_create_exr(const Folder *folder, SingeError *error);
 
 /// Paths of a frame, from malloc.
 char *folder_ply(const Folder *folder, int frame);
 char *folder_png(const Folder *folder, int frame);
+char *folder_exr(const Folder *folder, int frame);
 
-/// Removes what an earlier run of the same name left (its frames, checkpoint, video), and nothing that is
+/// Removes what an earlier run of the same name left (its frames, checkpoint, video, GIF), and nothing that is
 /// not named as such files are. *removed is the number of files. Without `pictures` an empty frames/ goes too.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error);
 

@@ -9,6 +9,7 @@ struct Pictures {
     PreviewShape *shapes;
     uint32_t shape_max;
     uint8_t *rgb;
+    PreviewLayers layers; ///< empty unless they are kept
 };
 
 bool pictures_available(void) { return true; }
@@ -48,8 +49,54 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, do
     }
     count = scene_shapes(pictures->scene, time, pictures->shapes, pictures->shape_max);
     if (preview_set_shapes(pictures->preview, pictures->shapes, count, error)) return NULL;
-    if (preview_draw(pictures->preview, surface, time, pictures->rgb, error)) return NULL;
+    if (preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error)) return NULL;
     return pictures->rgb;
+}
+
+SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
+    size_t count = (size_t)pictures->def.width * (size_t)pictures->def.height;
+    PreviewLayers *l = &pictures->layers;
+    l->beauty = calloc(count, sizeof *l->beauty), l->glow = calloc(count, sizeof *l->glow);
+    l->normal = calloc(count, sizeof *l->normal), l->coverage = calloc(count, sizeof *l->coverage);
+    l->temperature = calloc(count, sizeof *l->temperature), l->burn = calloc(count, sizeof *l->burn);
+    l->depth = calloc(count, sizeof *l->depth);
+    l->sheet = calloc(count, sizeof *l->sheet), l->piece = calloc(count, sizeof *l->piece);
+    bool all = l->beauty && l->glow && l->normal && l->coverage && l->temperature && l->burn && l->depth && l->sheet &&
+               l->piece;
+    return all ? SINGE_OK : no_memory(error);
+}
+
+static void free_layers(PreviewLayers *l) {
+    free(l->beauty), free(l->glow), free(l->normal), free(l->coverage), free(l->temperature), free(l->burn);
+    free(l->depth), free(l->sheet), free(l->piece);
+}
+
+/// Ids as they are written: counted from 1, so that 0 is none.
+static uint32_t *count_ids(const int32_t *ids, size_t count) {
+    uint32_t *counted = malloc(count * sizeof *counted);
+    for (size_t i = 0; counted && i < count; i++) counted[i] = ids[i] < 0 ? 0 : (uint32_t)ids[i] + 1;
+    return counted;
+}
+
+SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
+    const PreviewLayers *l = &pictures->layers;
+    int width = pictures->def.width, height = pictures->def.height;
+    uint32_t *sheet = count_ids(l->sheet, (size_t)width * (size_t)height);
+    uint32_t *piece = count_ids(l->piece, (size_t)width * (size_t)height);
+    const ExrChannel channels[] = {
+        {"R", EXR_KIND_HALF, &l->beauty[0][0], 3}, {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
+        {"B", EXR_KIND_HALF, &l->beauty[0][2], 3}, {"Z", EXR_KIND_FLOAT, l->depth, 1},
+        {"glow.R", EXR_KIND_HALF, &l->glow[0][0], 3}, {"glow.G", EXR_KIND_HALF, &l->glow[0][1], 3},
+        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3}, {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
+        {"normal.Y", EXR_KIND_HALF, &l->normal[0][1], 3}, {"normal.Z", EXR_KIND_HALF, &l->normal[0][2], 3},
+        {"temperature.K", EXR_KIND_FLOAT, l->temperature, 1}, {"char.Y", EXR_KIND_HALF, l->burn, 1},
+        {"coverage.Y", EXR_KIND_HALF, l->coverage, 1}, {"id.sheet", EXR_KIND_ID, sheet, 1},
+        {"id.piece", EXR_KIND_ID, piece, 1},
+    };
+    SingeResult result = sheet && piece ? SINGE_OK : no_memory(error);
+    if (!result) result = exr_write(path, width, height, channels, (int)(sizeof channels / sizeof *channels), error);
+    free(sheet), free(piece);
+    return result;
 }
 
 void pictures_size(const Pictures *pictures, int *width, int *height) {
@@ -61,5 +108,6 @@ void pictures_close(Pictures *pictures) {
     preview_destroy(pictures->preview);
     free(pictures->shapes);
     free(pictures->rgb);
+    free_layers(&pictures->layers);
     free(pictures);
 }

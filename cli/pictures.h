@@ -15,6 +15,12 @@ SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, S
 /// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure.
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error);
 
+/// Has pictures_draw keep the layers of the frame, too, for pictures_write_layers.
+SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error);
+
+/// Writes the layers of the frame drawn last as an EXR (docs/formats.md).
+SINGE_NODISCARD SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error);
+
 void pictures_size(const Pictures *pictures, int *width, int *height);
 void pictures_close(Pictures *pictures);
 

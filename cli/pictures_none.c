@@ -17,6 +17,16 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, do
     return NULL;
 }
 
+SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
+    (void)pictures, (void)error;
+    return SINGE_ERROR_STATE;
+}
+
+SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
+    (void)pictures, (void)path, (void)error;
+    return SINGE_ERROR_STATE;
+}
+
 void pictures_size(const Pictures *pictures, int *width, int *height) {
     (void)pictures;
     *width = *height = 0;

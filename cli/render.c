@@ -14,13 +14,15 @@
 #include "cli/text.h"
 #include "cli/video.h"
 
-enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_THREADS, OPT_QUIET, OPT_COUNT };
+enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THREADS, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption render_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "lays a value over the scene; may be repeated"},
     [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone); the video is made of all only"},
     [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
     [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
+    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
+    [OPT_GIF] = {"gif", 0, NULL, "also DIR/preview.gif, of the frames that are drawn"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
 };
@@ -35,7 +37,7 @@ typedef struct RenderOptions {
     int first, last;      ///< 0: all
     int columns, rows;    ///< 0: no sheet
     int threads;
-    bool only_sheet, quiet;
+    bool only_sheet, exr, gif, quiet;
 } RenderOptions;
 
 typedef struct Render {
@@ -87,6 +89,8 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
                 args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'", value);
             break;
         case OPT_ONLY_SHEET: o->only_sheet = true; break;
+        case OPT_EXR: o->exr = true; break;
+        case OPT_GIF: o->gif = true; break;
         case OPT_THREADS: good = args_int(&reader, option, value, 1, JOB_THREADS_MAX, &o->threads); break;
         case OPT_QUIET: o->quiet = true; break;
         case ARG_OPERAND: o->folder = value; break;
@@ -94,6 +98,14 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
         default: good = false;
         }
         if (!good) return EXIT_INPUT;
+    }
+    if (o->only_sheet && (o->exr || o->gif)) {
+        args_complain(&reader, "--only-sheet writes nothing else: not with --%s", o->exr ? "exr" : "gif");
+        return EXIT_INPUT;
+    }
+    if (o->exr && !exr_available()) {
+        args_complain(&reader, "--exr: this singe was built without EXR");
+        return EXIT_INPUT;
     }
     if (o->only_sheet && !o->columns) o->columns = 4, o->rows = 2;
     return EXIT_GOOD;
@@ -170,6 +182,10 @@ static SingeResult write_frame(Render *render, int frame, const uint8_t *rgb, Si
     char *path = folder_png(&render->folder, frame);
     SingeResult result = png_write(path, width, height, rgb, error);
     free(path);
+    if (result || !render->options->exr) return result;
+    path = folder_exr(&render->folder, frame);
+    result = pictures_write_layers(render->pictures, path, error);
+    free(path);
     return result;
 }
 
@@ -210,6 +226,8 @@ static ExitCode render_frames(Render *render) {
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
     if (!result) result = folder_create(&render->folder, !o->only_sheet, &error);
+    if (!result && o->exr) result = folder_create_exr(&render->folder, &error);
+    if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
     if (!result && o->columns) {
         pictures_size(render->pictures, &width, &height);
         result = contact_sheet_make(&render->sheet, o->columns, o->rows, width, height, &error);
@@ -223,11 +241,14 @@ static ExitCode render_frames(Render *render) {
     }
     if (interrupted) return EXIT_FAILED;
     if (!o->quiet && o->columns) printf("%s\n", render->folder.sheet);
-    if (o->first || o->only_sheet) return EXIT_GOOD;
-    VideoResult video = video_make(render->console, &render->folder, (double)render->job.scene->fps, render->first,
-                                   render->last);
+    double fps = (double)render->job.scene->fps;
+    VideoResult gif = VIDEO_NO_PROGRAM, video = VIDEO_NO_PROGRAM;
+    if (o->gif) gif = gif_make(render->console, &render->folder, fps, render->first, render->last);
+    if (gif == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.gif);
+    if (!o->first && !o->only_sheet)
+        video = video_make(render->console, &render->folder, fps, render->first, render->last);
     if (video == VIDEO_MADE && !o->quiet) printf("%s\n", render->folder.video);
-    return video == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
+    return video == VIDEO_FAILED || gif == VIDEO_FAILED ? EXIT_FAILED : EXIT_GOOD;
 }
 
 int command_render(int argc, char **argv) {

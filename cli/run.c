@@ -16,7 +16,7 @@
 #include "cli/text.h"
 #include "cli/video.h"
 
-enum { OPT_OUTPUT, OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_RESUME, OPT_NO_PREVIEW, OPT_QUIET, OPT_COUNT };
+enum { OPT_OUTPUT, OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_RESUME, OPT_NO_PREVIEW, OPT_EXR, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption run_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the cache [out/NAME]"},
@@ -25,6 +25,7 @@ static const ArgOption run_options[OPT_COUNT] = {
     [OPT_SET] = {"set", 0, "PATH=VALUE", "lays a value over the scene; may be repeated"},
     [OPT_RESUME] = {"resume", 0, NULL, "goes on from DIR/checkpoint.singe"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
+    [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
 };
 
@@ -38,7 +39,7 @@ typedef struct RunOptions {
     const char *scene, *output;
     SetList sets;
     int threads;
-    bool resume, no_preview, quiet;
+    bool resume, no_preview, exr, quiet;
 } RunOptions;
 
 /// A run in progress.
@@ -48,6 +49,7 @@ typedef struct Run {
     Folder folder;
     SingeSim *sim;
     Pictures *pictures; ///< NULL without a preview
+    bool layers;        ///< written as EXR, too
     SingeSurface surface;
     StatsFile stats;
     Record record;
@@ -78,12 +80,18 @@ static ExitCode parse_options(int argc, char **argv, RunOptions *options, bool *
         case OPT_SET: set_add(&options->sets, value); break;
         case OPT_RESUME: options->resume = true; break;
         case OPT_NO_PREVIEW: options->no_preview = true; break;
+        case OPT_EXR: options->exr = true; break;
         case OPT_QUIET: options->quiet = true; break;
         case ARG_OPERAND: options->scene = value; break;
         case ARG_HELP: *done = true; return EXIT_GOOD;
         default: good = false;
         }
         if (!good) return EXIT_INPUT;
+    }
+    if (options->exr && (options->no_preview || !pictures_available() || !exr_available())) {
+        if (options->no_preview) args_complain(&reader, "--exr: not with --no-preview");
+        else args_complain(&reader, "--exr: this singe was built without %s", exr_available() ? "the preview" : "EXR");
+        return EXIT_INPUT;
     }
     if (frames) set_frames(&options->sets, frames);
     return EXIT_GOOD;
@@ -142,6 +150,10 @@ static SingeResult write_picture(Run *run, int frame, double time, SingeError *e
     pictures_size(run->pictures, &width, &height);
     char *path = folder_png(&run->folder, frame);
     SingeResult result = png_write(path, width, height, rgb, error);
+    free(path);
+    if (result || !run->layers) return result;
+    path = folder_exr(&run->folder, frame);
+    result = pictures_write_layers(run->pictures, path, error);
     free(path);
     return result;
 }
@@ -270,7 +282,11 @@ static ExitCode prepare(Run *run, const RunOptions *options) {
     result = folder_create(&run->folder, run->pictures != NULL, &error);
     if (!result) result = folder_sweep(&run->folder, &error);
     if (result) return fail(run, &error, EXIT_FAILED);
-    return run->first ? EXIT_GOOD : start(run);
+    if (!run->first && (code = start(run))) return code;
+    run->layers = options->exr;
+    if (run->layers) result = folder_create_exr(&run->folder, &error);
+    if (run->layers && !result) result = pictures_keep_layers(run->pictures, &error);
+    return result ? fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
 }
 
 /// The end of every run that has begun: record, video, and where things are.

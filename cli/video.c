@@ -39,7 +39,7 @@ static char *shell_quote(const char *text) {
     return quoted;
 }
 
-static void tell_command(Console *console, VideoResult result, const char *why, char *const *arguments) {
+static void tell_command(Console *console, const char *what, VideoResult result, const char *why, char *const *arguments) {
     char *line = text_format("ffmpeg");
     for (char *const *a = arguments + 1; *a; a++) {
         char *quoted = shell_quote(*a), *longer = text_format("%s %s", line, quoted);
@@ -47,8 +47,8 @@ static void tell_command(Console *console, VideoResult result, const char *why, 
         free(line);
         line = longer;
     }
-    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no video: %s; to make it later:\n  %s", why, line);
-    else console_error(console, "no video: %s; to make it later:\n  %s", why, line);
+    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later:\n  %s", what, why, line);
+    else console_error(console, "no %s: %s; to make it later:\n  %s", what, why, line);
     free(line);
 }
 
@@ -81,30 +81,59 @@ static VideoResult spawn(char *const *arguments, char why[160]) {
     return VIDEO_FAILED;
 }
 
-VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last) {
+/// What ffmpeg makes of the frames.
+typedef struct Movie {
+    const char *what, *path;            ///< for messages; where it goes
+    const char *const *options;         ///< NULL-terminated, after the input
+    const char *format;
+} Movie;
+
+enum { OPTIONS_MAX = 16 };
+
+static VideoResult movie_make(Console *console, const Folder *folder, const Movie *movie, double fps, int first,
+                              int last) {
     char *path = pattern_escape(folder->path), *name = pattern_escape(folder->name), why[160];
     // "file:" keeps a colon in a path from being read as a protocol, and a dash as an option
     char *input = text_format("file:%s/frames/%s.%%04d.png", path, name);
-    char *part = text_format("file:%s.part", folder->video), *final = text_format("file:%s", folder->video);
+    char *part = text_format("file:%s.part", movie->path), *final = text_format("file:%s", movie->path);
     char *rate = text_format("%.9g", fps), *start = text_format("%d", first);
     char *count = text_format("%d", last - first + 1);
-    // H.264 in 4:2:0 wants even sides
-    char *arguments[] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate", rate,
-                         "-start_number", start, "-i", input, "-frames:v", count, "-vf",
-                         "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
-                         "-movflags", "+faststart", "-f", "mp4", part, NULL};
-    int last_argument = (int)(sizeof arguments / sizeof *arguments) - 2;
+    char *arguments[24 + OPTIONS_MAX] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate",
+                                         rate, "-start_number", start, "-i", input, "-frames:v", count};
+    int n = 15;
+    for (int i = 0; movie->options[i] && i < OPTIONS_MAX; i++) arguments[n++] = (char *)movie->options[i];
+    arguments[n++] = "-f", arguments[n++] = (char *)movie->format, arguments[n] = part;
     VideoResult result = spawn(arguments, why);
     const char *written = part + 5;
-    if (result == VIDEO_MADE && rename(written, folder->video) != 0) {
-        snprintf(why, sizeof why, "cannot write preview.mp4 (%s)", strerror(errno));
+    if (result == VIDEO_MADE && rename(written, movie->path) != 0) {
+        snprintf(why, sizeof why, "cannot write preview.%s (%s)", movie->format, strerror(errno));
         result = VIDEO_FAILED;
     }
     if (result != VIDEO_MADE) {
         unlink(written);
-        arguments[last_argument] = final;
-        tell_command(console, result, why, arguments);
+        arguments[n] = final;
+        tell_command(console, movie->what, result, why, arguments);
     }
     free(path), free(name), free(input), free(part), free(final), free(rate), free(start), free(count);
+    return result;
+}
+
+VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last) {
+    // H.264 in 4:2:0 wants even sides
+    static const char *const options[] = {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18",
+                                          "-pix_fmt", "yuv420p", "-movflags", "+faststart", NULL};
+    const Movie movie = {"video", folder->video, options, "mp4"};
+    return movie_make(console, folder, &movie, fps, first, last);
+}
+
+VideoResult gif_make(Console *console, const Folder *folder, double fps, int first, int last) {
+    // one palette for the whole film, else still places flicker; GIF tells time in hundredths of a second
+    char *filter = text_format("fps=%.9g,scale='min(640,iw)':-2:flags=lanczos,split[a][b];"
+                               "[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=4",
+                               fps < 25 ? fps : 25);
+    const char *const options[] = {"-filter_complex", filter, NULL};
+    const Movie movie = {"GIF", folder->gif, options, "gif"};
+    VideoResult result = movie_make(console, folder, &movie, fps, first, last);
+    free(filter);
     return result;
 }

@@ -1,4 +1,4 @@
-// DIR/preview.mp4 from the PNGs, by the program ffmpeg.
+// DIR/preview.mp4 and DIR/preview.gif from the PNGs, by the program ffmpeg.
 #ifndef CLI_VIDEO_H
 #define CLI_VIDEO_H
 
@@ -14,5 +14,8 @@ typedef enum VideoResult {
 /// Makes the video of the frames from `first` up to `last`. A warning where there is no ffmpeg, or an error where it
 /// fails, tells why and the command that makes the video later.
 VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last);
+
+/// DIR/preview.gif, at most 640 pixels wide and 25 frames a second, in the same way.
+VideoResult gif_make(Console *console, const Folder *folder, double fps, int first, int last);
 
 #endif

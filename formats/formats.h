@@ -74,6 +74,22 @@ SINGE_NODISCARD SingeResult image_read(const char *name, const uint8_t *bytes, s
 /// Writes an 8-bit RGB PNG file, whole or not at all.
 SINGE_NODISCARD SingeResult png_write(const char *path, int width, int height, const uint8_t *rgb, SingeError *error);
 void image_free(Image *image);
+
+/// How a channel of an EXR is kept: 16-bit or 32-bit floats, from floats, or 32-bit numbers, from uint32_t.
+typedef enum ExrKind { EXR_KIND_HALF, EXR_KIND_FLOAT, EXR_KIND_ID } ExrKind;
+
+typedef struct ExrChannel {
+    const char *name;   ///< "R", "normal.X"
+    ExrKind kind;
+    const void *values; ///< of the first pixel, rows from the top
+    int stride;         ///< values (of 4 bytes) from pixel to pixel
+} ExrChannel;
+
+/// False in a program built without OpenEXR, where exr_write fails.
+bool exr_available(void);
+/// Writes an EXR file of one part, whole or not at all. Names of channels must differ.
+SINGE_NODISCARD SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
+                                      SingeError *error);
 /// Luminance (Rec. 709 weights of the encoded values, 0 to 1) as the SingePicture of a parameter; values are allocated
 /// with `allocator`, [width * height].
 SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingePicture *picture,

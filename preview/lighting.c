@@ -111,11 +111,11 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
            sun_may_be_hidden(preview, p, spread);
 }
 
-/// The sky in a dull gloss, more of it at grazing angles (Schlick 1994).
+/// The sky in a dull gloss, more of it at grazing angles (Schlick 1994), though less than a smooth face would.
 static V3 mirror_sky(const Sky *sky, const Point *point) {
     float cosine = maxf(v3_dot(point->normal, point->view), 0), rest = 1 - cosine, rest2 = rest * rest;
     V3 out = v3_mad(v3_scale(point->view, -1), point->normal, 2 * cosine);
-    return v3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.94f * rest2 * rest2 * rest));
+    return v3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest));
 }
 
 void light_add_sky(const Preview *preview, Block *block, const int *active, int sample) {

@@ -25,6 +25,8 @@ static inline float ridge(float n, float width) { return 1 - stepf(0, width, fab
 float paper_cracks(const Bent *bent, float millimetres, float width, float footprint);
 /// Tilts the normal by the gradient of noise of that size, as crumpling does.
 void paper_crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point);
+/// The same with sharp folds between faces that are nearly flat.
+void paper_fold(V3 place, float millimetres, float height, uint32_t seed, Point *point);
 
 // shade_ash.c
 /// How far the paper is ash, 0 to 1.

@@ -34,15 +34,16 @@ void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *poin
     float size = point->footprint, vein = veins(bent, size), fibre = fibres(bent->place, size);
     float cloud = paper_noise(bent->place, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->middle;
     float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
-    float value = mixf(0.034f, 0.15f, pale) + (0.012f + 0.055f * pale) * cloud + (0.025f + 0.09f * pale) * vein;
-    value += (0.01f + 0.05f * pale) * fibre + 0.012f * bent->fine;
-    value += (0.06f + 0.10f * pale) * maxf(rim, stepf(0.45f, 0.95f, state->rim + 0.25f * bent->fine));
+    float value = mixf(0.030f, 0.13f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
+    value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
+    value += (0.03f + 0.07f * pale) * maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
     V3 tone = v3_mix(v3(0.98f, 0.99f, 1.03f), v3(1.03f, 1.0f, 0.95f), pale);
     V3 grey = v3_scale(tone, clampf(value * (1 - 0.4f * ink), 0.02f, 0.5f));
     point->albedo = v3_mix(point->albedo, grey, amount);
     point->gloss *= 1 - 0.8f * amount;
-    point->mirror = mixf(point->mirror, 0.30f - 0.2f * pale, amount);
+    point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale, amount);
     point->transmission = mixf(point->transmission, 0.28f, amount);
-    paper_crumple(bent->place, 7.5f, 0.16f * amount, 16, point);
-    paper_crumple(bent->place, 2.2f, 0.06f * amount, 17, point);
+    V3 bowed = v3_mad(bent->place, v3(bent->coarse, bent->middle, -bent->coarse), 0.8e-3f);
+    paper_fold(bowed, 8.5f, 0.55f * amount, 16, point);
+    paper_fold(bowed, 3.4f, 0.26f * amount, 17, point);
 }

@@ -46,11 +46,11 @@ static V3 line(const Preview *preview, const PaperState *state, const Bent *bent
 static V3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     float warm = stepf(420, 640, state->temperature) * stepf(0.76f, 0.86f, bent->burn);
     if (warm <= 0 || state->age <= 0) return v3(0, 0, 0);
-    float patch = stepf(0.05f, 0.45f, noise3(v3_scale(bent->place, 85), 24) + 0.3f * bent->middle);
+    float patch = stepf(0.10f, 0.55f, noise3(v3_scale(bent->place, 85), 24) + 0.3f * bent->middle);
     if (patch <= 0) return v3(0, 0, 0);
     float delay = noise3(v3_scale(bent->place, 240), 23) + 0.5f * bent->middle + 0.25f * bent->fine;
     float late = (state->age - 3.2f) * 0.28f - delay;
-    float glow = warm * patch * air * expf(-30 * late * late) * clampf(1.6f - footprint * 900, 0.3f, 1);
+    float glow = warm * patch * air * expf(-70 * late * late) * clampf(1.6f - footprint * 900, 0.3f, 1);
     return v3_scale(blackbody_glow(preview->blackbody, 1035 + 50 * bent->fine), 1.5f * glow);
 }
 

@@ -51,16 +51,19 @@ static void wood(const Preview *preview, V3 place, float footprint, Table *table
     float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
     float fibre = noise2(u * 7, place.y * 460, seed + 3) * visible(0.0022f, footprint);
     float pores = noise2(u * 55, place.y * 1500, seed + 4) * visible(0.0008f, footprint);
+    float hair = noise2(u * 16, place.y * 2100, seed + 7) * visible(0.0006f, footprint);
+    fibre += 0.8f * noise2(u * 12, place.y * 1100, seed + 8) * visible(0.001f, footprint);
     float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(place.x * 5, place.y * 5, seed + 6);
     float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.46f * late + 0.13f * fibre + 0.10f * blotch + 0.05f * wear;
-    value *= 1 - 0.30f * stepf(0.3f, 0.8f, pores);
+    value += 0.07f * hair;
+    value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
     // a joint: dark and a little soft, with a bevel beside it
     float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
     value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
     // late wood is redder, early wood more golden; planks differ
     float red = clampf(0.35f * late + 0.5f * (p.hue - 0.5f), -0.3f, 0.5f);
     table->albedo = v3_scale(v3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
-    table->polish = (0.55f - 0.2f * late + 0.12f * wear) * (1 - 0.8f * joint);
+    table->polish = (0.42f - 0.18f * late + 0.10f * wear) * (1 - 0.8f * joint);
     table->tilt[0] = 0.004f * wear;
     table->tilt[1] = 0.012f * blotch + 0.02f * fibre;
 }

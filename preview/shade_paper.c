@@ -77,22 +77,36 @@ float paper_cracks(const Bent *bent, float millimetres, float width, float footp
     return minf(1, open / least) * (1 - stepf(0.4f, 1, wall / maxf(open, least)));
 }
 
-void paper_crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
+/// `folded`: the height is the noise's size, with an edge where it changes sign, and steep slopes are flattened.
+static void tilt(V3 place, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
     height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
     if (height < 0.02f) return;
     V3 p = v3_scale(place, 1000 / millimetres);
-    V3 slope = noise3_gradient(p, noise3(p, seed), seed);
+    float n = noise3(p, seed);
+    V3 slope = noise3_gradient(p, n, seed);
+    if (folded) {
+        float edge = clampf(n * 14, -1, 1), steep = v3_length(slope);
+        slope = v3_scale(slope, edge / (0.5f + 0.5f * steep));
+    }
     slope = v3_mad(slope, point->normal, -v3_dot(slope, point->normal));
     V3 tilted = v3_unit(v3_mad(point->normal, slope, -height), point->normal);
     if (v3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
+void paper_crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
+    tilt(place, millimetres, height, false, seed, point);
+}
+
+void paper_fold(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
+    tilt(place, millimetres, height, true, seed, point);
+}
+
 /// Burnt borders crumble, so that the cut's straight pieces turn ragged within a triangle, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
-    float bite = 0.42f + 0.40f * bent->middle + 0.35f * bent->fine + 0.25f * bent->coarse;
+    float bite = 0.40f + 0.38f * bent->middle + 0.20f * bent->fine + 0.28f * bent->coarse;
     float burnt = stepf(PAPER_WHOLE, 0.65f, state->burn);
     if (burnt > 0 && state->rim > 1 - burnt * clampf(bite, 0, 0.85f)) return true;
-    return bent->burn > 0.7f && ash_amount(bent) * stepf(0.62f, 0.85f, ash_lace(bent, footprint)) > 0.5f;
+    return bent->burn > 0.7f && ash_amount(bent) * stepf(0.72f, 0.95f, ash_lace(bent, footprint)) > 0.5f;
 }
 
 bool paper_is_hole(const PaperState *state, float footprint) {
@@ -141,8 +155,8 @@ static void char_shade(const Bent *bent, V3 burnt, float ink, Point *point) {
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
     point->gloss = 0.055f * black * tar, point->shininess = 14;
     point->mirror = 0.62f * black * tar;
-    paper_crumple(bent->place, 3.1f, 0.16f * black, 32, point);
-    paper_crumple(bent->place, 0.9f, 0.14f * black, 31, point);
+    paper_fold(bent->place, 3.6f, 0.34f * black, 32, point);
+    paper_crumple(bent->place, 0.9f, 0.11f * black, 31, point);
 }
 
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {

@@ -21,12 +21,12 @@ static void default_preview(ScenePreview *preview) {
     preview->camera.fov = 35 * DEGREE;
     set3(preview->light_direction, -0.5f, -0.7f, 1);
     preview->light_angle = 3 * DEGREE;
-    set3(preview->light_colour, 2.3f, 1.95f, 1.55f);
-    set3(preview->sky, 0.27f, 0.31f, 0.38f);
+    set3(preview->light_colour, 2.35f, 1.93f, 1.47f);
+    set3(preview->sky, 0.19f, 0.225f, 0.29f);
     preview->environment = PREVIEW_SKY_STUDIO;
     preview->ground_height = -INFINITY;
     set3(preview->ground_colour, 0.20f, 0.105f, 0.052f);
-    set3(preview->background, 0.022f, 0.024f, 0.03f);
+    set3(preview->background, 0.016f, 0.018f, 0.024f);
     preview->exposure = 1;
 }
 

@@ -52,7 +52,7 @@ check examples 'singe/.*'
 check web 'singe/.*|web/.*'
 
 # libsinge needs libc, libm and threads only
-if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|xxhash)' src include; then
+if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|openexr|xxhash)' src include; then
     echo "libsinge must not need other libraries"
     bad=1
 fi
