@@ -3,7 +3,6 @@
 #include "support.h"
 
 #include <openexr.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct ExrJob {
@@ -11,15 +10,11 @@ typedef struct ExrJob {
     uint8_t *out;
     size_t size, capacity;
     bool out_of_memory;
-    char message[160];
 } ExrJob;
 
-static void exr_say(exr_const_context_t context, exr_result_t code, const char *message) {
-    void *data = NULL;
-    (void)code;
-    if (!context || exr_get_user_data(context, &data) || !data) return;
-    ExrJob *job = data;
-    snprintf(job->message, sizeof job->message, "%s", message);
+/// Called with the library's lock held, so that it cannot ask for the job; the code alone tells what went wrong.
+static void exr_hush(exr_const_context_t context, exr_result_t code, const char *message) {
+    (void)context, (void)code, (void)message;
 }
 
 /// The library also goes back: to the table of the lines' places, when all are there.
@@ -94,9 +89,9 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
     if (width < 1 || height < 1 || width > IMAGE_SIDE_LIMIT || height > IMAGE_SIDE_LIMIT || count < 1)
         return refuse(error, SINGE_ERROR_ARGUMENT, "exr", -1, "%s: %d channels of %d by %d pixels cannot be written",
                       short_name(path), count, width, height);
-    ExrJob job = {.message = "OpenEXR failed"};
+    ExrJob job = {.out_of_memory = false};
     exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    hooks.error_handler_fn = exr_say, hooks.user_data = &job, hooks.write_fn = exr_put;
+    hooks.error_handler_fn = exr_hush, hooks.user_data = &job, hooks.write_fn = exr_put;
     exr_context_t file = NULL;
     exr_result_t done = exr_start_write(&file, short_name(path), EXR_WRITE_FILE_DIRECTLY, &hooks);
     if (!done) done = exr_describe(file, width, height, channels, count);
@@ -105,7 +100,8 @@ SingeResult exr_write(const char *path, int width, int height, const ExrChannel 
     SingeResult result = SINGE_OK;
     if (job.out_of_memory || done == EXR_ERR_OUT_OF_MEMORY) result = refuse_memory(error, "exr", path);
     else if (done || closed)
-        result = refuse(error, SINGE_ERROR_FORMAT, "exr", -1, "%s: cannot encode: %s", short_name(path), job.message);
+        result = refuse(error, SINGE_ERROR_FORMAT, "exr", -1, "%s: cannot encode: %s", short_name(path),
+                        exr_get_default_error_message(done ? done : closed));
     else result = file_write(path, job.out, job.size, error);
     store_free(job.allocator, job.out, job.capacity, 1);
     return result;

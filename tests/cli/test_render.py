@@ -6,7 +6,7 @@ import shutil
 import struct
 import unittest
 
-from support import HAS_FFMPEG, HAS_PREVIEW, Case
+from support import HAS_EXR, HAS_FFMPEG, HAS_PREVIEW, Case
 
 
 def png_size(path):
@@ -56,6 +56,38 @@ class Render(Case):
         self.assertEqual(png_size(self.path("o", "sheet.png")), (2 * 666, 33))
         self.assertFalse(os.path.exists(self.path("o", "frames")))
 
+    @unittest.skipUnless(HAS_EXR, "built without EXR")
+    def test_exr(self):
+        self.singe("render", self.path("o"), "--frames", "2-3", "--exr", "--set", "preview.camera.aperture=1 cm",
+                   "--set", "preview.shutter=0.5", "--set", "preview.ground.kind=stone")
+        self.assertEqual(sorted(os.listdir(self.path("o", "exr"))), ["tiny.0002.exr", "tiny.0003.exr"])
+        with open(self.path("o", "exr", "tiny.0002.exr"), "rb") as file:
+            head = file.read(1000)
+        self.assertEqual(head[:4], b"\x76\x2f\x31\x01")
+        for name in (b"R", b"Z", b"glow.R", b"normal.X", b"temperature.K", b"char.Y", b"coverage.Y", b"id.sheet",
+                     b"id.piece"):
+            self.assertIn(b"\0" + name + b"\0", b"\0" + head)
+        before = [digest(self.png(i)) for i in range(1, 7)]
+        self.run_scene("o", "--quiet", "--exr", preview=True)
+        self.assertEqual(len(os.listdir(self.path("o", "exr"))), 6)
+        self.assertNotEqual([digest(self.png(i)) for i in range(1, 7)], before)
+        self.run_scene("o", "--quiet", preview=True)  # an earlier run's layers go with it
+        self.assertFalse(os.path.exists(self.path("o", "exr")))
+
+    @unittest.skipUnless(HAS_FFMPEG, "no ffmpeg")
+    def test_gif(self):
+        out, _ = self.singe("render", self.path("o"), "--frames", "2-5", "--gif")
+        self.assertIn("preview.gif", out)
+        with open(self.path("o", "preview.gif"), "rb") as file:
+            head = file.read(10)
+        self.assertEqual(head[:6], b"GIF89a")
+        self.assertEqual(struct.unpack("<HH", head[6:]), (64, 48))
+
+    def test_only_sheet_is_alone(self):
+        for option in ("--exr", "--gif"):
+            self.assertIn("not with " + option,
+                          self.singe("render", self.path("o"), "--only-sheet", option, expect=2)[1])
+
     def test_from_elsewhere(self):
         shutil.move(self.path("o"), self.path("moved"))
         self.singe("render", "moved", "--frames", "1", cwd=self.dir)
@@ -74,7 +106,10 @@ class Render(Case):
         self.assertIn("no frames", self.singe("render", self.path("o"), expect=2)[1])
 
     def test_bad_set(self):
-        self.assertIn("samples", self.singe("render", self.path("o"), "--set", "preview.samples=0", expect=2)[1])
+        for bad, word in (("samples=0", "samples"), ("camera.aperture=-1", "aperture"), ("shutter=1.5", "shutter"),
+                          ("ground.kind=lava", "wood"), ("environment.kind=disco", "studio"),
+                          ("environment.picture=none.png", "none.png")):
+            self.assertIn(word, self.singe("render", self.path("o"), "--set", "preview." + bad, expect=2)[1])
 
 
 class NoRender(Case):

@@ -110,10 +110,92 @@ static void test_ember(void **state) {
     assert_true(burning > burning_blue);
 }
 
+/// What burnt out pales with time.
+static void test_ash_pales(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    static float ignited[4] = {1, 1, 1, 1};
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    for (int i = 0; i < 4; i++) q.peak[i] = 1000, q.burn[i] = 1;
+    q.surface.time_ignited = ignited;
+    draw(&def, &q.surface, 1.5, rgb);
+    float sooty = middle(rgb, 1);
+    draw(&def, &q.surface, 30, rgb);
+    float pale = middle(rgb, 1);
+    assert_true(pale > sooty + 10);
+    def.pace = 60; // a fire of that pace is done within half a second
+    draw(&def, &q.surface, 1.5, rgb);
+    assert_float_equal(middle(rgb, 1), pale, 6);
+}
+
+/// Whatever the sky, what faces up gets the same of it; what faces aside does not.
+static void test_skies(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    enum { PW = 16, PH = 8 };
+    uint8_t texels[PW * PH * 3];
+    for (int i = 0; i < PW * PH; i++) memset(texels + 3 * i, i % PW < PW / 2 ? 250 : 60, 3); // bright towards -x
+    Image image = {.width = PW, .height = PH, .rgb = texels};
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
+    for (int c = 0; c < 3; c++) def.sky_colour[c] = 1;
+    def.sky_picture = &image;
+    float up[4], aside[4];
+    for (int sky = 0; sky < 4; sky++) {
+        def.sky = (PreviewSky)sky;
+        quad_make(&q, 0.1f, 0.01f);
+        draw(&def, &q.surface, 0, rgb);
+        up[sky] = middle(rgb, 1);
+        for (int side = 0; side < 2; side++) { // its shading normal leans to either side
+            for (int i = 0; i < 4; i++) q.normal[i][0] = side ? 0.8f : -0.8f, q.normal[i][2] = 0.6f;
+            draw(&def, &q.surface, 0, rgb);
+            aside[sky] = side ? aside[sky] - middle(rgb, 1) : middle(rgb, 1);
+        }
+    }
+    assert_in_range((int)up[0], 100, 200);
+    for (int sky = 1; sky < 4; sky++) assert_float_equal(up[sky], up[0], 12);
+    assert_float_equal(aside[PREVIEW_SKY_EVEN], 0, 3);
+    assert_true(fabsf(aside[PREVIEW_SKY_STUDIO]) > 8);
+    assert_true(aside[PREVIEW_SKY_PICTURE] > 15);
+    def.sky = PREVIEW_SKY_PICTURE, def.sky_turn = 3.14159265f;
+    for (int i = 0; i < 4; i++) q.normal[i][0] = 0.8f;
+    draw(&def, &q.surface, 0, rgb);
+    float turned = middle(rgb, 1);
+    for (int i = 0; i < 4; i++) q.normal[i][0] = -0.8f;
+    draw(&def, &q.surface, 0, rgb);
+    assert_true(turned > middle(rgb, 1) + 15);
+}
+
+/// Each ground has its own look and about the brightness of its colour.
+static void test_grounds(void **state) {
+    (void)state;
+    static uint8_t rgb[3][BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    for (int kind = 0; kind < 3; kind++) {
+        def.ground = (PreviewGround)kind;
+        draw(&def, &nothing, 0, rgb[kind]);
+    }
+    float plain = mean(rgb[PREVIEW_GROUND_PLAIN], 1);
+    assert_float_equal(mean(rgb[PREVIEW_GROUND_WOOD], 1), plain, 20);
+    assert_float_equal(mean(rgb[PREVIEW_GROUND_STONE], 1), plain, 20);
+    for (int kind = 0; kind < 3; kind++) {
+        float spread = 0;
+        for (int i = 0; i < W * H; i++) spread += fabsf(rgb[kind][3 * i + 1] - mean(rgb[kind], 1));
+        spread /= W * H;
+        assert_true(kind == PREVIEW_GROUND_PLAIN ? spread < 4 : spread > 4);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_white_paper), cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember),
+        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember), cmocka_unit_test(test_ash_pales),
+        cmocka_unit_test(test_skies), cmocka_unit_test(test_grounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

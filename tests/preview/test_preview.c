@@ -272,12 +272,25 @@ static void test_bad_defs(void **state) {
     REFUSED(def.sun_colour[2] = NAN, "colour");
     REFUSED(def.ground_colour[2] = -1, "colour");
     REFUSED(def.exposure = 0, "exposure");
+    REFUSED(def.camera.aperture = -1, "aperture");
+    REFUSED(def.camera.aperture = NAN, "aperture");
+    REFUSED(def.camera.focus = -1, "focus");
+    REFUSED(def.camera.focus = INFINITY, "focus");
+    REFUSED(def.shutter = -0.1f, "shutter");
+    REFUSED(def.shutter = NAN, "shutter");
+    REFUSED(def.pace = 0, "pace");
+    REFUSED(def.ground = (PreviewGround)9, "ground");
+    REFUSED(def.sky = (PreviewSky)9, "sky");
+    REFUSED(def.sky = PREVIEW_SKY_PICTURE, "sky_picture");
+    REFUSED(def.sky_turn = NAN, "sky_turn");
     REFUSED(def.ground_height = NAN, "ground_height");
     REFUSED(def.ground_height = INFINITY, "ground_height");
     REFUSED(def.shape_count = 1, "shapes");
     PreviewShape shape = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0, .temperature = 293};
     REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
-    shape.radius = 1, shape.temperature = NAN;
+    shape.radius = 1, shape.velocity[1] = NAN;
+    REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
+    shape.velocity[1] = 0, shape.temperature = NAN;
     REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
     shape.temperature = 293, shape.kind = SINGE_COLLIDER_BOX; // rotation is not a unit quaternion
     REFUSED((def.shapes = &shape, def.shape_count = 1), "shape");
@@ -330,7 +343,7 @@ static void test_out_of_memory(void **state) {
     PreviewShape shapes[2] = {{.kind = SINGE_COLLIDER_SPHERE, .radius = 0.01f, .temperature = 293},
                               {.kind = SINGE_COLLIDER_PLANE, .rotation = {0, 0, 0, 1}, .temperature = 293}};
     PreviewDef def = small();
-    def.samples = 1, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes, def.shape_count = 2;
+    def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes, def.shape_count = 2;
     Quad q;
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;

@@ -1,0 +1,147 @@
+// The lens and the shutter: what blurs, what does not, and that nothing hangs on threads.
+
+#include "fixture.h"
+#include "synthetic.h"
+
+#include <math.h>
+
+enum { STRIPES = 32 };
+
+/// A sheet of black and white stripes across x, straight below the camera.
+static void striped(Quad *q, PreviewDef *def, const Image **pictures, Image *image, uint8_t texels[3 * STRIPES]) {
+    for (int i = 0; i < STRIPES; i++) memset(texels + 3 * i, i & 1 ? 255 : 0, 3);
+    *image = (Image){.width = STRIPES, .height = 1, .rgb = texels};
+    *pictures = image;
+    quad_make(q, 0.1f, 0.1f);
+    *def = above();
+    def->pictures = pictures, def->sheet_count = 1, def->samples = 64;
+}
+
+/// Mean difference between neighbours along a direction, in the middle of the sheet.
+static float sharpness(const uint8_t *rgb, int dx, int dy) {
+    float sum = 0;
+    int count = 0;
+    for (int y = H / 2 - 14; y < H / 2 + 14; y++)
+        for (int x = W / 2 - 14; x < W / 2 + 14; x++, count++)
+            sum += (float)abs(pixel(rgb, x, y)[1] - pixel(rgb, x + dx, y + dy)[1]);
+    return sum / (float)count;
+}
+
+static void test_lens(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    uint8_t texels[3 * STRIPES];
+    Image image;
+    const Image *pictures[1];
+    Quad q;
+    PreviewDef def;
+    striped(&q, &def, pictures, &image, texels);
+    draw(&def, &q.surface, 0, rgb);
+    float pinhole = sharpness(rgb, 1, 0);
+    def.camera.aperture = 0.04f, def.camera.focus = 0.4f; // the sheet's distance
+    draw(&def, &q.surface, 0, rgb);
+    float focused = sharpness(rgb, 1, 0);
+    def.camera.focus = 0.25f;
+    draw(&def, &q.surface, 0, rgb);
+    float near = sharpness(rgb, 1, 0);
+    def.camera.focus = 2;
+    draw(&def, &q.surface, 0, rgb);
+    float far = sharpness(rgb, 1, 0);
+    static uint8_t target[BYTES];
+    def.camera.focus = 0; // the target's distance
+    draw(&def, &q.surface, 0, target);
+    def.camera.focus = 0.5f;
+    draw(&def, &q.surface, 0, rgb);
+    assert_memory_equal(target, rgb, BYTES);
+    assert_true(pinhole > 30);
+    assert_true(focused > 0.9f * pinhole);
+    assert_true(near < 0.3f * pinhole);
+    assert_true(far < 0.3f * pinhole);
+}
+
+/// What the lens spreads must be drawn wherever it is spread to.
+static void test_lens_reaches(void **state) {
+    (void)state;
+    static uint8_t wide[BYTES], none[BYTES];
+    Quad q;
+    quad_make(&q, 0.02f, 0.3f);
+    PreviewDef def = above();
+    def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0; // no shadow
+    def.samples = 64, def.camera.aperture = 0.1f, def.camera.focus = 0.5f, def.ground = PREVIEW_GROUND_PLAIN;
+    def.ground_colour[0] = def.ground_colour[1] = def.ground_colour[2] = 0;
+    draw(&def, &q.surface, 0, wide);
+    def.camera.aperture = 0;
+    draw(&def, &q.surface, 0, none);
+    // 5 cm of lens over 20 cm beyond the sheet: 7.5 cm around it on the ground, besides its own 3.3 cm
+    int beyond = (int)(0.07f / (0.5f * tanf(0.35f)) * (H / 2));
+    assert_true(pixel(none, W / 2 + beyond, H / 2)[1] < 8);
+    assert_true(pixel(wide, W / 2 + beyond, H / 2)[1] > 12);
+}
+
+static void test_shutter(void **state) {
+    (void)state;
+    static uint8_t still[BYTES], moving[BYTES];
+    static float velocity[4][3];
+    uint8_t texels[3 * STRIPES];
+    Image image;
+    const Image *pictures[1];
+    Quad q;
+    PreviewDef def;
+    striped(&q, &def, pictures, &image, texels);
+    draw(&def, &q.surface, 0, still);
+    for (int i = 0; i < 4; i++) velocity[i][0] = 0.5f;
+    q.surface.velocity = velocity;
+    draw(&def, &q.surface, 0, moving); // with no shutter nothing may change
+    assert_memory_equal(still, moving, BYTES);
+    def.shutter = 0.02f; // 1 cm of way, and stripes of 6 mm
+    draw(&def, &q.surface, 0, moving);
+    assert_true(sharpness(moving, 1, 0) < 0.5f * sharpness(still, 1, 0));
+    for (int i = 0; i < 4; i++) velocity[i][0] = 0, velocity[i][1] = 0.5f;
+    draw(&def, &q.surface, 0, moving); // along the stripes
+    assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
+    for (int i = 0; i < 4; i++) velocity[i][0] = NAN, velocity[i][1] = 1e30f;
+    draw(&def, &q.surface, 0, moving); // as if it stood still
+    assert_true(sharpness(moving, 1, 0) > 0.9f * sharpness(still, 1, 0));
+}
+
+static void test_moving_ball(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    def.samples = 32, def.ground_height = -INFINITY, def.shutter = 0.1f;
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .radius = 0.02f, .temperature = 1300, .velocity = {1, 0, 0}};
+    def.shapes = &ball, def.shape_count = 1;
+    draw(&def, &nothing, 0, rgb);
+    int way = (int)(0.045f / (0.5f * tanf(0.35f)) * (H / 2)), off = (int)(0.045f / (0.5f * tanf(0.35f)) * (H / 2));
+    assert_true(pixel(rgb, W / 2 + way, H / 2)[0] > 150 && pixel(rgb, W / 2 - way, H / 2)[0] > 150);
+    assert_true(pixel(rgb, W / 2, H / 2 + off)[0] < 140);
+}
+
+static void test_threads(void **state) {
+    (void)state;
+    enum { BIG_W = 200, BIG_H = 150, BIG = BIG_W * BIG_H * 3 };
+    static uint8_t pictures[3][BIG];
+    SingeSurface surface;
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 24, 0.05f, &surface));
+    for (uint32_t i = 0; i < surface.vertex_count; i++) surface.velocity[i][2] = 0.2f * surface.rest_position[i][0];
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.03f}, .radius = 0.01f,
+                         .temperature = 1200, .velocity = {0.3f, 0.1f, 0}};
+    for (int threads = 1; threads <= 3; threads++) {
+        PreviewDef def = small();
+        def.width = BIG_W, def.height = BIG_H, def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
+        def.camera.aperture = 0.01f, def.shutter = 0.02f, def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
+        draw(&def, &surface, 0.5, pictures[threads - 1]);
+    }
+    assert_memory_equal(pictures[0], pictures[1], BIG);
+    assert_memory_equal(pictures[0], pictures[2], BIG);
+    synthetic_free(&surface);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lens), cmocka_unit_test(test_lens_reaches), cmocka_unit_test(test_shutter),
+        cmocka_unit_test(test_moving_ball), cmocka_unit_test(test_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,114 @@
+// The layers of a picture whose values are known.
+
+#include "fixture.h"
+#include "synthetic.h"
+
+#include <math.h>
+
+typedef struct Kept {
+    float beauty[H * W][3], glow[H * W][3], coverage[H * W], normal[H * W][3], temperature[H * W], burn[H * W];
+    float depth[H * W];
+    int32_t sheet[H * W], piece[H * W];
+} Kept;
+
+static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint8_t *rgb, Kept *kept) {
+    Preview *preview = NULL;
+    SingeError error = {0};
+    const PreviewLayers layers = {kept->beauty, kept->glow, kept->coverage, kept->normal, kept->temperature, kept->burn,
+                                  kept->depth, kept->sheet, kept->piece};
+    assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, &error), SINGE_OK);
+    preview_destroy(preview);
+}
+
+enum { ON = H / 2 * W + W / 2 + 5, OFF = 4 * W + 4 };
+
+static void test_values(void **state) {
+    (void)state;
+    static Kept kept;
+    static int32_t piece[4] = {7, 7, 7, 7};
+    Quad q;
+    quad_make(&q, 0.08f, 0.1f);
+    for (int i = 0; i < 4; i++) q.temperature[i] = 500, q.burn[i] = 0.25f, q.sheet[i] = 2;
+    q.surface.piece = piece;
+    PreviewDef def = above();
+    draw_layers(&def, &q.surface, NULL, &kept);
+    assert_float_equal(kept.depth[ON], 0.4f, 1e-4);
+    assert_float_equal(kept.depth[ON + 10], 0.4f, 1e-4); // along the view, not along the ray
+    assert_float_equal(kept.normal[ON][0], 0, 0.5); // char's wrinkles
+    assert_true(kept.normal[ON][2] > 0.7f);
+    assert_float_equal(kept.temperature[ON], 500, 0.01);
+    assert_float_equal(kept.burn[ON], 0.25, 1e-5);
+    assert_float_equal(kept.coverage[ON], 1, 0);
+    assert_int_equal(kept.sheet[ON], 2);
+    assert_int_equal(kept.piece[ON], 7);
+    assert_float_equal(kept.glow[ON][0], 0, 0);
+    assert_true(kept.beauty[ON][0] > 0);
+    assert_float_equal(kept.depth[OFF], 0.5f, 1e-4); // the table
+    assert_float_equal(kept.coverage[OFF], 0, 0);
+    assert_float_equal(kept.temperature[OFF], 0, 0);
+    assert_int_equal(kept.sheet[OFF], -1);
+    assert_int_equal(kept.piece[OFF], -1);
+    def.ground_height = -INFINITY;
+    draw_layers(&def, &q.surface, NULL, &kept);
+    assert_true(isinf(kept.depth[OFF]));
+}
+
+/// A fresh sheet that leans: its normal, to the eye from both sides.
+static void test_normal(void **state) {
+    (void)state;
+    static Kept kept;
+    Quad q;
+    quad_make(&q, 0.08f, 0.1f);
+    for (int i = 0; i < 4; i++) {
+        q.position[i][2] = 0.1f + 0.5f * q.position[i][0];
+        q.normal[i][0] = 0.5f / sqrtf(1.25f), q.normal[i][1] = 0, q.normal[i][2] = -1 / sqrtf(1.25f); // from below
+    }
+    PreviewDef def = above();
+    draw_layers(&def, &q.surface, NULL, &kept);
+    assert_float_equal(kept.normal[ON][0], -0.5f / sqrtf(1.25f), 1e-4);
+    assert_float_equal(kept.normal[ON][1], 0, 1e-4);
+    assert_float_equal(kept.normal[ON][2], 1 / sqrtf(1.25f), 1e-4);
+}
+
+static void test_glow(void **state) {
+    (void)state;
+    static Kept kept;
+    Quad q;
+    quad_make(&q, 0.08f, 0.1f);
+    for (int i = 0; i < 4; i++) q.burn[i] = i == 1 || i == 2 ? 0.9f : 0.6f, q.temperature[i] = 1100, q.rate[i] = 1;
+    PreviewDef def = above();
+    draw_layers(&def, &q.surface, NULL, &kept);
+    float most = 0;
+    for (int i = 0; i < W * H; i++) {
+        most = fmaxf(most, kept.glow[i][0]);
+        for (int c = 0; c < 3; c++) assert_true(kept.glow[i][c] >= 0 && kept.glow[i][c] <= kept.beauty[i][c] + 1e-5f);
+    }
+    assert_true(most > 0.3f);
+    assert_float_equal(kept.glow[OFF][0], 0, 0);
+}
+
+/// The picture is the same with layers and without, and so are the layers with and without the picture, whoever draws.
+static void test_same(void **state) {
+    (void)state;
+    static Kept one, two;
+    static uint8_t alone[BYTES], beside[BYTES];
+    SingeSurface surface;
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 30, 0.05f, &surface));
+    PreviewDef def = small();
+    draw(&def, &surface, 1, alone);
+    draw_layers(&def, &surface, beside, &one);
+    assert_memory_equal(alone, beside, BYTES);
+    def.thread_count = 3;
+    draw_layers(&def, &surface, NULL, &two);
+    assert_memory_equal(&one, &two, sizeof one);
+    synthetic_free(&surface);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values), cmocka_unit_test(test_normal), cmocka_unit_test(test_glow),
+        cmocka_unit_test(test_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
