@@ -1,5 +1,7 @@
 #include "cli/pictures.h"
 
+#include "cli/bench_preview.h"
+
 #include <stdio.h>
 
 bool pictures_available(void) { return false; }
@@ -24,6 +26,13 @@ SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
 
 SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error) {
     (void)pictures, (void)path, (void)error;
+    return SINGE_ERROR_STATE;
+}
+
+SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    (void)options, (void)table;
+    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
+    snprintf(error->message, sizeof error->message, "this singe was built without the preview");
     return SINGE_ERROR_STATE;
 }
 

@@ -45,7 +45,8 @@ static exr_result_t exr_describe(exr_context_t file, int width, int height, cons
     if (!result)
         result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
     for (int i = 0; i < count && !result; i++)
-        result = exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        result = exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1,
+                                 1);
     return result ? result : exr_write_header(file);
 }
 

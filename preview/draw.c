@@ -26,7 +26,7 @@ static void place_sample(int sample, float at[2]) {
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
 
-/// Rays of a sample through the pixels, each with its place on the lens and its time; SAMPLE_MIDDLE: of both the middle.
+/// Rays of a sample through the pixels, each with its place on the lens and its time: SAMPLE_MIDDLE of both.
 static void aim_block(const Preview *preview, Block *block, int sample, const float at[2]) {
     bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
     for (int i = 0; i < LANES; i++) {

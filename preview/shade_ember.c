@@ -2,10 +2,10 @@
 //
 //     d = (b' - EMBER_BURN) / |grad b|,   glow = blackbody(T') exp(-(d / w)^2),   w about EMBER_WIDTH,
 //
-// steep towards the char, slower to fade towards the ash. It is thinned, thickened and broken by noise that crawls along
-// the paper, brighter where air comes and goes, and flickers. Behind it sparks creep: a place of the ash glows again for
-// a moment when the time since it caught fire passes a delay that noise gives to it, so that the lines of one delay
-// wander over the ash as time goes by.
+// steep towards the char, slower to fade towards the ash. It is thinned, thickened and broken by noise that crawls
+// along the paper, brighter where air comes and goes, and flickers. Behind it sparks creep: a place of the ash glows
+// again for a moment when the time since it caught fire passes a delay that noise gives to it, so that the lines of one
+// delay wander over the ash as time goes by.
 
 #include "preview/paper.h"
 

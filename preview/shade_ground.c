@@ -34,7 +34,8 @@ static float year_rings(const Plank *p, uint32_t seed, float footprint) {
     float u = p->along + p->shift, bend = 0.011f * noise2(u * 2.3f, p->across * 9, seed);
     bend += 0.0022f * noise2(u * 9, p->across * 40, seed + 1);
     // the trunk's axis is below the plank and rises along it
-    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend, depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
+    float aside = p->across + 0.09f * (p->hue - 0.5f) + bend;
+    float depth = 0.012f + 0.09f * p->tone + 0.05f * (p->along - 0.6f);
     float radius = sqrtf(aside * aside + depth * depth), year = radius / (0.0034f + 0.0018f * p->hue);
     year += 0.35f * noise2(u * 1.3f, radius * 60, seed + 2);
     float within;
@@ -91,7 +92,8 @@ static void stone(const Preview *preview, V3 place, float footprint, Table *tabl
     // pale veins, thick and thin by turns, that break off
     float line = fabsf(noise2((x + warp) * 5.5f + 3, (y + fold + warp) * 2.1f, seed + 7));
     float width = 0.004f + 0.010f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
-    float vein = (1 - stepf(0.3f * width, width + 1.5f * footprint, line)) * stepf(-0.25f, 0.4f, noise2(x * 3, y * 3, seed + 9));
+    float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);
+    vein *= stepf(-0.25f, 0.4f, noise2(x * 3, y * 3, seed + 9));
     value += 0.85f * vein * minf(1, 0.003f / footprint + 0.35f);
     float warm = 0.5f * cloud - 0.3f * patch;
     table->albedo = v3_scale(v3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));

@@ -130,7 +130,8 @@ static void test_threads(void **state) {
     for (int threads = 1; threads <= 3; threads++) {
         PreviewDef def = small();
         def.width = BIG_W, def.height = BIG_H, def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
-        def.camera.aperture = 0.01f, def.shutter = 0.02f, def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
+        def.camera.aperture = 0.01f, def.shutter = 0.02f;
+        def.sky = PREVIEW_SKY_STUDIO, def.ground = PREVIEW_GROUND_STONE;
         draw(&def, &surface, 0.5, pictures[threads - 1]);
     }
     assert_memory_equal(pictures[0], pictures[1], BIG);
