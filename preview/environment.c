@@ -8,18 +8,16 @@
 
 #include "preview/internal.h"
 
-enum { AZIMUTH_COUNT = SKY_ACROSS, HEIGHT_COUNT = SKY_DOWN };
-
 /// Direction of the middle of a cell. Its middle longitude lies towards +y.
 static V3 sky_direction(int row, int column) {
-    float polar = PI_F * ((float)row + 0.5f) / HEIGHT_COUNT;
-    float azimuth = 2 * PI_F * (((float)column + 0.5f) / AZIMUTH_COUNT - 0.5f);
+    float polar = PI_F * ((float)row + 0.5f) / SKY_DOWN;
+    float azimuth = 2 * PI_F * (((float)column + 0.5f) / SKY_ACROSS - 0.5f);
     return v3(sinf(polar) * sinf(azimuth), sinf(polar) * cosf(azimuth), cosf(polar));
 }
 
 static float solid_angle(int row) {
-    float top = cosf(PI_F * (float)row / HEIGHT_COUNT), bottom = cosf(PI_F * (float)(row + 1) / HEIGHT_COUNT);
-    return (top - bottom) * 2 * PI_F / AZIMUTH_COUNT;
+    float top = cosf(PI_F * (float)row / SKY_DOWN), bottom = cosf(PI_F * (float)(row + 1) / SKY_DOWN);
+    return (top - bottom) * 2 * PI_F / SKY_ACROSS;
 }
 
 /// A soft-edged lamp about a direction, by angles across and up from it.
@@ -51,8 +49,8 @@ static V3 open_sky(V3 d, V3 sun) {
 /// Mean of a cell of the picture.
 static V3 pictured(const Preview *preview, int row, int column) {
     const Image *image = preview->def.sky_picture;
-    int x0 = column * image->width / AZIMUTH_COUNT, x1 = (column + 1) * image->width / AZIMUTH_COUNT;
-    int y0 = row * image->height / HEIGHT_COUNT, y1 = (row + 1) * image->height / HEIGHT_COUNT;
+    int x0 = column * image->width / SKY_ACROSS, x1 = (column + 1) * image->width / SKY_ACROSS;
+    int y0 = row * image->height / SKY_DOWN, y1 = (row + 1) * image->height / SKY_DOWN;
     x1 = x1 > x0 ? x1 : x0 + 1, y1 = y1 > y0 ? y1 : y0 + 1;
     V3 sum = {0, 0, 0};
     for (int y = y0; y < y1; y++)
@@ -72,8 +70,8 @@ static V3 sky_light(const Preview *preview, int row, int column) {
     case PREVIEW_SKY_STUDIO: return studio(turned, atan2f(sun.x, sun.y));
     case PREVIEW_SKY_OPEN: return open_sky(turned, sun);
     case PREVIEW_SKY_PICTURE: {
-        float across = (atan2f(turned.x, turned.y) / (2 * PI_F) + 0.5f) * AZIMUTH_COUNT;
-        return pictured(preview, row, (int)clampf(across, 0, AZIMUTH_COUNT - 1));
+        float across = (atan2f(turned.x, turned.y) / (2 * PI_F) + 0.5f) * SKY_ACROSS;
+        return pictured(preview, row, (int)clampf(across, 0, SKY_ACROSS - 1));
     }
     default: return v3(1, 1, 1);
     }
@@ -123,16 +121,21 @@ static void fill_ambient(Sky *sky) {
 
 /// Each cell: the mean of its surroundings, weighted by cos^16 of the angle.
 static void fill_blurred(Sky *sky) {
+    V3 direction[SKY_DOWN][SKY_ACROSS];
+    for (int row = 0; row < SKY_DOWN; row++)
+        for (int column = 0; column < SKY_ACROSS; column++) direction[row][column] = sky_direction(row, column);
     for (int cell = 0; cell < SKY_DOWN * SKY_ACROSS; cell++) {
-        V3 d = sky_direction(cell / SKY_ACROSS, cell % SKY_ACROSS), sum = {0, 0, 0};
+        V3 d = direction[cell / SKY_ACROSS][cell % SKY_ACROSS], sum = {0, 0, 0};
         float total = 0;
-        for (int row = 0; row < SKY_DOWN; row++)
+        for (int row = 0; row < SKY_DOWN; row++) {
+            float angle = solid_angle(row);
             for (int column = 0; column < SKY_ACROSS; column++) {
-                float w = v3_dot(d, sky_direction(row, column));
+                float w = v3_dot(d, direction[row][column]);
                 if (w <= 0.5f) continue;
-                w *= w, w *= w, w *= w, w *= w, w *= solid_angle(row);
+                w *= w, w *= w, w *= w, w *= w, w *= angle;
                 sum = v3_mad(sum, sky->radiance[row][column], w), total += w;
             }
+        }
         sky->blurred[cell / SKY_ACROSS][cell % SKY_ACROSS] = v3_scale(sum, 1 / total);
     }
 }

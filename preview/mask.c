@@ -17,7 +17,7 @@ static int blocks_down(const Preview *preview) { return (preview->def.height + B
 
 size_t mask_size(const Preview *preview) { return (size_t)blocks_across(preview) * (size_t)blocks_down(preview); }
 
-/// Widens the rectangle, in pixels, to hold a point as the lens spreads it. Behind the camera or too near to it: everything.
+/// Widens the rectangle, in pixels, to hold a point as the lens spreads it. Behind the camera or too near: everything.
 static void include(const Preview *preview, V3 p, Rectangle *r) {
     const Camera *camera = &preview->camera;
     V3 d = v3_sub(p, camera->eye);
