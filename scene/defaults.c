@@ -37,6 +37,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->fps = 24;
     scene->steps = 20;
     scene->sim = singe_default_sim();
+    scene->sim.surface_detail = 0.4e-3f;
     default_preview(&scene->preview);
     return true;
 }

@@ -484,6 +484,11 @@ static const SchemaRow scene_rows[] = {
     {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), WITHIN(0, 1000), .doc = "for drag and wind"},
     {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), WITHIN(1e-9, 1),
      .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
+    {"detail", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_detail), WITHIN(0, 1000),
+     .doc = "how finely the drawn mesh is cut near the front: distance of the points where it is asked what has burnt, a "
+            "sixteenth of a cell or so at least; 0: only the cells' own corners and centres, as in the paper"},
+    {"raggedness", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_raggedness), WITHIN(0, 1000),
+     .doc = "how far noise eats into burnt edges at most, and no farther than half a cell; acts with `detail` only"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
      .flags = ROW_REQUIRED, .doc = "what burns, at least one"},
     {"sources", ROW_LIST, DIM_NONE, AT(Scene, sources), EXTRA(Scene, source_count), .sub = &schema_source,

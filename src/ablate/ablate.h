@@ -27,4 +27,15 @@ SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
                            SingeError *error);
 
+/// How finely the surface is drawn near the front.
+typedef struct SurfaceDetail {
+    float size;       ///< m, distance of the points of the level set, > 0
+    float raggedness; ///< m, how far burnt edges are eaten into at most, >= 0
+} SurfaceDetail;
+
+/// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes back
+/// before it returns.
+SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
+                                Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error);
+
 #endif

@@ -67,6 +67,12 @@ void piece_update(Removal *removal, EventList *events);
 SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error);
 SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
 
+/// Empties a surface but for its allocator.
+void surface_clear(SingeSurface *surface);
+
+/// Fills the normals of a surface's vertices from its triangles.
+void surface_normals(SingeSurface *surface);
+
 /// Fills the vertex of a key at `index` (all but its normal).
 void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key, uint32_t index,
                     SingeSurface *surface);

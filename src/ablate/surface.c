@@ -93,7 +93,7 @@ static void fill_vertices(AblatePlan *plan, const Shell *shell, const State *sta
 
 /// The sum of a triangle's vectors 2 A n over the triangles around each vertex, made unit. Where they
 /// cancel, +z.
-static void fill_normals(SingeSurface *surface) {
+void surface_normals(SingeSurface *surface) {
     memset(surface->normal, 0, surface->vertex_count * sizeof *surface->normal);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *triangle = surface->triangles[t];
@@ -120,6 +120,6 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
     draw_cells(plan, shell, state, surface);
     TRY(surface_reserve_vertices(surface, count_vertices(plan), error));
     fill_vertices(plan, shell, state, surface);
-    if (surface->vertex_count) fill_normals(surface);
+    if (surface->vertex_count) surface_normals(surface);
     return SINGE_OK;
 }

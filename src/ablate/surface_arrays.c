@@ -36,11 +36,14 @@ void singe_surface_free(SingeSurface *surface) {
     *surface = (SingeSurface){0};
 }
 
-/// Empties a surface but for its allocator.
-static SingeResult fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
+void surface_clear(SingeSurface *surface) {
     SingeAllocator allocator = surface->allocator;
     singe_surface_free(surface);
     surface->allocator = allocator;
+}
+
+static SingeResult fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
+    surface_clear(surface);
     return error_set(error, code, "ablate", -1, "%s", message);
 }
 

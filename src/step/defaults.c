@@ -136,6 +136,8 @@ static SingeSimDef standard_sim(void) {
         .heat_tolerance = 1e-5f,
         .wind = standard_wind(),
         .solver = standard_solver(),
+        .surface_detail = 0,
+        .surface_raggedness = 2e-3f,
     };
 }
 

@@ -47,6 +47,8 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     if (!in_range(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
     if (!in_range(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
     if (!in_range(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";
+    if (!in_range(def->surface_detail, 0, 1e3f)) what = "surface_detail must be between 0 and 1000 m";
+    if (!in_range(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
     if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
     return wind_check(&def->wind, error);

@@ -45,6 +45,8 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     STREAM(stream, def->heat_tolerance);
     def_wind(stream, &def->wind);
     def_solver(stream, &def->solver);
+    STREAM(stream, def->surface_detail);
+    STREAM(stream, def->surface_raggedness);
 }
 
 /// A parameter's numbers; its values at the particles are the sheet's params.

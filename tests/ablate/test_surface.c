@@ -2,6 +2,7 @@
 #include "ablate/burning_sheet.h"
 
 #include "ablate/ablate.h"
+#include "ablate/drawn_mesh.h"
 #include "base/random.h"
 #include "base/vec.h"
 
@@ -39,25 +40,6 @@ static void finish(Drawing *d) {
 
 static void set_level(Drawing *d, uint32_t particle, float level) {
     d->sheet->state.burn.mass[particle] = field_at(d->sheet->shell.matter.mass_loss, particle) + level;
-}
-
-/// Twice the area along z.
-static double doubled_area(const SingeSurface *s, uint32_t t) {
-    const uint32_t *corners = s->triangles[t];
-    const float *a = s->position[corners[0]], *b = s->position[corners[1]], *c = s->position[corners[2]];
-    double bx = (double)b[0] - (double)a[0], by = (double)b[1] - (double)a[1];
-    double cx = (double)c[0] - (double)a[0], cy = (double)c[1] - (double)a[1];
-    return bx * cy - by * cx;
-}
-
-/// The area; every triangle turned as its cell and not empty.
-static double area_of(const SingeSurface *s) {
-    double area = 0;
-    for (uint32_t t = 0; t < s->triangle_count; t++) {
-        assert_true(doubled_area(s, t) > 0);
-        area += doubled_area(s, t) / 2;
-    }
-    return area;
 }
 
 static void cases_of_one_cell(void **unused) {
@@ -204,11 +186,18 @@ static void never_ignited_ends_do_not_count(void **unused) {
     finish(d);
 }
 
-typedef struct Edge { uint32_t a, b; } Edge;
-
-static int compare_edges(const void *x, const void *y) {
-    const Edge *p = x, *q = y;
-    return p->a != q->a ? (p->a < q->a ? -1 : 1) : p->b != q->b ? (p->b < q->b ? -1 : 1) : 0;
+/// The part of a triangle with area `whole` that is inside, by eq 7.
+static double part_inside(const float level[3], double whole) {
+    double sum = 0;
+    int inside = 0;
+    for (int i = 0; i < 3; i++) inside += level[i] >= 0;
+    if (inside == 0 || inside == 3) return inside ? whole : 0;
+    for (int i = 0; i < 3; i++) {
+        if ((level[i] >= 0) != (inside == 1)) continue; // the one that is alone
+        double own = (double)level[i], p = (double)level[(i + 1) % 3], q = (double)level[(i + 2) % 3];
+        sum = own / (own - p) * (own / (own - q)) * whole;
+    }
+    return inside == 1 ? sum : whole - sum;
 }
 
 /// Both ends on the level set, or both on one side of the sheet.
@@ -222,13 +211,7 @@ static bool on_boundary(const SingeSurface *s, uint32_t a, uint32_t b, float wid
 /// Every edge is walked once in each direction, or once in all where the surface ends.
 static void expect_no_cracks(const SingeSurface *s, float width, float height) {
     size_t count = 3 * (size_t)s->triangle_count;
-    Edge *edges = calloc(count + 1, sizeof *edges);
-    for (uint32_t t = 0; t < s->triangle_count; t++)
-        for (uint32_t i = 0; i < 3; i++) {
-            edges[3 * t + i] = (Edge){s->triangles[t][i], s->triangles[t][(i + 1) % 3]};
-            assert_true(edges[3 * t + i].a != edges[3 * t + i].b && edges[3 * t + i].a < s->vertex_count);
-        }
-    qsort(edges, count, sizeof *edges, compare_edges);
+    Edge *edges = drawn_edges(s);
     for (size_t k = 0; k < count; k++) {
         Edge back = {edges[k].b, edges[k].a};
         assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
@@ -236,20 +219,6 @@ static void expect_no_cracks(const SingeSurface *s, float width, float height) {
         assert_int_equal(shared, !on_boundary(s, back.a, back.b, width, height));
     }
     free(edges);
-}
-
-/// The part of a triangle with area `whole` that is inside, by eq 7.
-static double part_inside(const float level[3], double whole) {
-    double sum = 0;
-    int inside = 0;
-    for (int i = 0; i < 3; i++) inside += level[i] >= 0;
-    if (inside == 0 || inside == 3) return inside ? whole : 0;
-    for (int i = 0; i < 3; i++) {
-        if ((level[i] >= 0) != (inside == 1)) continue; // the one that is alone
-        double own = (double)level[i], p = (double)level[(i + 1) % 3], q = (double)level[(i + 2) % 3];
-        sum = own / (own - p) * (own / (own - q)) * whole;
-    }
-    return inside == 1 ? sum : whole - sum;
 }
 
 static void random_levels_leave_no_cracks(void **unused) {
@@ -294,11 +263,7 @@ static void levels_near_zero_leave_no_cracks(void **unused) {
         draw(d);
         const SingeSurface *s = &d->surface;
         size_t count = 3 * (size_t)s->triangle_count;
-        Edge *edges = calloc(count + 1, sizeof *edges);
-        for (uint32_t t = 0; t < s->triangle_count; t++)
-            for (uint32_t i = 0; i < 3; i++)
-                edges[3 * t + i] = (Edge){s->triangles[t][i], s->triangles[t][(i + 1) % 3]};
-        qsort(edges, count, sizeof *edges, compare_edges);
+        Edge *edges = drawn_edges(s);
         for (size_t k = 0; k < count; k++) {
             assert_true(edges[k].a != edges[k].b);
             assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);

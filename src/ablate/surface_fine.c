@@ -1,0 +1,111 @@
+// The drawn surface, refined near the front.
+//
+// The level of a burning sheet's particles is made smooth (fine_spline.c) and eaten into by noise (fine_noise.c). Where
+// it changes sign within a cell, the cell's triangles are split into k^2 fine ones, k = side / (sqrt(2) detail): their
+// points form a square lattice at 45 degrees to the cell with this spacing (fine_points.c). Marching triangles cut them
+// (fine_march.c), and fields are taken at their vertices (fine_vertices.c). Nothing of this goes back to the simulation.
+#include "ablate/surface_fine.h"
+
+#include <string.h>
+
+#define LEVEL_GONE 0.12f
+
+static FineSheet describe(const SurfaceDetail *detail, const Sheet *sheet) {
+    float splits = roundf(sheet->cell_size / (1.4142136f * detail->size));
+    FineSheet fine = {.splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits};
+    float spacing = sheet->cell_size / (1.4142136f * (float)fine.splits);
+    fine.reach = fminf(detail->raggedness, 0.5f * sheet->cell_size);
+    fine.octaves = fine_octaves(spacing);
+    return fine;
+}
+
+static bool allocate(Fine *fine) {
+    const Shell *shell = fine->shell;
+    Memory *memory = fine->memory;
+    size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
+    bool good = NEW(memory, fine->sheets, shell->sheet_count) && NEW(memory, fine->raw_level, shell->particle_count);
+    for (int f = 0; f < SPLINE_COUNT; f++)
+        good = good && NEW(memory, fine->splines[f].edge, sides) &&
+               NEW(memory, fine->splines[f].corner, shell->vertex_count);
+    return good && NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
+           NEW(memory, fine->near_front, cells) && NEW(memory, fine->cell_point, cells) &&
+           NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
+           NEW(memory, fine->side_owner, sides) && NEW(memory, fine->side_cut, sides + 1);
+}
+
+static void release(Fine *fine) {
+    const Shell *shell = fine->shell;
+    Memory *memory = fine->memory;
+    size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
+    FREE(memory, fine->sheets, shell->sheet_count);
+    FREE(memory, fine->raw_level, shell->particle_count);
+    for (int f = 0; f < SPLINE_COUNT; f++) {
+        FREE(memory, fine->splines[f].edge, sides);
+        FREE(memory, fine->splines[f].corner, shell->vertex_count);
+    }
+    FREE(memory, fine->cell_value, cells);
+    FREE(memory, fine->low, cells);
+    FREE(memory, fine->near_front, cells);
+    FREE(memory, fine->cell_point, cells);
+    FREE(memory, fine->near, cells);
+    FREE(memory, fine->side_point, sides);
+    FREE(memory, fine->side_owner, sides);
+    FREE(memory, fine->side_cut, sides + 1);
+    FREE(memory, fine->values, fine->point_count);
+    FREE(memory, fine->drawn, fine->point_count);
+    FREE(memory, fine->cuts, fine->cut_count);
+    FREE(memory, fine->vertices, fine->vertex_capacity);
+}
+
+/// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss; there
+/// the level goes on falling as fast as it fell before, so that the edge moves on evenly and does not stick to particles:
+///
+///   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
+static void fill_levels(Fine *fine) {
+    const State *state = fine->state;
+    const BurnState *burn = &state->burn;
+    float now = (float)state->time;
+    for (uint32_t i = 0; i < fine->shell->particle_count; i++) {
+        float level = fine->plan->level[i], burnt = burn->time_burnt[i];
+        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) level = fminf(level, -1e-4f); // also in a loose piece
+        if (level < 0 && burnt >= 0) {
+            float loss = 1 - field_at(fine->shell->matter.mass_loss, i), took = burnt - burn->time_ignited[i];
+            float gone = loss * (now - burnt);
+            level = fminf(level, gone < LEVEL_GONE * took ? -gone / took : -LEVEL_GONE);
+        }
+        fine->raw_level[i] = level;
+    }
+}
+
+static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
+    const State *state = fine->state;
+    if (!allocate(fine))
+        return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+    for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
+        fine->sheets[s] = describe(detail, &fine->shell->sheets[s]);
+    fill_levels(fine);
+    const float *const fields[SPLINE_COUNT] = {
+        [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass,
+        [SPLINE_TEMPERATURE] = state->heat.temperature, [SPLINE_PEAK] = state->heat.temperature_peak,
+        [SPLINE_RATE] = state->burn.burn_rate};
+    for (int f = 0; f < SPLINE_COUNT; f++)
+        if (fields[f]) fine_spline(fine, fields[f], &fine->splines[f]);
+    fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);
+    TRY(fine_points(fine, error));
+    TRY(fine_march(fine, error));
+    TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
+    fine_vertices(fine);
+    return SINGE_OK;
+}
+
+SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
+                                Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
+    Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
+    ablate_levels(plan, shell, state);
+    surface->vertex_count = surface->triangle_count = 0;
+    SingeResult result = draw(&fine, detail, error);
+    release(&fine);
+    if (result) surface_clear(surface);
+    else if (surface->vertex_count) surface_normals(surface);
+    return result;
+}

@@ -1,0 +1,132 @@
+// The drawn surface refined near the front: what the files fine_*.c share.
+#ifndef ABLATE_SURFACE_FINE_H
+#define ABLATE_SURFACE_FINE_H
+
+#include "ablate/ablate_plan.h"
+#include "base/vec.h"
+
+/// A fine triangle has at most this part of its cell's sides.
+enum { FINE_SPLITS_MAX = 16 };
+
+/// The fields that are drawn smoothly.
+typedef enum SplineField {
+    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_COUNT
+} SplineField;
+
+/// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
+typedef struct Spline {
+    float *edge;   ///< [blue springs]
+    float *corner; ///< [vertices]
+} Spline;
+
+/// A place on the sheet: a triangle of a cell and the weights of its corners side, side + 1 and the cell's centre.
+typedef struct FinePlace {
+    uint32_t cell;
+    uint8_t side;
+    float weight[3];
+} FinePlace;
+
+/// What a place is drawn by.
+typedef struct FineValue {
+    float level, mass;
+} FineValue;
+
+/// A vertex to be.
+typedef struct FineVertex {
+    FinePlace place;
+    float mass;
+    uint32_t source; ///< vertex of the input, or SHELL_NONE
+} FineVertex;
+
+/// How a sheet's cells near the front are split.
+typedef struct FineSheet {
+    int splits;    ///< k: a side becomes k fine ones
+    float reach;   ///< m, how far noise eats into the edge at most
+    int octaves;   ///< of the noise
+} FineSheet;
+
+/// A drawing in progress. Points are numbered: vertices, cells' centres, points on split sides of cells near the front,
+/// points within these cells.
+typedef struct Fine {
+    const AblatePlan *plan;
+    const Shell *shell;
+    const State *state;
+    Memory *memory;
+    Pool *pool;
+    FineSheet *sheets;       ///< [sheets]
+    Spline splines[SPLINE_COUNT];
+    float *raw_level;        ///< [particles] m'; below 0 for what is gone
+    float *cell_value;       ///< [cells] scratch of the splines
+    float *low;              ///< [cells] the level's least coefficient
+    uint8_t *near_front;     ///< [cells] flags of fine_points.c
+    uint32_t *cell_point;    ///< [cells] first of its points; where near_front
+    uint32_t *side_point;    ///< [blue springs] first of the points on a side, or SHELL_NONE
+    uint32_t *near;          ///< [near_count] the cells near the front
+    uint32_t *side_owner;    ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
+    uint32_t near_count, side_count, point_count;
+    FineValue *values;       ///< [point_count]
+    uint32_t *drawn;         ///< [point_count] 1 + index of the vertex drawn there, 0 for none
+    uint32_t *side_cut;      ///< [blue springs] first of the side's entries in `cuts`
+    uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
+    uint32_t cut_count;
+    FineVertex *vertices;    ///< [vertex_capacity]
+    uint32_t vertex_count, vertex_capacity;
+    SingeSurface *surface;
+} Fine;
+
+// ---- fine_spline.c
+
+/// Fills the coefficients of a field with a value at every particle.
+void fine_spline(const Fine *fine, const float *values, Spline *spline);
+
+/// The same for what is 1 in cells that are left and -1 in others.
+void fine_spline_cells(const Fine *fine, Spline *spline);
+
+/// The least and the greatest coefficient of a cell: the spline lies between them.
+void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high);
+
+float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place);
+
+/// The place that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
+/// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
+FinePlace fine_walk(const Shell *shell, FinePlace place, float x, float y);
+
+/// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth curves
+/// where their sides have corners, so that the sides are nowhere to be seen.
+static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f); }
+
+// ---- fine_noise.c
+
+/// How many octaves of the noise points with this spacing (m) can show.
+int fine_octaves(float spacing);
+
+/// The level and the mass that a place is drawn by.
+FineValue fine_value(const Fine *fine, FinePlace place);
+
+// ---- fine_points.c
+
+/// Finds the cells near the front and numbers their points; then evaluates all points that may be drawn, and decides
+/// which cells are split.
+SingeResult fine_points(Fine *fine, SingeError *error);
+
+/// Point (i, j) of a cell's triangle: i of k along the side, j of k towards the centre.
+uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j);
+FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j);
+
+bool fine_is_split(const Fine *fine, uint32_t cell);
+
+static inline int fine_splits(const Fine *fine, uint32_t cell) {
+    return fine->sheets[fine->shell->matter.sheet[shell_centre(fine->shell, cell)]].splits;
+}
+
+// ---- fine_march.c
+
+/// Draws the triangles and lists their vertices.
+SingeResult fine_march(Fine *fine, SingeError *error);
+
+// ---- fine_vertices.c
+
+/// Fills the surface's vertices, all but their normals.
+void fine_vertices(const Fine *fine);
+
+#endif
