@@ -20,6 +20,8 @@ BenchFn bench_step;
 /// One stage of burning steps.
 BenchFn bench_heat;
 BenchFn bench_ablate;
+/// The drawn surface of a burning sheet by detail: triangles and cost.
+BenchFn bench_surface;
 /// Bytes a spring.
 BenchFn bench_memory;
 

@@ -48,7 +48,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     BenchSetup setup = sheet_setup(options, BENCH_SWING, 20);
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads, def.instructions = options->instructions, def.solver = setup.solver;
-    def.pace = pace;
+    def.pace = pace, def.surface_detail = (float)options->detail;
     if (allocator) def.allocator = *allocator;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;

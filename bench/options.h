@@ -43,6 +43,7 @@ typedef struct BenchOptions {
     int threads;
     double time;         ///< s
     double smoothing;    ///< 1/s; below 0: the measurement's default
+    double detail;       ///< m, of the drawn surface; 0: cells as they are
     double limit_ms;     ///< 0: none
     bool quick;
     int material_count;

@@ -35,6 +35,8 @@ static const struct {
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
     {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
     {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
+    {"surface", "bench surface", bench_surface, SIZES,
+     "The drawn surface of a burning sheet, by how finely it is drawn: triangles and milliseconds."},
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,

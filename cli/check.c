@@ -128,8 +128,8 @@ static void report_times(const Job *job, const CheckTimes *times, float thickeni
     printf("thickening    %.3g (of the front, by F)\n", (double)thickening);
     printf("frames        %d at %.4g a second, %d steps of %.3g ms each\n", scene->frames, (double)scene->fps,
            scene->steps, 1e3 * (double)scene->sim.time_step);
-    printf("time          about %s: a step %.2f ms, a picture %.0f ms, with %d threads\n", text, 1e3 * times->step,
-           1e3 * times->picture, job->hooks.thread_count);
+    printf("time          about %s: a step %.2f ms, a surface %.2f ms, a picture %.0f ms, with %d threads\n", text,
+           1e3 * times->step, 1e3 * times->surface, 1e3 * times->picture, job->hooks.thread_count);
 }
 
 static ExitCode check_scene(Console *console, const char *path, const SetList *sets, int threads) {

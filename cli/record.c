@@ -98,6 +98,8 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
             record->video ? "true" : "false");
     write_seconds(file, &record->totals);
     write_totals(file, &record->totals);
+    fprintf(file, "  \"drawn\": {\"triangles\": %" PRIu32 ", \"triangles_fine\": %" PRIu32 "},\n", record->triangles,
+            record->fine_triangles);
     write_census(file, record);
     fputs("  \"scene\": ", file);
     scene_dump(scene, SCENE_JSON, 2, file);

@@ -16,6 +16,7 @@ typedef struct Record {
     bool preview, video;
     SingeCensus census;
     float thickening;
+    uint32_t triangles, fine_triangles; ///< of the last frame drawn
     Totals totals;
 } Record;
 

@@ -163,6 +163,7 @@ static SingeResult write_frame(Run *run, int frame, SingeStats *stats, SingeErro
     double begun = console_clock(), clock = begun;
     read_timers(run, &cost);
     SingeResult result = singe_sim_surface(run->sim, &run->surface);
+    cost.surface = 1e3 * (console_clock() - begun);
     if (result) {
         *error = *singe_sim_error(run->sim);
         return result;
@@ -178,7 +179,8 @@ static SingeResult write_frame(Run *run, int frame, SingeStats *stats, SingeErro
     if (run->pictures && (result = write_picture(run, frame, stats->time, error))) return result;
     charge(run, TOTAL_PREVIEW, &clock);
     cost.output = 1e3 * (clock - begun);
-    cost.triangles = run->surface.triangle_count;
+    cost.triangles = run->record.triangles = run->surface.triangle_count;
+    cost.fine_triangles = run->record.fine_triangles = run->surface.fine_triangle_count;
     result = stats_write(&run->stats, frame, stats, run->totals, &cost, error);
     if (!result) run->record.frames_done = frame;
     return result;
@@ -318,6 +320,10 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
                  1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
                  stats.particles);
+    double frames = record->frames_done > 0 ? record->frames_done : 1;
+    console_note(run->console, "drawn %u triangles at last, %.0f %% of them near the front; %.1f ms a surface",
+                 record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),
+                 1e3 * run->totals->output_seconds[TOTAL_SURFACE] / frames);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
     if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume goes on from here");
     return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;

@@ -13,8 +13,8 @@ typedef struct StatsFile {
 
 /// What a frame took (ms) and drew.
 typedef struct FrameCost {
-    double stage[SINGE_STAGE_COUNT], output;
-    uint64_t triangles;
+    double stage[SINGE_STAGE_COUNT], surface, output; ///< output is with the surface
+    uint64_t triangles, fine_triangles;
 } FrameCost;
 
 /// Opens the file: empty with its header when `frames_kept` is 0, else cut behind that many frames' lines, which

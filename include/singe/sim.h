@@ -168,9 +168,12 @@ typedef struct SingeCensus {
 SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
-/// (eq 7, Fig 6). All arrays belong to the surface.
+/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely and burnt edges ragged by noise that is
+/// fixed to the sheet (docs/equations.md); vertices of the input keep their `source_vertex`. All arrays belong to the
+/// surface.
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;
+    uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
     float (*position)[3];      ///< m
     float (*normal)[3];        ///< unit, area-weighted
     float (*uv)[2];

@@ -348,10 +348,10 @@ typedef struct SingeSimDef {
     float air_density;          ///< kg/m3, >= 0
     /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     float heat_tolerance;
-    /// m, distance of the points that the drawn surface is cut at near the front; 0: cells are drawn as they are (Fig 6).
-    /// A cell's sides are split into 16 parts at most.
+    /// m, distance of the points where the drawn surface is cut near the front, a cell's side over 23 at least; 0: cells
+    /// are drawn as they are (Fig 6)
     float surface_detail;
-    float surface_raggedness; ///< m, how far noise eats into burnt edges at most, half a cell at most; with a detail only
+    float surface_raggedness; ///< m, how far noise eats into burnt edges at most, and half a cell; needs a detail
     SingeWindDef wind;
     SingeSolverDef solver;
 } SingeSimDef;

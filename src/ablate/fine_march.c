@@ -176,8 +176,9 @@ static void march_cells(Marching *march) {
     const Fine *fine = march->fine;
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
-        if (fine_is_split(fine, c)) march_fine(march, c);
-        else march_coarse(march, c);
+        uint32_t before = fine->surface->triangle_count;
+        if (!fine_is_split(fine, c)) march_coarse(march, c);
+        else march_fine(march, c), fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
 }
 

@@ -60,15 +60,6 @@ static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, ui
     return sheet->reach * fminf(fmaxf(0.45f + sum, 0), 1);
 }
 
-/// Lengths of a cell's two axes at rest.
-static void cell_axes(const Shell *shell, uint32_t cell, float *x, float *y) {
-    const uint32_t *at = shell->cells[cell];
-    Vec corner[4];
-    for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
-    *x = 0.5f * vec_length(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])));
-    *y = 0.5f * vec_length(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])));
-}
-
 /// A step of at most half a cell.
 static float half_at_most(float length, float axis) {
     return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0;
@@ -77,6 +68,7 @@ static float half_at_most(float length, float axis) {
 /// S at a place.
 static float smooth_level(const Fine *fine, FinePlace place) {
     float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], place);
+    if (fine->flags[place.cell] & FINE_WHOLE) return level;
     return fminf(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], place)));
 }
 
@@ -87,8 +79,7 @@ FineValue fine_value(const Fine *fine, FinePlace place) {
     float least = smooth_level(fine, place), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
         float depth = eaten(fine, place, &fine->sheets[sheet], 1000 * sheet, &angle);
-        cell_axes(shell, place.cell, &x, &y);
-        x = half_at_most(depth, x), y = half_at_most(depth, y);
+        x = half_at_most(depth, fine->axes[place.cell][0]), y = half_at_most(depth, fine->axes[place.cell][1]);
         float c = cosf(angle), s = sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
         const float direction[3][2] = {{c, s}, {-0.5f * c - across * s, across * c - 0.5f * s},

@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-enum { NEAR_FRONT = 1, SPLIT = 2, EVEN = 4 };
-
 static bool alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
 static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
@@ -19,7 +17,16 @@ static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
 
 // ---- numbering
 
-/// Bounds of the cells' splines; EVEN where there is nothing to draw finely: one mass, not negative.
+/// Lengths of a cell's two axes at rest.
+static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
+    const uint32_t *at = shell->cells[cell];
+    Vec corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
+    axes[0] = 0.5f * vec_length(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])));
+    axes[1] = 0.5f * vec_length(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])));
+}
+
+/// Flags of the cells by the bounds of their splines, and their axes.
 static void bound_cells(Fine *fine) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         float low, high, whole, wholest, lightest, heaviest;
@@ -28,8 +35,10 @@ static void bound_cells(Fine *fine) {
         fine_spline_bounds(fine->shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
         low = fminf(low, fine_whole_level(whole));
         fine->low[c] = low;
-        fine->near_front[c] = low >= 0 && heaviest - lightest < 1e-5f ? EVEN : 0;
-        if (alive(fine, c) && high >= 0) fine->near_front[c] |= NEAR_FRONT; // until its neighbours have been asked
+        measure_axes(fine->shell, c, fine->axes[c]);
+        fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
+        if (whole == 1) fine->flags[c] |= FINE_WHOLE;
+        if (alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours have been asked
     }
 }
 
@@ -64,9 +73,9 @@ static SingeResult number(Fine *fine, SingeError *error) {
     uint64_t point = shell->particle_count;
     memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(fine->near_front[c] & NEAR_FRONT)) continue;
+        if (!(fine->flags[c] & FINE_NEAR)) continue;
         if (fine_splits(fine, c) > 1 && negative_around(fine, c)) number_cell(fine, c, &point);
-        else fine->near_front[c] &= (uint8_t)~NEAR_FRONT;
+        else fine->flags[c] &= (uint8_t)~FINE_NEAR;
         if (point > INT32_MAX)
             return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
     }
@@ -103,7 +112,7 @@ FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j) {
 static bool even_around(const Fine *fine, uint32_t vertex) {
     const Shell *shell = fine->shell;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        if (!(fine->near_front[shell->fan[k]] & EVEN)) return false;
+        if (!(fine->flags[shell->fan[k]] & FINE_EVEN)) return false;
     return true;
 }
 
@@ -144,7 +153,7 @@ static void evaluate_centres(void *context, int begin, int end) {
         FineValue *value = &fine->values[shell_centre(fine->shell, c)];
         *value = (FineValue){-1, 0};
         if (!alive(fine, c)) continue;
-        if (fine->near_front[c] & EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
+        if (fine->flags[c] & FINE_EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
         else *value = fine_value(fine, (FinePlace){c, 0, {0, 0, 1}});
     }
 }
@@ -190,7 +199,7 @@ static void evaluate_cells(void *context, int begin, int end) {
                 for (int i = 0; i + j < splits; i++) // the line i + j = k is the next triangle's i = 0
                     fine->values[fine_point(fine, cell, side, splits, i, j)] =
                         fine_value(fine, fine_point_place(cell, side, splits, i, j));
-        if (differs(fine, cell, splits)) fine->near_front[cell] |= SPLIT;
+        if (differs(fine, cell, splits)) fine->flags[cell] |= FINE_SPLIT;
     }
 }
 
@@ -206,5 +215,3 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
     return SINGE_OK;
 }
-
-bool fine_is_split(const Fine *fine, uint32_t cell) { return fine->near_front[cell] & SPLIT; }

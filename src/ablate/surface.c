@@ -115,7 +115,7 @@ void surface_normals(SingeSurface *surface) {
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
                            SingeError *error) {
     ablate_levels(plan, shell, state);
-    surface->vertex_count = surface->triangle_count = 0;
+    surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     TRY(surface_reserve_triangles(surface, most_triangles(plan, shell, state), error));
     draw_cells(plan, shell, state, surface);
     TRY(surface_reserve_vertices(surface, count_vertices(plan), error));

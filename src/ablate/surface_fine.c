@@ -28,7 +28,7 @@ static bool allocate(Fine *fine) {
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
     return good && NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
-           NEW(memory, fine->near_front, cells) && NEW(memory, fine->cell_point, cells) &&
+           NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) && NEW(memory, fine->cell_point, cells) &&
            NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
            NEW(memory, fine->side_owner, sides) && NEW(memory, fine->side_cut, sides + 1);
 }
@@ -45,7 +45,8 @@ static void release(Fine *fine) {
     }
     FREE(memory, fine->cell_value, cells);
     FREE(memory, fine->low, cells);
-    FREE(memory, fine->near_front, cells);
+    FREE(memory, fine->flags, cells);
+    FREE(memory, fine->axes, cells);
     FREE(memory, fine->cell_point, cells);
     FREE(memory, fine->near, cells);
     FREE(memory, fine->side_point, sides);
@@ -102,7 +103,7 @@ SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const Stat
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
     ablate_levels(plan, shell, state);
-    surface->vertex_count = surface->triangle_count = 0;
+    surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = draw(&fine, detail, error);
     release(&fine);
     if (result) surface_clear(surface);

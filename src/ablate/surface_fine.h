@@ -8,6 +8,14 @@
 /// A fine triangle has at most this part of its cell's sides.
 enum { FINE_SPLITS_MAX = 16 };
 
+/// Flags of a cell.
+enum {
+    FINE_NEAR = 1,  ///< near the front: its points are numbered
+    FINE_SPLIT = 2, ///< the level changes sign in it
+    FINE_EVEN = 4,  ///< nothing to draw finely: one mass, and not negative
+    FINE_WHOLE = 8, ///< nothing around it has gone
+};
+
 /// The fields that are drawn smoothly.
 typedef enum SplineField {
     SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_COUNT
@@ -58,8 +66,9 @@ typedef struct Fine {
     float *raw_level;        ///< [particles] m'; below 0 for what is gone
     float *cell_value;       ///< [cells] scratch of the splines
     float *low;              ///< [cells] the level's least coefficient
-    uint8_t *near_front;     ///< [cells] flags of fine_points.c
-    uint32_t *cell_point;    ///< [cells] first of its points; where near_front
+    float (*axes)[2];        ///< [cells] m, lengths of a cell's two axes at rest
+    uint8_t *flags;          ///< [cells] FINE_NEAR and the like
+    uint32_t *cell_point;    ///< [cells] first of its points; where FINE_NEAR
     uint32_t *side_point;    ///< [blue springs] first of the points on a side, or SHELL_NONE
     uint32_t *near;          ///< [near_count] the cells near the front
     uint32_t *side_owner;    ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
@@ -113,7 +122,7 @@ SingeResult fine_points(Fine *fine, SingeError *error);
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j);
 FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j);
 
-bool fine_is_split(const Fine *fine, uint32_t cell);
+static inline bool fine_is_split(const Fine *fine, uint32_t cell) { return fine->flags[cell] & FINE_SPLIT; }
 
 static inline int fine_splits(const Fine *fine, uint32_t cell) {
     return fine->sheets[fine->shell->matter.sheet[shell_centre(fine->shell, cell)]].splits;

@@ -19,6 +19,7 @@ TINY = (
     ("heat", ["--springs", "1000", "--steps", "3"], ["stage_ms"]),
     ("ablate", ["--springs", "1000", "--steps", "3"], ["springs_gone"]),
     ("front", ["--material", "tissue", "--quick"], ["speed_mm_s_is", "hottest_C_from", "finding"]),
+    ("surface", ["--springs", "1000", "--steps", "20"], ["detail_mm", "triangles", "fine_pct", "surface_ms"]),
     ("memory", ["--springs", "1000"], ["bytes_spring", "all_bytes_spring"]),
     ("compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio", "no_more_error"]),
     ("--compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio"]),
