@@ -476,7 +476,8 @@ static const SchemaRow scene_rows[] = {
     {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
     {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), WITHIN(1e-6, 1e6),
      .doc = "seconds of fire per second of motion; 1 is real, 4 burns four times as fast"},
-    {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), .doc = "for the preview; noise and wind have seeds of their own"},
+    {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed), 
+     .doc = "of ragged edges, and for the preview; noise and wind have seeds of their own"},
     {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), KELVIN,
      .doc = "of the air and all around"},
     {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, WITHIN(-1e4, 1e4),
@@ -485,8 +486,8 @@ static const SchemaRow scene_rows[] = {
     {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), WITHIN(1e-9, 1),
      .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
     {"detail", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_detail), WITHIN(0, 1000),
-     .doc = "how finely the drawn mesh is cut near the front: distance of the points where it is asked what has burnt, a "
-            "sixteenth of a cell or so at least; 0: only the cells' own corners and centres, as in the paper"},
+     .doc = "how finely the drawn mesh is cut near the front: distance of the points that are asked what has burnt, a "
+            "cell's side over 23 at least; 0: the cells' own corners and centres, as in the paper"},
     {"raggedness", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_raggedness), WITHIN(0, 1000),
      .doc = "how far noise eats into burnt edges at most, and no farther than half a cell; acts with `detail` only"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,

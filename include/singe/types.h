@@ -340,7 +340,7 @@ typedef struct SingeSimDef {
     SingeTasks tasks;
     int thread_count;           ///< of the simulation's own pool, 1 to 64
     SingeInstructions instructions; ///< refused where the processor lacks them
-    uint64_t seed; ///< not used by the simulation, saved with it: for a renderer; noise and wind have their own
+    uint64_t seed; ///< of the drawn surface's ragged edges, and for a renderer; noise and wind have their own
     float time_step;            ///< s, h of the paper, > 0
     float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
     float gravity[3];           ///< m/s2

@@ -31,10 +31,11 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
 typedef struct SurfaceDetail {
     float size;       ///< m, distance of the points of the level set, > 0
     float raggedness; ///< m, how far burnt edges are eaten into at most, >= 0
+    uint32_t seed;    ///< of the noise; each sheet's is another
 } SurfaceDetail;
 
-/// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes back
-/// before it returns.
+/// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes
+/// back before it returns.
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error);
 

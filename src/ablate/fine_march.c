@@ -50,7 +50,8 @@ static void draw(Fine *fine, const Piece *piece) {
     uint32_t polygon[4];
     int count = 0;
     for (int a = 0; a < 3; a++) {
-        bool in = fine->values[piece->point[a]].level >= 0, next = fine->values[piece->point[a == 2 ? 0 : a + 1]].level >= 0;
+        int b = a == 2 ? 0 : a + 1;
+        bool in = fine->values[piece->point[a]].level >= 0, next = fine->values[piece->point[b]].level >= 0;
         uint32_t vertex[2];
         int made = 0;
         if (in) vertex[made++] = point_vertex(fine, piece, a);

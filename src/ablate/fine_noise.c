@@ -4,20 +4,23 @@
 //
 //   L(x) = min { S(x), S(x + r u_1), S(x + r u_2), S(x + r u_3) },   u_i three directions 120 degrees apart
 //
-// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of the directions another noise. What is drawn is L >= 0:
-// about the places farther than r from the edge of S. As S never grows, nor does L, whatever the front's width and speed:
-// what is gone stays gone, the edge stands still where the fire does, and the noise moves it by a length. Nothing is
-// drawn outside S >= 0. The mass drawn is that of the place where L is taken, so that char follows the edge.
+// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of the
+// directions another noise. What is drawn is L >= 0: about the places farther than r from the edge of S. As S never grows,
+// nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where the fire does,
+// and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the place where L is
+// taken, so that char follows the edge.
 //
 // r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
 // sheet and its grid.
 #include "ablate/surface_fine.h"
 #include "base/random.h"
 
-/// The largest features of the noise, m, and an octave's strength over that of the one before.
+/// The largest features of the noise, m; its mean depth over the reach, the first octave's strength and an octave's over
+/// that of the one before.
 #define NOISE_SIZE 3e-3f
-#define NOISE_STRENGTH 0.9f
-#define NOISE_GAIN 2.0f
+#define NOISE_MEAN 0.45f
+#define NOISE_STRENGTH 0.7f
+#define NOISE_GAIN 2.3f
 
 int fine_octaves(float spacing) {
     int octaves = 1;
@@ -47,17 +50,19 @@ static Vec askew(Vec p) {
 }
 
 /// The noise at a place: how far it eats, m, and the direction, as an angle.
-static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, uint32_t seed, float *angle) {
+static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, float *angle) {
     Vec p = vec_scale(askew(rest_of(fine->shell, place)), 1 / NOISE_SIZE);
     float sum = 0, strength = NOISE_GAIN;
     for (int octave = 0; octave < sheet->octaves; octave++) {
-        float noise = random_noise(p.x, p.y, p.z, seed + (uint32_t)octave);
+        float noise = random_noise(p.x, p.y, p.z, sheet->seed + (uint32_t)octave);
         if (octave <= 1) *angle = 3 * two_pi * noise;
         sum += strength * (noise - 0.5f);
         strength *= NOISE_STRENGTH;
         p = vec_add(vec_scale(p, 2), vec(17.31f, 5.77f, 11.83f));
     }
-    return sheet->reach * fminf(fmaxf(0.45f + sum, 0), 1);
+    float depth = fabsf(NOISE_MEAN + sum); // folded back where it leaves 0 to 1, so that no edge is smooth
+    if (depth > 1) depth = fmaxf(2 - depth, 0);
+    return sheet->reach * depth;
 }
 
 /// A step of at most half a cell.
@@ -78,7 +83,7 @@ FineValue fine_value(const Fine *fine, FinePlace place) {
     FinePlace least_place = place;
     float least = smooth_level(fine, place), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
-        float depth = eaten(fine, place, &fine->sheets[sheet], 1000 * sheet, &angle);
+        float depth = eaten(fine, place, &fine->sheets[sheet], &angle);
         x = half_at_most(depth, fine->axes[place.cell][0]), y = half_at_most(depth, fine->axes[place.cell][1]);
         float c = cosf(angle), s = sinf(angle);
         const float across = 0.8660254f; // of 120 degrees

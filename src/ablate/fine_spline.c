@@ -12,8 +12,8 @@
 //   S = b_A x^2 + b_B y^2 + b_C z^2 + 2 (b_AB x y + b_AC x z + b_BC y z)     (Bernstein-Bezier, barycentric x, y, z)
 //
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
-// regular: C1 but at their irregular vertices). All weights are positive: where no particle's mass grows, nor does S; it
-// is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
+// regular: C1 but at their irregular vertices). All weights are positive: where no particle's mass grows, nor does S.
+// It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
 #include "ablate/surface_fine.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 // The fields of the fine surface's vertices. Positions and what belongs to them lie on the cell's triangle, straight
-// between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level was
-// taken with. Of times to ignition, those of corners that have ignited count, by their weights.
+// between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level
+// was taken with. Of times to ignition, those of corners that have ignited count, by their weights.
 #include "ablate/surface_fine.h"
 
 /// A triangle's corners: two particles, and the mean of four for the virtual centre.

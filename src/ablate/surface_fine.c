@@ -3,19 +3,21 @@
 // The level of a burning sheet's particles is made smooth (fine_spline.c) and eaten into by noise (fine_noise.c). Where
 // it changes sign within a cell, the cell's triangles are split into k^2 fine ones, k = side / (sqrt(2) detail): their
 // points form a square lattice at 45 degrees to the cell with this spacing (fine_points.c). Marching triangles cut them
-// (fine_march.c), and fields are taken at their vertices (fine_vertices.c). Nothing of this goes back to the simulation.
+// (fine_march.c), and fields are taken at the vertices (fine_vertices.c). Nothing of it goes back to the simulation.
 #include "ablate/surface_fine.h"
+#include "base/random.h"
 
 #include <string.h>
 
 #define LEVEL_GONE 0.12f
 
-static FineSheet describe(const SurfaceDetail *detail, const Sheet *sheet) {
+static FineSheet describe(const SurfaceDetail *detail, const Sheet *sheet, uint32_t index) {
     float splits = roundf(sheet->cell_size / (1.4142136f * detail->size));
     FineSheet fine = {.splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits};
     float spacing = sheet->cell_size / (1.4142136f * (float)fine.splits);
     fine.reach = fminf(detail->raggedness, 0.5f * sheet->cell_size);
     fine.octaves = fine_octaves(spacing);
+    fine.seed = random_hash(index, 0, 0, detail->seed);
     return fine;
 }
 
@@ -58,8 +60,8 @@ static void release(Fine *fine) {
     FREE(memory, fine->vertices, fine->vertex_capacity);
 }
 
-/// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss; there
-/// the level goes on falling as fast as it fell before, so that the edge moves on evenly and does not stick to particles:
+/// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss;
+/// there the level goes on falling as fast as it fell, so that the edge moves on evenly and does not stick to particles:
 ///
 ///   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
 static void fill_levels(Fine *fine) {
@@ -83,7 +85,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
     if (!allocate(fine))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
-        fine->sheets[s] = describe(detail, &fine->shell->sheets[s]);
+        fine->sheets[s] = describe(detail, &fine->shell->sheets[s], s);
     fill_levels(fine);
     const float *const fields[SPLINE_COUNT] = {
         [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass,

@@ -51,6 +51,7 @@ typedef struct FineSheet {
     int splits;    ///< k: a side becomes k fine ones
     float reach;   ///< m, how far noise eats into the edge at most
     int octaves;   ///< of the noise
+    uint32_t seed; ///< of its first octave
 } FineSheet;
 
 /// A drawing in progress. Points are numbered: vertices, cells' centres, points on split sides of cells near the front,
@@ -100,8 +101,8 @@ float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place);
 /// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
 FinePlace fine_walk(const Shell *shell, FinePlace place, float x, float y);
 
-/// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth curves
-/// where their sides have corners, so that the sides are nowhere to be seen.
+/// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth
+/// curves where their sides have corners, so that the sides are nowhere to be seen.
 static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f); }
 
 // ---- fine_noise.c

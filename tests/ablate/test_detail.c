@@ -20,7 +20,7 @@ static Drawing *drawing(uint32_t nx, uint32_t ny, float cell, float detail, floa
     SingeMaterialDef material = plain_material();
     Drawing *d = calloc(1, sizeof *d);
     d->sheet = burning_sheet(nx, ny, cell, &material);
-    d->detail = (SurfaceDetail){detail, raggedness};
+    d->detail = (SurfaceDetail){detail, raggedness, 1};
     assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
     return d;
 }
@@ -190,15 +190,20 @@ static void whole_sheets_are_drawn_coarsely(void **unused) {
     finish(d);
 }
 
-/// A fire that burns from some places: rings, so that the front runs in all directions.
+/// A fire that burns from some places at 1 m/s: rings, so that the front runs in all directions.
 static void burn_rings(Drawing *d, float time) {
     const float at[3][2] = {{0.031f, 0.042f}, {0.068f, 0.075f}, {0.083f, 0.017f}};
+    const float width = 0.008f; // of the front, m
+    BurnState *burn = &d->sheet->state.burn;
+    d->sheet->state.time = (double)time;
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) {
         const float *p = d->sheet->shell.rest_position[i];
         float nearest = 1;
         for (int k = 0; k < 3; k++) nearest = fminf(nearest, hypotf(p[0] - at[k][0], p[1] - at[k][1]));
-        float mass = 0.6f + (nearest - time) / 0.008f; // the front's width
-        d->sheet->state.burn.mass[i] = fminf(1, fmaxf(0.15f, mass));
+        float mass = 0.6f + (nearest - time) / width;
+        if (mass < 1) burn->time_ignited[i] = nearest - 0.4f * width;
+        if (mass < 0.25f) burn->time_burnt[i] = nearest + 0.35f * width;
+        burn->mass[i] = fminf(1, fmaxf(0.15f, mass));
     }
 }
 
@@ -255,14 +260,15 @@ static FinePlace place_at(uint32_t n, uint32_t cells) {
     return place;
 }
 
-/// The drawn surface as fractions of whole on a raster of points: which of them lie in a triangle.
+/// Which points of a raster lie in a triangle of the surface.
 static void raster(const SingeSurface *s, int width, int height, float step, uint8_t *covered) {
     memset(covered, 0, (size_t)(width * height));
     for (uint32_t t = 0; t < s->triangle_count; t++) {
         const float *a = s->position[s->triangles[t][0]], *b = s->position[s->triangles[t][1]];
         const float *c = s->position[s->triangles[t][2]];
-        int x0 = (int)ceilf(fminf(a[0], fminf(b[0], c[0])) / step), x1 = (int)floorf(fmaxf(a[0], fmaxf(b[0], c[0])) / step);
-        int y0 = (int)ceilf(fminf(a[1], fminf(b[1], c[1])) / step), y1 = (int)floorf(fmaxf(a[1], fmaxf(b[1], c[1])) / step);
+        int x0 = (int)ceilf(fminf(a[0], fminf(b[0], c[0])) / step), y0 = (int)ceilf(fminf(a[1], fminf(b[1], c[1])) / step);
+        int x1 = (int)floorf(fmaxf(a[0], fmaxf(b[0], c[0])) / step);
+        int y1 = (int)floorf(fmaxf(a[1], fmaxf(b[1], c[1])) / step);
         for (int y = y0; y <= y1 && y < height; y++)
             for (int x = x0; x <= x1 && x < width; x++) {
                 float p[2] = {step * (float)x, step * (float)y};
@@ -326,6 +332,42 @@ static void edges_are_eaten_by_a_length(void **unused) {
     }
     assert_float_equal(lost[1] / lost[0], 1, 0.02);
     assert_float_equal(lost[2] / lost[0], 1, 0.02);
+}
+
+/// Whether a place of the raster within `reach` of (x, y) is covered, or is not, as wanted.
+static bool near_a_place_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
+    for (int j = y - reach; j <= y + reach; j++)
+        for (int i = x - reach; i <= x + reach; i++)
+            if (i >= 0 && j >= 0 && i < size && j < size && (i - x) * (i - x) + (j - y) * (j - y) <= reach * reach &&
+                raster[j * size + i] == wanted)
+                return true;
+    return false;
+}
+
+static void edges_stay_within_a_cell(void **unused) {
+    (void)unused;
+    enum { SIZE = 201 };
+    static uint8_t coarse[SIZE * SIZE], fine[SIZE * SIZE];
+    Drawing *d = drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
+    int missing = 0, reach = (int)(0.004f / 0.0005f);
+    for (int step = 0; step < 12; step++) {
+        State *state = &d->sheet->state;
+        burn_rings(d, 0.004f + 0.0023f * (float)step);
+        SingeResult result = ablate_step(d->plan, &d->sheet->shell, state, NULL, 293, &state->ablate, &d->sheet->events,
+                                         NULL);
+        assert_int_equal(result, SINGE_OK);
+        assert_int_equal(ablate_surface(d->plan, &d->sheet->shell, state, &d->surface, NULL), SINGE_OK);
+        raster(&d->surface, SIZE, SIZE, 0.0005f, coarse);
+        draw(d);
+        raster(&d->surface, SIZE, SIZE, 0.0005f, fine);
+        for (int k = 0; k < SIZE * SIZE; k++) {
+            if (coarse[k] == fine[k]) continue;
+            missing += coarse[k];
+            assert_true(near_a_place_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
+        }
+    }
+    assert_true(missing > 1000);
+    finish(d);
 }
 
 static void finer_details_converge(void **unused) {
@@ -424,6 +466,7 @@ int main(void) {
         cmocka_unit_test(no_direction_is_preferred),
         cmocka_unit_test(what_is_gone_stays_gone),
         cmocka_unit_test(edges_are_eaten_by_a_length),
+        cmocka_unit_test(edges_stay_within_a_cell),
         cmocka_unit_test(finer_details_converge),
         cmocka_unit_test(threads_draw_the_same),
         cmocka_unit_test(walks_cross_cells),

@@ -33,6 +33,9 @@ static void bad_simulations(void **state) {
     SIM_BAD(ambient_temperature, 0, "ambient_temperature");
     SIM_BAD(ambient_temperature, NAN, "ambient_temperature");
     SIM_BAD(air_density, -1, "air_density");
+    SIM_BAD(surface_detail, -1, "surface_detail");
+    SIM_BAD(surface_detail, NAN, "surface_detail");
+    SIM_BAD(surface_raggedness, INFINITY, "surface_raggedness");
     SIM_BAD(heat_tolerance, 0, "heat_tolerance");
     SIM_BAD(heat_tolerance, NAN, "heat_tolerance");
     SIM_BAD(wind.gust, -1, "gust");
