@@ -18,6 +18,7 @@ typedef struct Block {
     _Alignas(64) int valid[LANES];
     int x[LANES], y[LANES];
     float turn[LANES][2];
+    uint32_t key[LANES];
     V3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];

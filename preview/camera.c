@@ -3,7 +3,8 @@
 // Sequence: R2 (M. Roberts 2018), x_i = frac(a + i/g), y_i = frac(b + i/g^2) with g = 1.3247..., the root of
 // g^3 = g + 1; turned per pixel (Cranley & Patterson 1976) by interleaved gradient noise (Jimenez 2014), whose
 // neighbours differ, so that what is left of the noise is fine-grained. The lens takes its points from R3, the time
-// from R1, so that they are not tied to the light's.
+// from R1, so that they are not tied to the light's, turned at random: where a lens spreads a point over many pixels
+// the gradient would show as a weave.
 //
 // Thin lens of radius R, sharp at distance f: rays from its points c meet at f. A point at depth z is spread over
 // R |1/f - 1/z| at distance 1.
@@ -55,12 +56,18 @@ void sample_square(uint32_t index, float a, float b, float out[2]) {
     out[1] = fraction(b + 0.56984029f * (float)index);
 }
 
-void sample_lens(uint32_t index, float a, float b, float out[2]) {
-    out[0] = fraction(a + 0.35f + 0.81917251f * (float)index);
-    out[1] = fraction(b + 0.70f + 0.67104360f * (float)index);
+uint32_t sample_key(int x, int y, uint32_t seed) {
+    return hash_u32((uint32_t)x * 0x8da6b343u ^ (uint32_t)y * 0xd8163841u ^ seed * 0xcb1ab31fu);
 }
 
-float sample_time(uint32_t index, float a) { return fraction(7 * a + 0.61803399f * (float)index); }
+void sample_lens(uint32_t index, uint32_t key, float out[2]) {
+    out[0] = fraction((float)(key & 0xffff) / 65536 + 0.81917251f * (float)index);
+    out[1] = fraction((float)(key >> 16) / 65536 + 0.67104360f * (float)index);
+}
+
+float sample_time(uint32_t index, uint32_t key) {
+    return fraction(hash_unit(key) + 0.61803399f * (float)index);
+}
 
 void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
     float px = (float)(x + (int)(seed & 63)), py = (float)(y + (int)(seed >> 6 & 63));

@@ -34,11 +34,11 @@ static void aim_block(const Preview *preview, Block *block, int sample, const fl
         float y = 1 - 2 * ((float)block->y[i] + 0.5f + at[1]) / (float)preview->def.height;
         float square[2], disc[2] = {0, 0};
         if (lens) {
-            sample_lens((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
+            sample_lens((uint32_t)sample, block->key[i], square);
             sample_disc(square, disc);
         }
         camera_ray(&preview->camera, x, y, disc, &block->origin[i], &block->direction[i]);
-        block->time[i] = shutter ? sample_time((uint32_t)sample, block->turn[i][0]) : 0.5f;
+        block->time[i] = shutter ? sample_time((uint32_t)sample, block->key[i]) : 0.5f;
     }
 }
 
@@ -195,6 +195,7 @@ static void start_block(const Preview *preview, Block *block, int *active) {
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
+        block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
         block->sum[i] = v3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
         block->time[i] = 0.5f;
         layers_begin(&block->layer[i]);
@@ -243,7 +244,7 @@ static void draw_block(Preview *preview, Block *block) {
 static void fill_table(Preview *preview, Block *block) {
     Table sum[LANES] = {{{0, 0, 0}, {0, 0}, 0}};
     int count[LANES] = {0}, samples = preview->camera.lens > 0 ? 24 : 4;
-    for (int i = 0; i < LANES; i++) sample_pixel(block->x[i], block->y[i], preview->def.seed, block->turn[i]);
+    for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
     for (int s = 0; s < samples; s++) {
         float at[2];
         place_sample(s, at);

@@ -36,6 +36,8 @@ typedef struct PaperVertex {
     int32_t sheet;       ///< -1: none
     float rim;           ///< 1 on the border of a piece, 0 inside
     float slope[3];      ///< 1/m, gradient of burn in rest space, of which `gradient` is the length
+    float warming[3];    ///< K/m, the same of the highest temperature
+    float heat_gradient; ///< K/m
     float spacing;       ///< m, size of the triangles about it at rest
     float age;           ///< s since it caught fire, as a fire of real pace has it; 0: not yet
     int32_t piece;
@@ -145,9 +147,11 @@ void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 
 float camera_blur(const Camera *camera, float depth);
 /// Point `index` of a low-discrepancy sequence in the square, turned by (a, b).
 void sample_square(uint32_t index, float a, float b, float out[2]);
-/// The same for the lens, and a number for the time, that have nothing to do with the others.
-void sample_lens(uint32_t index, float a, float b, float out[2]);
-float sample_time(uint32_t index, float a);
+/// The same for the lens, and a number for the time, by a pixel's key: they have nothing to do with the others.
+void sample_lens(uint32_t index, uint32_t key, float out[2]);
+float sample_time(uint32_t index, uint32_t key);
+/// A pixel's own random number.
+uint32_t sample_key(int x, int y, uint32_t seed);
 /// Two numbers for a pixel that differ well from its neighbours'.
 void sample_pixel(int x, int y, uint32_t seed, float out[2]);
 V3 sample_cosine(V3 normal, const float square[2]);
@@ -206,7 +210,7 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
     V3 rest;
-    float uv[2], temperature, peak, burn, burn_rate, gradient, rim, spacing;
+    float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
     float age; ///< s since it caught fire, as a fire of real pace has it; 0: not yet
     int32_t sheet, piece;
 } PaperState;

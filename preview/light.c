@@ -29,7 +29,7 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
     V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
-    V3 radiance = v3_scale(glow, 0.4f * EMBER_GAIN * ember_activity(rate));
+    V3 radiance = v3_scale(glow, 0.9f * EMBER_GAIN * ember_activity(rate));
     V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3);
     V3 strength = v3_scale(radiance, ember_air(preview, place) * area * share / (2 * PI_F));
     float weight = v3_luminance(strength);

@@ -9,7 +9,7 @@ float ash_amount(const Bent *bent) {
 }
 
 float ash_lace(const Bent *bent, float footprint) {
-    return paper_noise(bent->place, 2.6f, footprint, 15) + 0.55f * bent->fine - 0.45f * bent->coarse;
+    return paper_noise(bent->place, 2.6f, footprint, 15) + 0.25f * bent->fine - 0.45f * bent->coarse;
 }
 
 /// Fibres lie along a direction that wanders over the sheet. 1 on a fibre.

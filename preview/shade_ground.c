@@ -87,14 +87,14 @@ static void stone(const Preview *preview, V3 place, float footprint, Table *tabl
     float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
     float grain = uneven(x, y, 1.6f, 0.03f, seed + 5, footprint, table);
     float speck = noise2(x * 900, y * 900, seed + 6) * visible(0.0011f, footprint);
-    float value = 0.98f + 0.20f * cloud + 0.16f * patch + 0.10f * rough + 0.09f * grain;
+    float value = 0.95f + 0.30f * cloud + 0.22f * patch + 0.13f * rough + 0.10f * grain;
     value += 0.35f * stepf(0.55f, 0.9f, speck) - 0.2f * stepf(0.5f, 0.9f, -speck);
     // pale veins, thick and thin by turns, that break off
-    float line = fabsf(noise2((x + warp) * 5.5f + 3, (y + fold + warp) * 2.1f, seed + 7));
-    float width = 0.004f + 0.010f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
+    float line = fabsf(noise2((x + warp + fold) * 7.5f + 3, (y + fold + warp) * 2.6f, seed + 7));
+    float width = 0.008f + 0.022f * (0.5f + 0.5f * noise2(x * 21, y * 21, seed + 8));
     float vein = 1 - stepf(0.3f * width, width + 1.5f * footprint, line);
-    vein *= stepf(-0.25f, 0.4f, noise2(x * 3, y * 3, seed + 9));
-    value += 0.85f * vein * minf(1, 0.003f / footprint + 0.35f);
+    vein *= stepf(-0.45f, 0.25f, noise2(x * 3, y * 3, seed + 9));
+    value += 1.1f * vein * minf(1, 0.003f / footprint + 0.35f);
     float warm = 0.5f * cloud - 0.3f * patch;
     table->albedo = v3_scale(v3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
     table->polish = 0.42f + 0.12f * patch - 0.1f * vein;

@@ -4,7 +4,8 @@
 // b the share burnt, T the temperature, P the highest temperature so far and N noise of the rest position (it sticks
 // to the paper),
 //
-//     b' = b + |grad b| delta + floor,   delta = k (1.5 N(4 mm) + 0.7 N(1.3 mm) + 0.22 N(0.45 mm))  in mm:
+//     b' = b + |grad b| delta + floor,   P' = P + |grad P| delta,
+//     delta = k (1.5 N(4 mm) + 0.7 N(1.3 mm) + 0.22 N(0.45 mm))  in mm:
 //
 // isolines move by delta whatever the front's width is, so they turn ragged and lose the grid; k is 1 for triangles of
 // 2 mm and more and falls where finer ones bring raggedness of their own. The colours then follow b' and P', for paper
@@ -43,6 +44,7 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .burn = w * a->burn + u * b->burn + v * c->burn,
         .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
         .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
+        .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
         .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
         .age = w * a->age + u * b->age + v * c->age,
         // a triangle with no corner inside tells nothing of the distance: a strip or a crumb, which is to stay
@@ -65,7 +67,8 @@ static Bent bend(const PaperState *state, float footprint) {
     float peak = maxf(state->peak, state->temperature);
     // nothing where there was no heat to speak of
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
-    bent.peak = peak + (peak - 293) * 1.6f * jitter * stepf(320, 420, peak);
+    float steep = minf(state->heat_gradient, 1.2e5f);
+    bent.peak = peak + (0.25f * (peak - 293) * jitter + steep * delta) * stepf(310, 350, peak);
     return bent;
 }
 

@@ -71,18 +71,28 @@ static void move_vertex(Preview *preview, const SingeSurface *surface, uint32_t 
     }
 }
 
-/// Adds the triangle's share of the gradient to its corners: times area into `slope`, the area into `gradient`.
+/// Gradient of a field with these values at the corners, times |N|^2.
+static V3 gradient(V3 e1, V3 e2, V3 n, float f0, float f1, float f2) {
+    return v3_mad(v3_scale(v3_cross(e2, n), f1 - f0), v3_cross(n, e1), f2 - f0);
+}
+
+static void add3(float sum[3], V3 v, float weight) {
+    sum[0] += weight * v.x, sum[1] += weight * v.y, sum[2] += weight * v.z;
+}
+
+/// Adds the triangle's share of the gradients to its corners: times area into `slope` and `warming`, the area into
+/// `gradient`.
 static void add_gradient(Scene *scene, const uint32_t t[3]) {
     PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
     V3 origin = v3_load(v[0]->rest), e1 = v3_sub(v3_load(v[1]->rest), origin), e2 = v3_sub(v3_load(v[2]->rest), origin);
     V3 n = v3_cross(e1, e2);
     float n2 = v3_dot(n, n);
     if (!(n2 > 1e-24f)) return;
-    V3 g = v3_scale(v3_cross(e2, n), (v[1]->burn - v[0]->burn) / n2);
-    g = v3_mad(g, v3_cross(n, e1), (v[2]->burn - v[0]->burn) / n2);
+    V3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
+    V3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
     float area = 0.5f * sqrtf(n2);
     for (int k = 0; k < 3; k++) {
-        v[k]->slope[0] += area * g.x, v[k]->slope[1] += area * g.y, v[k]->slope[2] += area * g.z;
+        add3(v[k]->slope, burn, area / n2), add3(v[k]->warming, heat, area / n2);
         v[k]->gradient += area;
         v[k]->spacing += 1;
     }
@@ -188,6 +198,7 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         PaperVertex *v = &scene->vertices[i];
         // a triangle of area A has edges of about sqrt(2 A)
         v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
+        v->heat_gradient = v->gradient > 0 ? v3_length(v3_load(v->warming)) / v->gradient : 0;
         v->gradient = v->gradient > 0 ? v3_length(v3_load(v->slope)) / v->gradient : 0;
         v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);
         // no triangle of the scene uses these; the builder still reads them
