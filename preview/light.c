@@ -10,6 +10,10 @@ enum { GRID = 10 };
 
 typedef struct Cluster { V3 place, strength; float weight; } Cluster;
 
+/// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held back,
+/// and an eye in the dark sees it better than a camera set for daylight does.
+static const float EMBER_CAST = 8;
+
 /// Share of a triangle that the ember's line covers: the overlap of the two ranges of burn.
 static float coverage(const PaperVertex *a, const PaperVertex *b, const PaperVertex *c) {
     float low = minf(a->burn, minf(b->burn, c->burn)), high = maxf(a->burn, maxf(b->burn, c->burn));
@@ -29,7 +33,7 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
     V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
-    V3 radiance = v3_scale(glow, 0.9f * EMBER_GAIN * ember_activity(rate));
+    V3 radiance = v3_scale(glow, EMBER_CAST * EMBER_GAIN * ember_activity(rate));
     V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3);
     V3 strength = v3_scale(radiance, ember_air(preview, place) * area * share / (2 * PI_F));
     float weight = v3_luminance(strength);

@@ -21,8 +21,8 @@ static void default_preview(ScenePreview *preview) {
     preview->camera.fov = 35 * DEGREE;
     set3(preview->light_direction, -0.5f, -0.7f, 1);
     preview->light_angle = 3 * DEGREE;
-    set3(preview->light_colour, 2.35f, 1.93f, 1.47f);
-    set3(preview->sky, 0.19f, 0.225f, 0.29f);
+    set3(preview->light_colour, 2.05f, 1.70f, 1.32f);
+    set3(preview->sky, 0.18f, 0.21f, 0.27f);
     preview->environment = PREVIEW_SKY_STUDIO;
     preview->ground_height = -INFINITY;
     set3(preview->ground_colour, 0.20f, 0.105f, 0.052f);
