@@ -8,7 +8,7 @@
 enum { WARM_UP = 40 };
 
 enum {
-    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_LEAST, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, NS, ITERATIONS,
+    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_LEAST, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS, ITERATIONS,
     CONTACTS, BURNT, MEMORY, YARDSTICK, STEP_COLUMNS
 };
 
@@ -22,6 +22,7 @@ static const BenchColumn step_columns[STEP_COLUMNS] = {
     [BURN] = {"burn_ms", "%.4g", 8, NULL},
     [ABLATE] = {"ablate_ms", "%.4g", 9, NULL},
     [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
+    [GAS] = {"gas_ms", "%.4g", 8, NULL},
     [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
     [NS] = {"ns_spring", "%.2f", 9, NULL},
     [ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
@@ -42,6 +43,7 @@ static void fill_step(BenchValue *row, const BenchOptions *options, const SingeS
     row[BURN] = bench_number(timing_median(timing, SINGE_STAGE_BURN));
     row[ABLATE] = bench_number(timing_median(timing, SINGE_STAGE_ABLATE));
     row[DYNAMICS] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS));
+    row[GAS] = bench_number(timing_median(timing, SINGE_STAGE_GAS));
     row[PROJECTION] = bench_number(timing_median(timing, TIMED_PROJECTION));
     row[NS] = bench_number(1e6 * step / springs);
     row[ITERATIONS] = bench_number((double)timing->total.heat_iterations / timing->steps);

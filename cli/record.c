@@ -35,7 +35,7 @@ static void write_scene_folder(FILE *file, const char *scene_path) {
 }
 
 static void write_seconds(FILE *file, const Totals *totals) {
-    static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics",
+    static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics", "gas",
                                         "surface", "ply",  "preview", "checkpoint"};
     fputs("  \"seconds\": {\"wall\": ", file);
     text_json_number(file, totals->wall_seconds);

@@ -38,6 +38,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->steps = 20;
     scene->sim = singe_default_sim();
     scene->sim.surface_detail = 0.4e-3f;
+    scene->sim.gas.enabled = true;
     default_preview(&scene->preview);
     return true;
 }

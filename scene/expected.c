@@ -127,6 +127,8 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
                 add(buffer, size, " or ");
                 if (row->sub->rows[i].type == ROW_BASE)
                     add_base(buffer, size);
+                else if (row->sub->rows[i].type == ROW_BOOL)
+                    add(buffer, size, "yes or no");
                 else
                     add_names(buffer, size, row->sub->rows[i].names);
             }

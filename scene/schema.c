@@ -24,7 +24,7 @@ static const char *const operator_names[] = {
     [SINGE_HEAT_SURFACE] = "surface", [SINGE_HEAT_UMBRELLA] = "umbrella", NULL};
 static const char *const source_names[] = {
     [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_PICTURE] = "picture", [SINGE_SOURCE_SPOT] = "spot",
-    [SINGE_SOURCE_PLUME] = "plume", NULL};
+    NULL};
 static const char *const method_names[] = {
     [SINGE_SOLVER_STRAND] = "strand", [SINGE_SOLVER_PAPER] = "paper", [SINGE_SOLVER_PAPER_LITERAL] = "paper-literal",
     [SINGE_SOLVER_ALL_AT_ONCE] = "all-at-once", [SINGE_SOLVER_MASS_SPRING] = "mass-spring", NULL};
@@ -38,7 +38,7 @@ static const char *const collider_names[] = {
 
 enum {
     BALL = 1 << SINGE_SOURCE_BALL, PICTURE = 1 << SINGE_SOURCE_PICTURE,
-    SPOT = 1 << SINGE_SOURCE_SPOT, PLUME = 1 << SINGE_SOURCE_PLUME,
+    SPOT = 1 << SINGE_SOURCE_SPOT,
     PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
     BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
 };
@@ -250,8 +250,7 @@ static ScenePlace *source_place(void *object) { return &((SceneSource *)object)-
 static const SchemaRow source_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
      .doc =
-         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `picture`: a flux drawn on the sheet; "
-         "`plume`: hot gas rising from what burns"},
+         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `picture`: a flux drawn on the sheet"},
     SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
      .doc = "to here; `inf` is for ever"},
@@ -272,10 +271,6 @@ static const SchemaRow source_rows[] = {
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
      .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
-    SOURCE("share", plume_share, DIM_FRACTION, PLUME, WITHIN(0, 1),
-            "power of the gas over that of the sheet's combustion; it comes on top"),
-    SOURCE("height", plume_height, DIM_LENGTH, PLUME, WITHIN(1e-6, 1e6), "over which the gas cools to 1/e"),
-    SOURCE("conductance", plume_conductance, DIM_CONDUCTANCE, PLUME, FROM(0), "from the gas to the sheet"),
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
 };
 static const Schema schema_source = {
@@ -336,7 +331,7 @@ static const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
     .place = pin_place, .doc = "Holds part of a sheet."};
 
-// ---- wind, solver, preview
+// ---- wind, solver, gas, preview
 
 static const SchemaRow wind_rows[] = {
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, WITHIN(-1000, 1000),
@@ -386,6 +381,25 @@ static const Schema schema_solver = {.title = "the solver",
                                      .doc = "How springs are kept at their lengths. Only the name of a method will do: "
                                             "`solver: paper`. Keys that are not given suit the method "
                                             "([equations.md](equations.md#the-papers-solver))."};
+
+static const SchemaRow gas_rows[] = {
+    {"enabled", ROW_BOOL, DIM_NONE, AT(SingeGasDef, enabled), .doc = "no: sheets burn as in still air"},
+    {"cell_size", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, cell_size), WITHIN(0, 1),
+     .doc = "side of a cell of its grid; 0: 8 mm for a sheet of A4, in proportion to others"},
+    {"height", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, height), WITHIN(0.01, 100),
+     .doc = "room for it above the sheets as they start"},
+    {"conductance", ROW_FLOAT, DIM_CONDUCTANCE, AT(SingeGasDef, conductance), FROM(0),
+     .doc = "how well it heats each side of a sheet that is cooler; more makes fire climb faster"},
+    {"radiated", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, radiated), WITHIN(0, 0.95),
+     .doc = "share of the flames' power that leaves as radiation"},
+    {"soot", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, soot), WITHIN(0, 1), .doc = "mass of smoke over the mass burnt"},
+};
+static const Schema schema_gas = {.title = "the gas",
+                                  .size = sizeof(SingeGasDef),
+                                  ROWS(gas_rows),
+                                  .choice = "enabled",
+                                  .doc = "What burns sends hot gas up. It heats what is above, lifts ash and flakes, "
+                                         "and carries flame and smoke. `gas: no` is without."};
 
 static const SchemaRow camera_rows[] = {
     {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4),
@@ -500,6 +514,7 @@ static const SchemaRow scene_rows[] = {
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},
+    {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
 };
 const Schema schema_scene = {

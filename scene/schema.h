@@ -76,7 +76,7 @@ typedef struct Schema {
     /// The key of a choice that is read before the others, and what it makes of the object's defaults (NULL: nothing
     /// more). A bare word in the map's stead is that choice. NULL: none.
     const char *choice;
-    void (*chosen)(void *object);
+    void (*chosen)(void *object); ///< NULL: nothing
     /// Fills in the defaults; false when out of memory. NULL: zeros, or what the enclosing map has set.
     bool (*defaults)(SceneArena *arena, void *object);
     /// Checks what one row cannot see.

@@ -49,7 +49,7 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePin
                                                          const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *def);
 
-/// One step of length time_step: heat, burn, ablate, dynamics. Allocates nothing. On failure the
+/// One step of length time_step: heat, burn, ablate, dynamics, gas. Allocates nothing. On failure the
 /// simulation is as it was before the call and the error names stage and element.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
 
@@ -112,7 +112,8 @@ typedef enum SingeStage {
     SINGE_STAGE_BURN = 1,
     SINGE_STAGE_ABLATE = 2,
     SINGE_STAGE_DYNAMICS = 3,
-    SINGE_STAGE_COUNT = 4
+    SINGE_STAGE_GAS = 4,
+    SINGE_STAGE_COUNT = 5
 } SingeStage;
 
 /// Seconds and work per stage since the commit (or load).

@@ -172,8 +172,7 @@ typedef enum SingeSourceKind {
     SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats what is near it
     SINGE_SOURCE_PICTURE = 1,  ///< a flux over uv, black none, white full
     SINGE_SOURCE_SPOT = 2,     ///< a ball that stands still
-    SINGE_SOURCE_PLUME = 3,    ///< hot gas rising from whatever burns
-    SINGE_SOURCE_CALLBACK = 4, ///< the caller's own
+    SINGE_SOURCE_CALLBACK = 3, ///< the caller's own
 } SingeSourceKind;
 
 struct SingeView;
@@ -200,9 +199,6 @@ typedef struct SingeSourceDef {
     float flux;                ///< W/m2 into each layer where the picture is white
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength;
-    float plume_share; ///< power of the plume over that of combustion, 0 to 1; comes on top of it, counted in heat_in
-    float plume_height;        ///< m, over which the plume's heat falls to 1/e, > 0
-    float plume_conductance;   ///< W/(m2 K) from gas to sheet, >= 0
     SingeFluxFn *callback;     ///< not saved: set it again after a load
     void *callback_context;
 } SingeSourceDef;
@@ -332,6 +328,25 @@ typedef enum SingeInstructions {
     SINGE_INSTRUCTIONS_X86_V4 = 4, ///< x86-64-v4: AVX-512, 16 lanes
 } SingeInstructions;
 
+/// The gas about what burns: hot air, flames and smoke on a grid, which rises, heats and lifts (docs/equations.md).
+typedef struct SingeGasDef {
+    size_t struct_size;
+    bool enabled;
+    float cell_size;   ///< m, side of a cell of the grid, >= 0; 0: as the sheets' size asks for
+    float height;      ///< m of room above the sheets as they start, > 0
+    float conductance; ///< W/(m2 K), of each side of a sheet towards gas that is hotter than it, >= 0
+    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to < 1
+    float soot;        ///< kg of smoke per kg burnt, 0 to 1
+} SingeGasDef;
+
+SINGE_API void singe_init_gas(SingeGasDef *def, size_t struct_size);
+
+static inline SingeGasDef singe_default_gas(void) {
+    SingeGasDef def;
+    singe_init_gas(&def, sizeof def);
+    return def;
+}
+
 /// A simulation.
 typedef struct SingeSimDef {
     size_t struct_size;
@@ -354,6 +369,7 @@ typedef struct SingeSimDef {
     float surface_raggedness; ///< m, how far noise eats into burnt edges at most, and half a cell; needs a detail
     SingeWindDef wind;
     SingeSolverDef solver;
+    SingeGasDef gas; ///< not enabled: sheets burn as in still air
 } SingeSimDef;
 
 SINGE_API void singe_init_sim(SingeSimDef *def, size_t struct_size);
@@ -362,6 +378,7 @@ static inline SingeSimDef singe_default_sim(void) {
     SingeSimDef def;
     def.wind.struct_size = sizeof def.wind;
     def.solver.struct_size = sizeof def.solver;
+    def.gas.struct_size = sizeof def.gas;
     singe_init_sim(&def, sizeof def);
     return def;
 }

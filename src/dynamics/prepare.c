@@ -60,7 +60,8 @@ static void prepare_particles(void *task, int begin, int end) {
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
         vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        vec_store(plan->air[i], wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time));
+        Vec air = wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time);
+        vec_store(plan->air[i], state->gas.awake ? vec_add(air, vec_load(state->gas.air[i])) : air);
     }
 }
 

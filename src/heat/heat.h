@@ -31,7 +31,6 @@ typedef struct HeatSettings {
     float ambient_temperature; ///< K
     float tolerance;           ///< relative residual of the diffusion
     float pace;
-    float up[3];               ///< unit, against gravity: where hot gas goes
     size_t scratch_least;      ///< bytes
 } HeatSettings;
 

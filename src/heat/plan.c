@@ -41,7 +41,6 @@ static bool plan_allocate(Memory *memory, HeatPlan *plan) {
     return NEW(memory, plan->thickening, plan->sheets) && NEW(memory, plan->measure, n) &&
            NEW(memory, plan->conductance, springs) && NEW(memory, plan->spring_alive, springs) &&
            NEW(memory, plan->alive, n) && plan_allocate_scratch(memory, plan) &&
-           NEW(memory, plan->plume.power, PLUME_CELLS) && NEW(memory, plan->plume.rising, PLUME_CELLS) &&
            NEW(memory, plan->partial, (size_t)plan->blocks);
 }
 
@@ -78,7 +77,6 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     }
     if (!result) {
         heat_operator(plan, shell);
-        heat_plume_frame(&plan->plume, settings->up);
         result = heat_matrix_create(memory, plan, shell);
         FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
@@ -99,8 +97,6 @@ void heat_plan_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, plan->spring_alive, springs);
     FREE(memory, plan->alive, n);
     memory_free(memory, (void *)&plan->scratch, plan->scratch_size, 1);
-    FREE(memory, plan->plume.power, PLUME_CELLS);
-    FREE(memory, plan->plume.rising, PLUME_CELLS);
     FREE(memory, plan->partial, (size_t)plan->blocks);
     FREE(memory, plan, 1);
 }

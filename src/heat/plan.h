@@ -4,9 +4,6 @@
 
 #include "heat/heat.h"
 
-/// Cells of the plume's grid, at most.
-enum { PLUME_CELLS = 1 << 16 };
-
 /// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
 
@@ -52,16 +49,6 @@ typedef struct HeatRest {
     uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
 } HeatRest;
 
-/// Hot gas in upright columns (plume.c). Cell (x, y, z) is x + nx (y + ny z), z against gravity.
-typedef struct PlumeGrid {
-    Vec axis[3];       ///< orthonormal, the third is up
-    float cell;        ///< m
-    double origin[3];  ///< of cell (0, 0, 0), in the axes
-    int size[3];
-    float *power;      ///< [PLUME_CELLS] W set free in each cell
-    float *rising;     ///< [PLUME_CELLS] W that enter each cell from below
-} PlumeGrid;
-
 struct HeatPlan {
     HeatSettings settings;
     uint32_t particles, springs, sheets;
@@ -77,7 +64,7 @@ struct HeatPlan {
     HeatMatrix matrix;
     HeatRest rest;
 
-    void *scratch;         ///< the arrays below, but for the plume
+    void *scratch;         ///< the arrays below
     size_t scratch_size;
 
     // sources, per particle
@@ -90,7 +77,6 @@ struct HeatPlan {
     float *residual, *search, *product;
     float *next;           ///< the new temperature, K
     double (*partial)[4];  ///< [blocks]
-    PlumeGrid plume;
 };
 
 /// What a step's passes read.
@@ -122,11 +108,8 @@ void heat_rest_free(Memory *memory, HeatPlan *plan);
 /// Whether the group or one near it is in `set`.
 bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
 
-/// Sums all sources into the plan's arrays (source.c, plume.c).
+/// Sums all sources into the plan's arrays (source.c).
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
-void heat_plume(HeatPass *pass, const SingeSourceDef *def);
-/// An orthonormal frame whose third axis is `up`.
-void heat_plume_frame(PlumeGrid *grid, const float up[3]);
 
 /// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
 /// the umbrella made.

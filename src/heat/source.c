@@ -48,13 +48,6 @@ static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
             return source_bad(error, "the path of a spot has exactly one key");
         return SINGE_OK;
     case SINGE_SOURCE_PICTURE: return source_check_picture(def, error);
-    case SINGE_SOURCE_PLUME:
-        if (!(def->plume_share >= 0 && def->plume_share <= 1))
-            return source_bad(error, "plume_share must lie from 0 to 1");
-        if (!source_positive(def->plume_height)) return source_bad(error, "plume_height must be above 0 and finite");
-        if (!source_not_negative(def->plume_conductance))
-            return source_bad(error, "plume_conductance must be at least 0 and finite");
-        return SINGE_OK;
     case SINGE_SOURCE_CALLBACK: return SINGE_OK; // may be set later
     }
     return source_bad(error, "there is no such kind of source");
@@ -175,11 +168,6 @@ static void source_picture(HeatPass *pass, const Source *source, const SingeView
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_picture_task, &job);
 }
 
-static void source_plume(HeatPass *pass, const Source *source, const SingeView *view) {
-    (void)view;
-    heat_plume(pass, &source->def);
-}
-
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {
     HeatPlan *plan = pass->plan;
     if (source->def.callback)
@@ -191,7 +179,7 @@ typedef void SourceFn(HeatPass *pass, const Source *source, const SingeView *vie
 
 static SourceFn *const SOURCE_KINDS[] = {
     [SINGE_SOURCE_BALL] = source_ball,   [SINGE_SOURCE_PICTURE] = source_picture, [SINGE_SOURCE_SPOT] = source_ball,
-    [SINGE_SOURCE_PLUME] = source_plume, [SINGE_SOURCE_CALLBACK] = source_callback,
+    [SINGE_SOURCE_CALLBACK] = source_callback,
 };
 
 static void source_contact_task(void *context, int begin, int end) {
@@ -211,6 +199,23 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
     pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
 }
 
+/// Gas that is hotter than a particle heats it; what is hotter than the gas loses no heat to it beyond the losses to
+/// still air.
+static void source_gas_task(void *context, int begin, int end) {
+    const SourceJob *job = context;
+    HeatPlan *plan = job->pass->plan;
+    const GasState *gas = &job->pass->state->gas;
+    const float *temperature = job->pass->state->heat.temperature;
+    for (int i = begin; i < end; i++)
+        if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i])
+            source_add(plan, (uint32_t)i, gas->conductance[i], gas->temperature[i]);
+}
+
+static void source_gas(HeatPass *pass) {
+    SourceJob job = {.pass = pass};
+    pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_gas_task, &job);
+}
+
 void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view) {
     HeatPlan *plan = pass->plan;
     double time = pass->state->time;
@@ -226,4 +231,5 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         const Collider *collider = &colliders->items[k];
         if (collider->generation && collider->def.conductance > 0) source_contact(pass, collider);
     }
+    if (pass->state->gas.warm) source_gas(pass);
 }

@@ -172,6 +172,19 @@ typedef struct DynamicsState {
     uint8_t *pinned;      ///< [particles] number of pins that hold it
 } DynamicsState;
 
+/// What the gas does to the sheets, from one of its steps to the next. The arrays are the gas plan's, which has two of
+/// each and turns them over, so that what failed is undone by the pointers; NULL without gas.
+typedef struct GasState {
+    bool awake;               ///< there is something hot in it
+    bool warm;                ///< a conductance is not 0
+    const float *conductance; ///< [particles] W/(m2 K), towards `temperature` where that is the higher
+    const float *temperature; ///< [particles] K
+    const float (*air)[4];    ///< [particles] m/s that the air there has on top of the wind; fourth is unused
+    const float *mass;        ///< [particles] fraction that was left at the gas's last step
+    uint64_t steps;           ///< of the gas
+    int turn;                 ///< which of the two holds
+} GasState;
+
 typedef struct State {
     double time;   ///< s
     uint64_t step;
@@ -179,7 +192,8 @@ typedef struct State {
     BurnState burn;
     AblateState ablate;
     DynamicsState dynamics;
-    void *arena;   ///< all arrays above lie in one block
+    GasState gas;
+    void *arena;   ///< all arrays above but the gas's lie in one block
     size_t arena_size;
     size_t basic_size; ///< of the arena's start: all but the springs' lengths, which follow from the rest
 } State;

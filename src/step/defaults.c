@@ -64,9 +64,6 @@ static SingeSourceDef standard_source(void) {
         .radius = 0.005f,
         .falloff = 0.01f,
         .flux = 30e3f,
-        .plume_share = 0.5f,
-        .plume_height = 0.10f,
-        .plume_conductance = 30,
     };
 }
 
@@ -123,6 +120,16 @@ static SingeSolverDef method_solver(SingeSolverMethod method) {
     return def;
 }
 
+static SingeGasDef standard_gas(void) {
+    return (SingeGasDef){
+        .struct_size = sizeof(SingeGasDef),
+        .height = 0.25f,
+        .conductance = 25,
+        .radiated = 0.3f,
+        .soot = 0.01f,
+    };
+}
+
 static SingeSimDef standard_sim(void) {
     return (SingeSimDef){
         .struct_size = sizeof(SingeSimDef),
@@ -138,6 +145,7 @@ static SingeSimDef standard_sim(void) {
         .solver = standard_solver(),
         .surface_detail = 0,
         .surface_raggedness = 2e-3f,
+        .gas = standard_gas(),
     };
 }
 
@@ -189,6 +197,11 @@ void singe_init_solver(SingeSolverDef *def, size_t struct_size) {
     singe_init_solver_method(def, struct_size, SINGE_SOLVER_STRAND);
 }
 
+void singe_init_gas(SingeGasDef *def, size_t struct_size) {
+    const SingeGasDef standard = standard_gas();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
 void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolverMethod method) {
     const SingeSolverDef standard = method_solver(method);
     fill_def(def, struct_size, &standard, sizeof standard);
@@ -222,9 +235,11 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     }
     size_t wind = inner_size(bytes + head, struct_size - head), left = struct_size - head - wind;
     size_t solver = inner_size(bytes + head + wind, left);
+    size_t gas = inner_size(bytes + head + wind + solver, left - solver);
     fill_def(def, head, &standard, head);
     memcpy(def, &struct_size, sizeof struct_size);
     fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);
     fill_def(bytes + head + wind, solver, &standard.solver, sizeof standard.solver);
-    memset(bytes + head + wind + solver, 0, left - solver);
+    fill_def(bytes + head + wind + solver, gas, &standard.gas, sizeof standard.gas);
+    memset(bytes + head + wind + solver + gas, 0, left - solver - gas);
 }

@@ -51,6 +51,7 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     if (!in_range(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
     if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
+    TRY(gas_check(&def->gas, error));
     return wind_check(&def->wind, error);
 }
 
@@ -64,14 +65,14 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) 
     return true;
 }
 
-/// Reads a simulation's Def of any version. Wind and solver lie inside and grow by themselves, so that
+/// Reads a simulation's Def of any version. Wind, solver and gas lie inside and grow by themselves, so that
 /// what comes after each is found by the size that the caller's header gave it.
 static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const size_t head = offsetof(SingeSimDef, wind);
     const char *bytes = (const char *)given;
     *def = singe_default_sim();
     if (!given || given->struct_size < sizeof(size_t)) return false;
-    size_t rest = given->struct_size, wind;
+    size_t rest = given->struct_size, wind, solver;
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
     if (rest <= head) return true;
@@ -79,7 +80,11 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
     memcpy(&wind, bytes, sizeof wind);
     bytes += wind, rest -= wind;
-    return rest == 0 || sim_read_def(&def->solver, sizeof def->solver, bytes, rest);
+    if (rest == 0) return true;
+    if (!sim_read_def(&def->solver, sizeof def->solver, bytes, rest)) return false;
+    memcpy(&solver, bytes, sizeof solver);
+    bytes += solver, rest -= solver;
+    return rest == 0 || sim_read_def(&def->gas, sizeof def->gas, bytes, rest);
 }
 
 SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeError *error) {
@@ -111,7 +116,8 @@ static void sim_unbuild(SingeSim *sim) {
     heat_plan_free(memory, sim->heat);
     ablate_plan_free(memory, sim->ablate);
     dynamics_plan_free(memory, &sim->shell, sim->dynamics);
-    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL;
+    gas_plan_free(memory, sim->gas);
+    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL, sim->gas = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
@@ -176,11 +182,6 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     return SINGE_OK;
 }
 
-static void sim_up(const float gravity[3], float up[3]) {
-    Vec down = vec_unit(vec_load(gravity));
-    vec_store(up, vec_dot(down, down) > 0 ? vec_scale(down, -1) : vec(0, 0, 1));
-}
-
 SingeResult sim_build(SingeSim *sim) {
     const SingeSimDef *def = &sim->def;
     Memory *memory = &sim->memory;
@@ -193,7 +194,11 @@ SingeResult sim_build(SingeSim *sim) {
                          .tolerance = def->heat_tolerance,
                          .pace = def->pace,
                          .scratch_least = events * sizeof *sim->events.items};
-    sim_up(def->gravity, heat.up);
+    GasSettings gas = {.def = def->gas,
+                       .gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
+                       .ambient_temperature = def->ambient_temperature,
+                       .time_step = def->time_step,
+                       .pace = def->pace};
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,
@@ -207,6 +212,7 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && ablate_plan_create(memory, shell, &sim->ablate) == SINGE_OK;
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
+    ok = ok && (!def->gas.enabled || gas_plan_create(memory, shell, &gas, &sim->gas, &sim->state.gas) == SINGE_OK);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);

@@ -5,6 +5,7 @@
 #include "ablate/ablate.h"
 #include "burn/burn.h"
 #include "dynamics/dynamics.h"
+#include "gas/gas.h"
 #include "heat/heat.h"
 
 struct SingeSim {
@@ -38,6 +39,7 @@ struct SingeSim {
     HeatPlan *heat;
     AblatePlan *ablate;
     DynamicsPlan *dynamics;
+    GasPlan *gas; ///< NULL without gas
     double *partial;      ///< [pool_blocks(particles)]
     float *sample;        ///< [blue springs], at least as many as cells: of a statistic
 };

@@ -169,6 +169,7 @@ static void snapshot_state(Stream *stream, SingeSim *sim) {
     stream->failed |= size != state->arena_size;
     stream_data(stream, state->arena, state->arena_size);
     dynamics_plan_stream(sim->dynamics, &sim->shell, stream);
+    if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     for (uint32_t i = 0; stream->mode == STREAM_READ && i < sim->shell.particle_count; i++)
         stream->failed |= state->ablate.piece[i] < -1 || state->ablate.piece[i] >= (int64_t)sim->shell.particle_count;
     stream->failed |= stream->mode == STREAM_READ && stream->offset != stream->size;

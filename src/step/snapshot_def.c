@@ -35,6 +35,16 @@ static void def_solver(Stream *stream, SingeSolverDef *solver) {
     STREAM(stream, solver->height_gain);
 }
 
+static void def_gas(Stream *stream, SingeGasDef *gas) {
+    gas->struct_size = sizeof *gas;
+    def_bool(stream, &gas->enabled);
+    STREAM(stream, gas->cell_size);
+    STREAM(stream, gas->height);
+    STREAM(stream, gas->conductance);
+    STREAM(stream, gas->radiated);
+    STREAM(stream, gas->soot);
+}
+
 void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     STREAM(stream, def->seed);
     STREAM(stream, def->time_step);
@@ -47,6 +57,7 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     def_solver(stream, &def->solver);
     STREAM(stream, def->surface_detail);
     STREAM(stream, def->surface_raggedness);
+    def_gas(stream, &def->gas);
 }
 
 /// A parameter's numbers; its values at the particles are the sheet's params.
@@ -90,9 +101,6 @@ void snapshot_source_def(Stream *stream, SingeSourceDef *def) {
     STREAM(stream, def->falloff);
     STREAM(stream, def->path_count);
     STREAM(stream, def->flux);
-    STREAM(stream, def->plume_share);
-    STREAM(stream, def->plume_height);
-    STREAM(stream, def->plume_conductance);
     stream->failed |= (unsigned)def->kind > SINGE_SOURCE_CALLBACK;
 }
 

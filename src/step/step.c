@@ -1,4 +1,4 @@
-// The step, in the order of the paper's section 4.
+// The step, in the order of the paper's section 4, and after it the gas.
 #include "base/clock.h"
 #include "step/sim.h"
 
@@ -44,6 +44,10 @@ static SingeResult step_stages(SingeSim *sim) {
     TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h,
                       &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
+
+    // 5. the gas above what burns; what it does to the sheets is felt from the next step on
+    if (sim->gas) gas_step(sim->gas, shell, state, &sim->colliders, &def->wind, sim->pool, &state->gas);
+    step_lap(sim, SINGE_STAGE_GAS, &start);
 
     sim->timers.heat_iterations += heat.iterations;
     sim->timers.strands_projected += counters.strands;

@@ -43,8 +43,7 @@ const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
 }
 
 SingeGas singe_sim_gas(const SingeSim *sim) {
-    (void)sim;
-    return (SingeGas){0};
+    return sim->gas ? gas_view(sim->gas) : (SingeGas){0};
 }
 
 SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }

@@ -36,7 +36,7 @@ preview: {{size: [64, 48], samples: 1}}
 COLUMNS = (
     "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
     "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
-    "ms_ablate,ms_dynamics,ms_output"
+    "ms_ablate,ms_dynamics,ms_gas,ms_output"
 ).split(",")
 
 

@@ -11,7 +11,7 @@ RigDef rig_default(int nx, int ny, float dx, float dy) {
     def.material.convection = singe_param(0);
     def.material.emissivity = singe_param(0);
     def.material.thickening = 1;
-    def.settings = (HeatSettings){.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1, .up = {0, 0, 1}};
+    def.settings = (HeatSettings){.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1};
     return def;
 }
 

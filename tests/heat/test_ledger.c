@@ -17,11 +17,9 @@ static RigDef paper(SingeHeatOperator heat_operator) {
 }
 
 static void light(Rig *rig) {
-    SingeSourceDef spot = singe_default_source(), plume = singe_default_source();
+    SingeSourceDef spot = singe_default_source();
     spot.path = &MIDDLE, spot.path_count = 1, spot.end = 0.6f;
-    plume.kind = SINGE_SOURCE_PLUME;
     rig_source(rig, &spot);
-    rig_source(rig, &plume);
 }
 
 /// A ring of fire that grows from the middle; what it has passed falls away here and there.

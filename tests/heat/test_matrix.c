@@ -34,7 +34,7 @@ static void twins_go_one_by_one(void **unused) {
         Shell shell;
         State state;
         HeatPlan *plan;
-        HeatSettings settings = {.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1, .up = {0, 0, 1}};
+        HeatSettings settings = {.ambient_temperature = 293, .tolerance = 1e-7f, .pace = 1};
         assert_int_equal(sheet_source_create(&memory, &def, &source, NULL), SINGE_OK);
         assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
         assert_int_equal(state_create(&memory, &shell, &state), SINGE_OK);

@@ -165,109 +165,6 @@ static void callback_adds_to_the_rest(void **unused) {
     rig_close(&rig);
 }
 
-// --- plume -------------------------------------------------------------------------------------------------
-
-static void stand_up(float position[3], int column, int row) {
-    (void)column, (void)row;
-    position[2] = position[1], position[1] = 0;
-}
-
-static void plume_heats_what_is_above(void **unused) {
-    (void)unused;
-    for (int tilt = 0; tilt < 2; tilt++) {
-        RigDef def = inert(40, 60);
-        def.shape = tilt ? NULL : stand_up;
-        def.settings.up[tilt ? 2 : 1] = 0, def.settings.up[tilt ? 1 : 2] = 1;
-        Rig rig;
-        rig_open(&rig, &def);
-        for (int column = 0; column < 40; column++)
-            for (int row = 29; row < 31; row++) rig.state.burn.burn_rate[rig_centre(&rig, column, row)] = 1;
-        Field *heating = &rig.shell.matter.heating;
-        assert_true(field_vary(&rig.memory, heating, rig.shell.particle_count));
-        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-            heating->values[i] = shell_is_corner(&rig.shell, i) ? 0 : 2400;
-        SingeSourceDef source = singe_default_source();
-        source.kind = SINGE_SOURCE_PLUME;
-        rig_source(&rig, &source);
-        rig_step(&rig);
-        double above = 0, below = 0, last = 1e9;
-        for (int row = 0; row <= 60; row++) {
-            double rise = (double)rig.state.heat.temperature[rig_vertex(&rig, 20, row)] - 300;
-            if (row < 30) below += rise;
-            if (row > 30) above += rise;
-            if (row > 40) assert_true(rise > 0 && rise <= last + 1e-4); // cools on its way up
-            if (row > 40) last = rise;
-        }
-        assert_true(above > 10 * below);
-        double hottest = 0.002 * 30 / PER_AREA * 1200;
-        assert_true(above / 30 > 0.02 * hottest && above / 30 < hottest);
-        rig_close(&rig);
-    }
-}
-
-static void lift(float position[3], int column, int row) {
-    (void)column, (void)row;
-    position[2] = 0.006f; // half a cell of the plume's grid
-}
-
-/// Excess temperature of the gas at the middle of a level sheet that burns everywhere, from one heat step. The heat of
-/// combustion and the heat brought in go to `heat`.
-static double plume_excess(float rate, float share, float pace, double heat[2]) {
-    RigDef def = inert(40, 40);
-    def.shape = lift;
-    def.material.heat_of_combustion = singe_param(2400 * 1400), def.material.heat_share = singe_param(1);
-    def.settings.pace = pace;
-    Rig rig;
-    rig_open(&rig, &def);
-    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = rate;
-    SingeSourceDef source = singe_default_source();
-    source.kind = SINGE_SOURCE_PLUME;
-    source.plume_share = share, source.plume_conductance = 1e4f;
-    rig_source(&rig, &source);
-    rig_step(&rig);
-    double own = 300 + 2400 * (double)rate * 0.002, a = 0.002 * (double)pace * 1e4 / PER_AREA;
-    double T = (double)rig.state.heat.temperature[rig_vertex(&rig, 20, 20)];
-    heat[0] = rig.state.heat.heat_of_combustion, heat[1] = rig.state.heat.heat_in;
-    rig_close(&rig);
-    return (T * (1 + a) - own) / a - 293;
-}
-
-/// Both layers set power free over the whole level; half of the cell is below the corners.
-static void plume_follows_its_formula(void **unused) {
-    (void)unused;
-    double once[2], heat[2];
-    double carry = 0.5 * 353 / 293 * 1005 * sqrt(9.81 * 0.1 / 293); // W/(m2 K^1.5)
-    double excess = plume_excess(0.5f, 0.5f, 1, once);
-    CHECK_NEAR(excess, pow(0.5 * 2 * PER_AREA * 2400 * 0.5 * 0.5 / carry, 2.0 / 3), 0.002 * excess);
-    CHECK_NEAR(plume_excess(4, 0.5f, 1, heat), 4 * excess, 0.002 * 4 * excess); // 8 times the power
-    CHECK_NEAR(plume_excess(0.5f, 1, 1, heat), pow(2, 2.0 / 3) * excess, 0.003 * excess);
-    assert_true(heat[0] == once[0] && heat[1] > once[1]); // the share is not taken from combustion
-    CHECK_NEAR(plume_excess(4, 0.5f, 8, heat), excess, 0.002 * excess); // the same fire, shown 8 times as fast
-    CHECK_NEAR(plume_excess(100, 1, 1, heat), 1200, 1);
-    plume_excess(0.5f, 0, 1, heat);
-    assert_true(heat[0] == once[0] && heat[1] == 0);
-}
-
-static void plume_copes_with_any_place(void **unused) {
-    (void)unused;
-    RigDef def = inert(6, 6);
-    Rig rig;
-    rig_open(&rig, &def);
-    SingeSourceDef source = singe_default_source();
-    source.kind = SINGE_SOURCE_PLUME;
-    rig_source(&rig, &source);
-    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 0.5f;
-    rig.state.dynamics.position[3][0] = 4000; // far larger than the grid is made for
-    rig.state.dynamics.position[4][2] = -900;
-    rig_step(&rig);
-    rig.state.dynamics.position[3][0] = NAN;
-    rig_step(&rig);
-    rig.state.dynamics.position[3][0] = INFINITY;
-    rig_step(&rig);
-    for (uint32_t i = 0; i < rig.shell.particle_count; i++) assert_true(isfinite(rig.state.heat.temperature[i]));
-    rig_close(&rig);
-}
-
 // --- refusals ------------------------------------------------------------------------------------------------
 
 static void bad_defs_are_refused(void **unused) {
@@ -279,10 +176,8 @@ static void bad_defs_are_refused(void **unused) {
     const SingeValueKey keys[] = {{1, 0}, {1, 2}};
     SingeSourceDef bad[20];
     int count = 0;
-    SingeSourceDef spot = ball(&MIDDLE, 1, 150, 0.01f, 0), picture = singe_default_source(),
-        plume = singe_default_source();
+    SingeSourceDef spot = ball(&MIDDLE, 1, 150, 0.01f, 0), picture = singe_default_source();
     picture.kind = SINGE_SOURCE_PICTURE, picture.picture = (SingePicture){2, 1, good_pixels};
-    plume.kind = SINGE_SOURCE_PLUME;
     bad[count] = spot, bad[count++].temperature = 0;
     bad[count] = spot, bad[count++].temperature = NAN;
     bad[count] = spot, bad[count++].conductance = -1;
@@ -298,9 +193,6 @@ static void bad_defs_are_refused(void **unused) {
     bad[count] = picture, bad[count++].picture.values = pixels;
     bad[count] = picture, bad[count++].flux = NAN;
     bad[count] = picture, bad[count].strength = keys, bad[count++].strength_count = 2;
-    bad[count] = plume, bad[count++].plume_share = 1.5f;
-    bad[count] = plume, bad[count++].plume_height = 0;
-    bad[count] = plume, bad[count++].plume_conductance = -1;
     for (int k = 0; k < count; k++) {
         size_t held = rig.memory.held;
         rig.error = (SingeError){0};
@@ -320,8 +212,7 @@ int main(void) {
         cmocka_unit_test(relaxes_to_the_source_by_the_formula), cmocka_unit_test(never_overshoots),
         cmocka_unit_test(falls_off_smoothly_and_moves),         cmocka_unit_test(contact_heats_the_near_layer),
         cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
-        cmocka_unit_test(plume_heats_what_is_above),            cmocka_unit_test(plume_follows_its_formula),
-        cmocka_unit_test(plume_copes_with_any_place),           cmocka_unit_test(bad_defs_are_refused),
+        cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);
 }

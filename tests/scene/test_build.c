@@ -41,7 +41,7 @@ static void test_sim(void **state) {
                    "    translate: [0, 0, 1]\n    scale: 2\n"
                    "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
                    "  - grid: {size: [1, 1], cells: [3, 3]}\n"
-                   "sources: [{kind: spot, position: [0, 0, 1]}, {kind: plume}, {kind: ball, position: [0, 0, 0]}]\n"
+                   "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
                    "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
                    "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
                    NULL, 0);

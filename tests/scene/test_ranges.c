@@ -19,7 +19,6 @@ static const char base[] =
     "  - {kind: ball, path: [{time: 0, position: [0, 0, 0]}]}\n"
     "  - {kind: picture, picture: flux.png, strength: [{time: 0, value: 1}]}\n"
     "  - {kind: spot, position: [0, 0, 0]}\n"
-    "  - {kind: plume}\n"
     "colliders:\n"
     "  - {kind: plane, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: sphere, conductance: 10, path: [{time: 0}]}\n"

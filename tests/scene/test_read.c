@@ -25,7 +25,6 @@ static const char full[] =
     "  - {kind: ball, position: [1, 2, 3], visible: no}\n"
     "  - {kind: spot, position: [1, 2, 3], start: 1, end: 1250 ms}\n"
     "  - {kind: picture, picture: f.png, flux: 20 kW/m2, strength: [{time: 0, value: 0}, {time: 1, value: 50 %}]}\n"
-    "  - {kind: plume, share: 25 %, height: 5 cm, conductance: 12}\n"
     "colliders:\n"
     "  - {kind: plane, friction: 0.25}\n"
     "  - {kind: box, half_size: [1, 2, 3], rotation: [0, 90, 0], position: [0, 0, 5], colour: [1, 0, 0]}\n"
@@ -35,6 +34,7 @@ static const char full[] =
     "  - {sheet: 0, vertices: [3, 1, 2], path: [{time: 0}, {time: 1, position: [0, 0, 1]}]}\n"
     "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
     "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
+    "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %}\n"
     "preview:\n  size: [320, 180]\n  samples: 4\n  camera: {eye: [1, 1, 1], fov: 50}\n"
     "  light: {direction: [0, 0, 1], angle: 5, colour: [3, 2, 1]}\n  ground: {height: -0.5}\n  sky: [1, 1, 1]\n";
 
@@ -68,12 +68,13 @@ static void check_full(const Scene *scene) {
 }
 
 static void check_objects(const Scene *scene) {
-    assert_int_equal(scene->source_count, 5);
+    assert_int_equal(scene->source_count, 4);
     assert_true(scene->sources[0].key_count == 2 && scene->sources[0].keys[1].position[0] == 1);
     assert_true(scene->sources[1].key_count == 1 && scene->sources[1].keys[0].position[2] == 3 &&
                 !scene->sources[1].visible);
     assert_true(scene->sources[3].def.flux == 20e3f && scene->sources[3].strength[1].value == 0.5f);
-    assert_true(scene->sources[4].def.plume_share == 0.25f && scene->sources[4].def.plume_conductance == 12);
+    const SingeGasDef *gas = &scene->sim.gas;
+    assert_true(gas->enabled && gas->cell_size == 0.012f && gas->conductance == 12 && gas->radiated == 0.25f);
     assert_true(isinf(scene->sources[0].def.end));
     assert_int_equal(scene->collider_count, 3);
     assert_true(scene->colliders[0].key_count == 1 && scene->colliders[0].def.friction == 0.25f);
@@ -264,6 +265,33 @@ static void test_set(void **state) {
     scene_free(scene);
 }
 
+// The gas is there unless a scene says no, alone or in its map.
+static void test_gas(void **state) {
+    (void)state;
+    const struct {
+        const char *text, *set;
+        bool enabled;
+        float height;
+    } cases[] = {
+        {"", NULL, true, 0.25f},
+        {"gas: no\n", NULL, false, 0.25f},
+        {"gas: yes\n", NULL, true, 0.25f},
+        {"gas: {height: 50 cm}\n", NULL, true, 0.5f},
+        {"gas: {height: 50 cm, enabled: no}\n", NULL, false, 0.5f},
+        {"gas: {height: 50 cm}\n", "gas=no", false, 0.25f},
+        {"gas: {height: 50 cm}\n", "gas.enabled=no", false, 0.5f},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[400];
+        snprintf(text, sizeof text, "%s%s", SHEET, cases[i].text);
+        Scene *scene = good_scene(text, &cases[i].set, cases[i].set ? 1 : 0);
+        assert_int_equal(scene->sim.gas.enabled, cases[i].enabled);
+        assert_true(scene->sim.gas.height == cases[i].height);
+        scene_free(scene);
+    }
+    assert_false(singe_default_sim().gas.enabled);
+}
+
 // The solver's method, alone or with keys: what is not given suits the method, in any order of the keys.
 static void test_solver_method(void **state) {
     (void)state;
@@ -298,6 +326,7 @@ static void test_solver_method(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_gas),
         cmocka_unit_test(test_solver_method),
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
         cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),

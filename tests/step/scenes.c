@@ -85,9 +85,6 @@ static SingeResult scene_sources(Scene *scene) {
     def.flux = 40e3f;
     SCENE_TRY(singe_sim_add_source(sim, &def, &scene->picture));
     def = singe_default_source();
-    def.kind = SINGE_SOURCE_PLUME;
-    SCENE_TRY(singe_sim_add_source(sim, &def, &scene->plume));
-    def = singe_default_source();
     def.kind = SINGE_SOURCE_CALLBACK;
     def.callback = scene_flux;
     def.callback_context = &scene_callback_flux;

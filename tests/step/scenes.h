@@ -12,7 +12,7 @@ SingeMaterialDef scene_quick_material(void);
 typedef struct Scene {
     SingeSim *sim;
     SingeSheetId sheets[2];
-    SingeSourceId ball, picture, spot, plume, callback;
+    SingeSourceId ball, picture, spot, callback;
     SingeColliderId plane, sphere, box, capsule;
     SingePinId points, vertices;
 } Scene;

@@ -54,6 +54,13 @@ static void bad_simulations(void **state) {
     SIM_BAD(wind.struct_size, 0, "struct_size");
     SIM_BAD(solver.struct_size, 0, "struct_size");
     SIM_BAD(wind.struct_size, 1 << 20, "struct_size");
+    SIM_BAD(gas.struct_size, 0, "struct_size");
+    SIM_BAD(gas.cell_size, -1, "gas.cell_size");
+    SIM_BAD(gas.cell_size, NAN, "gas.cell_size");
+    SIM_BAD(gas.height, 0, "gas.height");
+    SIM_BAD(gas.conductance, -1, "gas.conductance");
+    SIM_BAD(gas.radiated, 1, "gas.radiated");
+    SIM_BAD(gas.soot, NAN, "gas.soot");
 }
 
 static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, int grain) {
@@ -119,9 +126,6 @@ static void bad_sources(void **state) {
     SOURCE_BAD(SINGE_SOURCE_PICTURE, def.flux = NAN);
     SOURCE_BAD(SINGE_SOURCE_PICTURE, def.strength_count = 2);
     SOURCE_BAD(SINGE_SOURCE_PICTURE, (def.strength_count = 2, def.strength = strengths));
-    SOURCE_BAD(SINGE_SOURCE_PLUME, def.plume_share = 2);
-    SOURCE_BAD(SINGE_SOURCE_PLUME, def.plume_height = 0);
-    SOURCE_BAD(SINGE_SOURCE_PLUME, def.plume_conductance = NAN);
     SOURCE_BAD((SingeSourceKind)17, (void)0);
     SOURCE_BAD((SingeSourceKind)-1, (void)0);
     test_steps(sim, 2);
@@ -214,7 +218,7 @@ static void older_defs(void **state) {
     SingeSourceId source_id;
     source.path_count = 1, source.path = &key;
     source.struct_size = offsetof(SingeSourceDef, picture);
-    source.picture.width = -1, source.plume_share = NAN, source.callback = (SingeFluxFn *)1;
+    source.picture.width = -1, source.callback = (SingeFluxFn *)1;
     test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;

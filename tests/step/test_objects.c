@@ -72,7 +72,7 @@ static void refused_moves_change_nothing(void **state) {
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 1, &bad));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 0, NULL));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.ball, 1, NULL));
-    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.plume, 1, &good));
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_source(sim, scene.picture, 1, &good));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_collider(sim, scene.box, 1, &bad));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_collider(sim, scene.box, 0, NULL));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_move_pin(sim, scene.vertices, 1, &bad));

@@ -1,0 +1,83 @@
+// What is in the gas's way: cells whose middle is inside a collider have no gas, and a sheet's cell of area A and
+// normal n covers A |n_d| of the faces across axis d nearest to it, shared among the four about it.
+#include "gas/plan.h"
+
+#include <string.h>
+
+static void blocked_planes(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
+    for (int k = begin; k < end; k++)
+        for (int j = 0; j < grid->n[1]; j++) {
+            size_t c = gas_at(grid, 0, j, k);
+            memset(plan->solid + c, 0, (size_t)grid->n[0]);
+            for (uint32_t s = 0; s < pass->colliders->count; s++) {
+                const Collider *collider = &pass->colliders->items[s];
+                if (collider->generation == 0) continue;
+                Pose pose = path_pose(&collider->path, pass->state->time);
+                for (int i = 0; i < grid->n[0]; i++) {
+                    Vec x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
+                             plan->origin[1] + plan->cell * ((float)j + 0.5f),
+                             plan->origin[2] + plan->cell * ((float)k + 0.5f)}, normal;
+                    plan->solid[c + (size_t)i] |= collider_distance(&collider->def, pose_unapply(&pose, x), &normal) < 0;
+                }
+            }
+        }
+}
+
+/// Adds to what is covered of the faces across axis d.
+static void blocked_cover(GasPlan *plan, int d, const float place[3], float share) {
+    const GasGrid *grid = &plan->grid;
+    int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
+    float part[3];
+    at[d] = (int)floorf(place[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
+    for (int q = 0; q < 3; q++)
+        if (q != d) at[q] = (int)(place[q] + 1) - 1, part[q] = place[q] - (float)at[q];
+    size_t c = gas_at(grid, at[0], at[1], at[2]);
+    float *open = plan->open[d];
+    open[c] += share * (1 - part[e]) * (1 - part[f]);
+    open[c + grid->stride[e]] += share * part[e] * (1 - part[f]);
+    open[c + grid->stride[f]] += share * (1 - part[e]) * part[f];
+    open[c + grid->stride[e] + grid->stride[f]] += share * part[e] * part[f];
+}
+
+static void blocked_by_sheets(const GasPass *pass) {
+    GasPlan *plan = pass->plan;
+    const Shell *shell = pass->shell;
+    float face = 1 / (plan->cell * plan->cell), place[3];
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!(pass->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        uint32_t i = shell_centre(shell, c);
+        if (!gas_place(plan, vec_load(pass->state->dynamics.position[i]), place)) continue;
+        for (int d = 0; d < 3; d++)
+            blocked_cover(plan, d, place, shell->matter.area[i] * face * fabsf(plan->normal[i][d]));
+    }
+}
+
+/// From the share that is covered to the one that is open.
+static void blocked_open(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
+    for (int d = 0; d < 3; d++)
+        for (int k = begin; k < end; k++)
+            for (int j = 0; j <= grid->n[1]; j++) {
+                size_t c = gas_at(grid, 0, j, k);
+                float *open = plan->open[d];
+                const uint8_t *solid = plan->solid;
+                for (int i = 0; i <= grid->n[0]; i++, c++) {
+                    float left = solid[c] | solid[c - grid->stride[d]] ? 0 : 1 - open[c];
+                    open[c] = left > 0.02f ? left : 0;
+                }
+            }
+}
+
+void gas_blocked(GasPass *pass) {
+    GasPlan *plan = pass->plan;
+    for (int d = 0; d < 3; d++) memset(plan->open[d], 0, plan->grid.cells * sizeof(float));
+    gas_planes(pass, &plan->grid, blocked_planes);
+    blocked_by_sheets(pass);
+    gas_planes(pass, &plan->grid, blocked_open);
+    blocked_open(pass, plan->grid.n[2], plan->grid.n[2] + 1); // the upper faces of the last plane
+}

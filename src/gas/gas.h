@@ -1,0 +1,41 @@
+// The gas about what burns: hot air, flames and smoke on a grid.
+#ifndef GAS_GAS_H
+#define GAS_GAS_H
+
+#include "base/bytes.h"
+#include "base/pool.h"
+#include "shell/shell.h"
+#include "singe/sim.h"
+#include "world/collider.h"
+
+/// Checks the numbers of a Def.
+SingeResult gas_check(const SingeGasDef *def, SingeError *error);
+
+/// What the stage needs and does not change while it runs.
+typedef struct GasSettings {
+    SingeGasDef def;
+    float gravity[3];          ///< m/s2
+    float ambient_temperature; ///< K
+    float time_step;           ///< s
+    float pace;
+} GasSettings;
+
+/// The grid, its two sets of fields and the scratch of a step.
+typedef struct GasPlan GasPlan;
+
+/// Lays the grid about the sheets as they are at rest. The arrays of *gas belong to the plan.
+SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSettings *settings, GasPlan **plan,
+                            GasState *gas);
+void gas_plan_free(Memory *memory, GasPlan *plan);
+/// Passes the fields through a stream, as they do not follow from anything else.
+void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream);
+
+/// Called at the end of a step, with what it has made of the sheets; cannot fail. The gas has a step of its own, of
+/// about 1/96 s: it moves at every n-th call, and not while there is nothing hot.
+void gas_step(GasPlan *plan, const Shell *shell, const State *state, const ColliderList *colliders,
+              const SingeWindDef *wind, Pool *pool, GasState *gas);
+
+/// What readers see of the last step.
+SingeGas gas_view(const GasPlan *plan);
+
+#endif

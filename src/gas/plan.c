@@ -1,0 +1,195 @@
+// The grid and its memory.
+//
+// The grid reaches from a few cells beside and below the sheets, as they are at rest, to `height` above them. A face
+// of cells lies at the lower end of the sheets along each axis: a flat sheet is then between two layers of cells.
+#include "gas/plan.h"
+
+#include <string.h>
+
+static const float PLAN_RATE = 96;         ///< 1/s, steps of the gas
+static const float PLAN_CELLS_ACROSS = 45; ///< cells along the diagonal of the sheets
+static const float PLAN_CELL_LEAST = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
+static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MOST = 2e6;
+enum { PLAN_PARTS_MOST = 16, PLAN_COARSEST = 4 };
+
+SingeResult gas_check(const SingeGasDef *def, SingeError *error) {
+    const char *what = NULL;
+    if (!(def->cell_size >= 0 && def->cell_size <= 1e3f)) what = "gas.cell_size must be between 0 and 1000 m";
+    if (!(def->height > 0 && def->height <= 1e3f)) what = "gas.height must be above 0 and at most 1000 m";
+    if (!(def->conductance >= 0 && def->conductance <= 1e9f)) what = "gas.conductance must be between 0 and 1e9";
+    if (!(def->radiated >= 0 && def->radiated <= 0.99f)) what = "gas.radiated must be between 0 and 0.99";
+    if (!(def->soot >= 0 && def->soot <= 1)) what = "gas.soot must be between 0 and 1";
+    return what ? error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what) : SINGE_OK;
+}
+
+static GasGrid plan_grid(const int n[3]) {
+    GasGrid grid = {.n = {n[0], n[1], n[2]}};
+    size_t cells = 1;
+    for (int d = 0; d < 3; d++) grid.stride[d] = cells, cells *= (size_t)n[d] + 2 * GAS_GHOSTS;
+    grid.cells = cells;
+    return grid;
+}
+
+/// Cells of size `cell` over low to high with their margins, in eights so that coarser grids fit; returns how many.
+static double plan_fit(GasPlan *plan, const float low[3], const float high[3], float cell) {
+    int up = 2;
+    const float *g = plan->settings.gravity;
+    for (int d = 0; d < 3; d++)
+        if (fabsf(g[d]) > fabsf(g[up])) up = d;
+    double cells = 1;
+    for (int d = 0; d < 3; d++) {
+        float below = PLAN_MARGIN, above = PLAN_MARGIN;
+        if (d == up && g[d] > 0) below = plan->settings.def.height;
+        else if (d == up) above = plan->settings.def.height;
+        double lower = ceil((double)below / (double)cell), upper = ceil((double)(high[d] - low[d] + above) / (double)cell);
+        double count = 8 * ceil((lower + upper) / 8), spare = count - lower - upper;
+        if (d != up) lower += floor(spare / 2);
+        cells *= count;
+        plan->grid.n[d] = count < 1e6 ? (int)count : 1000000;
+        plan->origin[d] = low[d] - (float)lower * cell;
+    }
+    plan->cell = cell;
+    return cells;
+}
+
+static void plan_lay(GasPlan *plan, const Shell *shell) {
+    float low[3] = {0}, high[3] = {0}, diagonal = 0, wanted = plan->settings.def.cell_size;
+    bool first = true;
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        if (!(shell->matter.area[i] > 0)) continue;
+        for (int d = 0; d < 3; d++) {
+            float x = shell->rest_position[i][d];
+            low[d] = first || x < low[d] ? x : low[d];
+            high[d] = first || x > high[d] ? x : high[d];
+        }
+        first = false;
+    }
+    for (int d = 0; d < 3; d++) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
+    float cell = sqrtf(diagonal) / PLAN_CELLS_ACROSS;
+    if (wanted > 0) cell = wanted;
+    else if (cell < PLAN_CELL_LEAST) cell = PLAN_CELL_LEAST;
+    if (cell < 1e-4f) cell = 1e-4f;
+    while (plan_fit(plan, low, high, cell) > (wanted > 0 ? PLAN_CELLS_MOST : PLAN_CELLS_USUAL)) cell *= 1.05f;
+    plan->grid = plan_grid(plan->grid.n);
+}
+
+/// Coarser and coarser grids, each of half as many cells along each axis.
+static void plan_levels(GasPlan *plan) {
+    GasGrid grid = plan->grid;
+    plan->levels = 0;
+    for (;;) {
+        plan->level[plan->levels++].grid = grid;
+        int n[3];
+        bool even = true;
+        for (int d = 0; d < 3; d++) even = even && grid.n[d] % 2 == 0 && grid.n[d] >= PLAN_COARSEST, n[d] = grid.n[d] / 2;
+        if (!even || plan->levels == GAS_LEVELS) return;
+        grid = plan_grid(n);
+    }
+}
+
+/// Takes `count` floats from the block; with a NULL base only the size is counted.
+static float *take(float *base, size_t *used, size_t count) {
+    float *slice = base ? base + *used : NULL;
+    *used += (count + 15) / 16 * 16;
+    return slice;
+}
+
+static size_t plan_turn(const GasPlan *plan, float *base, GasTurn *turn) {
+    size_t used = 0, n = plan->particles;
+    for (int f = 0; f < GAS_FIELDS; f++) turn->field[f] = take(base, &used, plan->grid.cells);
+    turn->conductance = take(base, &used, n);
+    turn->temperature = take(base, &used, n);
+    turn->mass = take(base, &used, n);
+    turn->air = (float(*)[4])take(base, &used, 4 * n);
+    return used;
+}
+
+static size_t plan_scratch(GasPlan *plan, float *base) {
+    size_t used = 0, cells = plan->grid.cells;
+    for (int f = 0; f < GAS_CARRIED; f++) plan->spare[f] = take(base, &used, cells);
+    for (int d = 0; d < 3; d++) plan->open[d] = take(base, &used, cells);
+    plan->expansion = take(base, &used, cells);
+    plan->solid = (uint8_t *)take(base, &used, cells / sizeof(float) + 1);
+    for (int l = 0; l < plan->levels; l++) {
+        GasLevel *level = &plan->level[l];
+        for (int d = 0; d < 3; d++) level->weight[d] = take(base, &used, level->grid.cells);
+        level->inverse = take(base, &used, level->grid.cells);
+        level->rhs = take(base, &used, level->grid.cells);
+        level->p = l ? take(base, &used, level->grid.cells) : NULL; // the finest is the pressure itself
+    }
+    for (int f = 0; f < 3; f++) plan->view[f] = take(base, &used, plan->view_cells);
+    plan->view_velocity = (float(*)[3])take(base, &used, 3 * plan->view_cells);
+    return used;
+}
+
+static bool plan_allocate(Memory *memory, GasPlan *plan) {
+    plan->block_size = plan_turn(plan, NULL, &plan->turn[0]);
+    plan->scratch_size = plan_scratch(plan, NULL);
+    for (int t = 0; t < 2; t++) {
+        if (!NEW(memory, plan->block[t], plan->block_size)) return false;
+        plan_turn(plan, plan->block[t], &plan->turn[t]);
+    }
+    if (!NEW(memory, plan->scratch, plan->scratch_size)) return false;
+    plan_scratch(plan, plan->scratch);
+    return NEW(memory, plan->normal, plan->particles) && NEW(memory, plan->partial, (size_t)plan->grid.n[2]) &&
+           NEW(memory, plan->hot, (size_t)plan->grid.n[2]);
+}
+
+/// Points a state's arrays at the turn that holds.
+static void plan_expose(const GasPlan *plan, GasState *gas) {
+    const GasTurn *turn = &plan->turn[gas->turn];
+    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->mass = turn->mass;
+    gas->air = (const float(*)[4])turn->air;
+}
+
+SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSettings *settings, GasPlan **out,
+                            GasState *gas) {
+    *out = NULL;
+    GasPlan *plan;
+    if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+    plan->settings = *settings;
+    plan->particles = shell->particle_count, plan->cell_count = shell->cell_count;
+    float steps = 1 / (PLAN_RATE * settings->time_step);
+    plan->every = steps > 1 ? (uint64_t)(steps + 0.5f) : 1;
+    float length = (float)plan->every * settings->time_step, parts = ceilf(length * PLAN_RATE * 0.99f);
+    plan->parts = parts < PLAN_PARTS_MOST ? (int)parts : PLAN_PARTS_MOST;
+    plan->dt = length / (float)plan->parts;
+    plan_lay(plan, shell);
+    plan_levels(plan);
+    plan->view_cells = (size_t)plan->grid.n[0] * (size_t)plan->grid.n[1] * (size_t)plan->grid.n[2];
+    if (!plan_allocate(memory, plan)) {
+        gas_plan_free(memory, plan);
+        return SINGE_ERROR_MEMORY;
+    }
+    for (int t = 0; t < 2; t++)
+        for (uint32_t i = 0; i < plan->particles; i++) plan->turn[t].mass[i] = 1;
+    *gas = (GasState){0};
+    plan_expose(plan, gas);
+    GasPass pass = {.plan = plan};
+    gas_show(&pass, &plan->turn[0]);
+    *out = plan;
+    return SINGE_OK;
+}
+
+void gas_plan_free(Memory *memory, GasPlan *plan) {
+    if (!plan) return;
+    FREE(memory, plan->normal, plan->particles);
+    FREE(memory, plan->partial, (size_t)plan->grid.n[2]);
+    FREE(memory, plan->hot, (size_t)plan->grid.n[2]);
+    FREE(memory, plan->scratch, plan->scratch_size);
+    for (int t = 0; t < 2; t++) FREE(memory, plan->block[t], plan->block_size);
+    FREE(memory, plan, 1);
+}
+
+void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream) {
+    uint8_t awake = gas->awake, warm = gas->warm;
+    STREAM(stream, awake);
+    STREAM(stream, warm);
+    STREAM(stream, gas->steps);
+    stream_data(stream, plan->block[gas->turn], plan->block_size * sizeof(float));
+    if (stream->mode != STREAM_READ) return;
+    gas->awake = awake != 0, gas->warm = warm != 0;
+    plan_expose(plan, gas);
+    GasPass pass = {.plan = plan};
+    gas_show(&pass, &plan->turn[gas->turn]);
+}
