@@ -1,107 +1,143 @@
 // The flow carries what the gas has. Of a density q
 //
-//   dq/dt + div(u q) = 0,   q' = q - sum over faces of (F_upper - F_lower)
-//   F = c (q_up + (1 - |c|)/2 phi(a, b)),   c = u dt/cell
+//   dq/dt + div(u q) = 0
 //
-// with q_up of the cell that the flow comes from, a and b the differences on its two sides and phi = 2 a b/(a + b)
-// where they agree in sign, else 0 (van Leer 1974): of second order where q is smooth, and no new extremes. What leaves
-// a cell enters the next to the last bit, so that heat, fuel and smoke are lost only over the border. Momentum is
-// carried per volume: u' = u - sum(F_upper - F_lower) + u sum(c_upper - c_lower).
+// axis after axis: along each, with c = u dt/cell of the lower and upper face and q0 of before the first axis,
 //
-// The way of a step is cut so that no cell gives away more than it has.
-#include "gas/plan.h"
+//   q <- q - (F_upper - F_lower) + q0 (c_upper - c_lower)
+//   F = c (q_up + (1 - |c|)/2 phi(a, b)) - open D dt/cell^2 b
+//
+// with q_up of the cell that the flow comes from, b the difference across the face, a that on the flow's side before it
+// and phi the least of |a + b|/2, 2 |a| and 2 |b|, signed, where they agree in sign, else 0 (van Leer 1977): of second
+// order where q is smooth, and no new extremes. The last term keeps what is even even on the way (Weymouth & Yue 2010); after the last axis, q0
+// sum(c_upper - c_lower) is taken off again, of heat, fuel and smoke: so what leaves a cell enters the next to the last
+// bit. Momentum keeps it, as velocities are not densities. D is the mixing of hot air.
+//
+// The way of a step is cut so that along no axis more than a cell is passed at once.
+#include "gas/sweep.h"
 
-enum { ADVECT_RUN = 128, ADVECT_PARTS_MOST = 8 };
-static const float ADVECT_COURANT = 0.8f;
+#include <limits.h>
+#include <string.h>
+
+enum { ADVECT_PARTS_MOST = 8 };
+static const float ADVECT_COURANT = 0.9f;
+static const float ADVECT_CALM = 0.1f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
 static const float ADVECT_MIXING = 2e-4f; ///< m2/s, of hot air: 1.9e-4 at 1100 K
-static const float ADVECT_MIX_MOST = 0.1f; ///< more would not be stable
+static const float ADVECT_MIX_MOST = 0.2f; ///< more would not be stable
 
-/// Fluxes through `count` faces in a row; q is the first face's upper cell, `beyond` the way to the next cell across.
-static void advect_faces(const GasPass *pass, const float *restrict q, int d, size_t c, int count,
-                         float *restrict flux) {
-    const size_t beyond = pass->plan->grid.stride[d];
-    const float *restrict through = pass->from->field[GAS_THROUGH + d] + c, *restrict open = pass->plan->open[d] + c;
-    const float wind = pass->wind[d], courant = pass->courant, mix = pass->mix;
-    q += c;
-    const float *restrict low = q - beyond, *restrict lowest = low - beyond, *restrict high = q + beyond;
-    for (int i = 0; i < count; i++) {
-        float way = (through[i] + wind) * courant, size = fabsf(way);
-        float q0 = lowest[i], q1 = low[i], q2 = q[i], q3 = high[i]; // read before they are chosen from: this vectorises
-        float b = q2 - q1, before = q1 - q0, behind = q3 - q2, a = way > 0 ? before : behind;
-        float from = way > 0 ? q1 : q2, side = way > 0 ? 1.f : -1.f;
-        float both = a * b, sum = a + b;
-        both = both > 0 ? both : 0, sum = both > 0 ? sum : 1;
-        flux[i] = way * (from + side * (1 - size) * both / sum) - mix * open[i] * b;
+static void advect_tasks(void *context, int begin, int end) {
+    const Sweep *sweep = context;
+    const GasBox *box = sweep->box;
+    for (int task = box->low[sweep->across] + begin; task < box->low[sweep->across] + end; task++)
+        for (int first = box->low[0]; first < box->high[0]; first += SWEEP_RUN) {
+            int count = box->high[0] - first;
+            sweep->rows(sweep, task, first, count < SWEEP_RUN ? count : SWEEP_RUN);
+        }
+}
+
+/// Copies the box and the cells that are read about it.
+static void advect_frame(const GasGrid *grid, const GasBox *box, const float *from, float *to) {
+    int count = box->high[0] - box->low[0] + 2 * GAS_GHOSTS;
+    for (int k = box->low[2] - GAS_GHOSTS; k < box->high[2] + GAS_GHOSTS; k++)
+        for (int j = box->low[1] - GAS_GHOSTS; j < box->high[1] + GAS_GHOSTS; j++) {
+            size_t c = gas_at(grid, box->low[0] - GAS_GHOSTS, j, k);
+            memcpy(to + c, from + c, (size_t)count * sizeof(float));
+        }
+}
+
+/// Carries one field all the way of a step. Outside of the box it stays as it is.
+static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
+    GasPlan *plan = pass->plan;
+    const float *start = pass->from->field[f];
+    float *end[2], *between = plan->spare[1];
+    end[(parts - 1) % 2] = pass->to->field[f], end[parts % 2] = plan->spare[0];
+    memcpy(pass->to->field[f], start, plan->grid.cells * sizeof(float));
+    if (box->high[0] <= box->low[0]) return;
+    for (int s = 0; s < 2; s++) advect_frame(&plan->grid, box, start, plan->spare[s]);
+    for (int part = 0; part < parts; part++) {
+        float *here = end[part % 2];
+        const float *from[3] = {start, here, between};
+        float *to[3] = {here, between, here};
+        for (int s = 0; s < 3; s++) {
+            int axis = part % 2 ? 2 - s : s; // so that no axis is always the first
+            Sweep sweep = {.pass = pass, .box = box, .from = from[s], .to = to[s], .start = start, .axis = axis,
+                           .across = axis == 2 ? 1 : 2, .last = s == 2 && f < GAS_VELOCITY,
+                           .rows = plan->rows};
+            pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
+        }
+        start = here;
     }
 }
 
-typedef struct AdvectRows {
-    float x[ADVECT_RUN + 1], y[2][ADVECT_RUN], z[2][ADVECT_RUN];
-} AdvectRows;
-
-/// Field `f` of rows j of plane k, in columns [first, first + count).
-static void advect_columns(const GasPass *pass, int f, int k, int first, int count) {
+/// The largest speed in a row, and the columns where there is something to carry.
+static float advect_row(const GasPass *pass, size_t c, int count, int busy[2][2]) {
     const GasPlan *plan = pass->plan;
-    const GasGrid *grid = &plan->grid;
-    const float *q = pass->source[f], *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
-    float steady = f >= GAS_VELOCITY ? pass->courant : 0;
-    size_t y = grid->stride[1], z = grid->stride[2], c = gas_at(grid, first, 0, k);
-    AdvectRows rows;
-    advect_faces(pass, q, 1, c, count, rows.y[0]);
-    for (int j = 0; j < grid->n[1]; j++, c += y) {
-        float *restrict lower = rows.y[j % 2], *restrict upper = rows.y[(j + 1) % 2], *restrict out = pass->target[f] + c;
-        const float *restrict x0 = through[0] + c, *restrict y0 = through[1] + c, *restrict z0 = through[2] + c;
-        const float *restrict y1 = y0 + y, *restrict z1 = z0 + z, *restrict here = q + c;
-        advect_faces(pass, q, 0, c, count + 1, rows.x);
-        advect_faces(pass, q, 1, c + y, count, upper);
-        advect_faces(pass, q, 2, c, count, rows.z[0]);
-        advect_faces(pass, q, 2, c + z, count, rows.z[1]);
+    const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
+    const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
+    const float *smoke = pass->from->field[GAS_SMOKE] + c;
+    float speed[SWEEP_RUN], most = 0;
+    for (int i = 0; i < count; i++) speed[i] = 0;
+    for (int d = 0; d < 3; d++) {
+        const float *restrict lower = through[d] + c, *restrict upper = lower + plan->grid.stride[d];
+        float wind = pass->wind[d];
         for (int i = 0; i < count; i++) {
-            float gone = (rows.x[i + 1] - rows.x[i]) + (upper[i] - lower[i]) + (rows.z[1][i] - rows.z[0][i]);
-            float spread = (x0[i + 1] - x0[i]) + (y1[i] - y0[i]) + (z1[i] - z0[i]);
-            out[i] = here[i] - gone + here[i] * steady * spread;
+            float a = fabsf(lower[i] + wind), b = fabsf(upper[i] + wind);
+            float both = a > b ? a : b;
+            speed[i] = both > speed[i] ? both : speed[i];
         }
+    }
+    float calm = ADVECT_CALM;
+    for (int d = 0; d < 3; d++) calm = fabsf(pass->wind[d]) + ADVECT_CALM > calm ? fabsf(pass->wind[d]) + ADVECT_CALM : calm;
+    for (int i = 0; i < count; i++) {
+        const bool something[2] = {L[i] > 0 || fuel[i] > 0 || smoke[i] > 0, speed[i] > calm || L[i] > ADVECT_LIGHT};
+        most = speed[i] > most ? speed[i] : most;
+        for (int b = 0; b < 2; b++)
+            if (something[b]) busy[b][0] = i < busy[b][0] ? i : busy[b][0], busy[b][1] = i;
+    }
+    return most;
+}
+
+static void advect_look(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    const GasGrid *grid = &pass->plan->grid;
+    for (int k = begin; k < end; k++) {
+        GasBox *box = pass->plan->plane_busy[k];
+        float most = 0;
+        for (int b = 0; b < 2; b++) box[b] = GAS_NO_BOX;
+        for (int j = 0; j < grid->n[1]; j++)
+            for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
+                int count = grid->n[0] - first, busy[2][2] = {{INT_MAX, -1}, {INT_MAX, -1}};
+                count = count < SWEEP_RUN ? count : SWEEP_RUN;
+                float fastest = advect_row(pass, gas_at(grid, first, j, k), count, busy);
+                most = fastest > most ? fastest : most;
+                for (int b = 0; b < 2; b++)
+                    if (busy[b][1] >= 0)
+                        gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k}, {first + busy[b][1] + 1, j + 1, k + 1}});
+            }
+        pass->plan->partial[k] = (double)most;
     }
 }
 
-static void advect_planes(void *context, int begin, int end) {
-    const GasPass *pass = context;
-    const GasGrid *grid = &pass->plan->grid;
-    for (int f = 0; f < GAS_CARRIED; f++)
-        for (int k = begin; k < end; k++)
-            for (int first = 0; first < grid->n[0]; first += ADVECT_RUN) {
-                int count = grid->n[0] - first;
-                advect_columns(pass, f, k, first, count < ADVECT_RUN ? count : ADVECT_RUN);
-            }
-}
-
-/// The largest sum of a cell's speeds, m/s, of each plane.
-static void advect_fastest(void *context, int begin, int end) {
-    const GasPass *pass = context;
-    const GasGrid *grid = &pass->plan->grid;
-    const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
-    for (int k = begin; k < end; k++) {
-        float most = 0;
-        for (int j = 0; j < grid->n[1]; j++) {
-            size_t c = gas_at(grid, 0, j, k);
-            for (int i = 0; i < grid->n[0]; i++) {
-                float sum = 0;
-                for (int d = 0; d < 3; d++) {
-                    float a = fabsf(through[d][c + (size_t)i] + pass->wind[d]);
-                    float b = fabsf(through[d][c + (size_t)i + grid->stride[d]] + pass->wind[d]);
-                    sum += a > b ? a : b;
-                }
-                most = sum > most ? sum : most;
-            }
+/// The boxes outside of which nothing is carried: for what is carried, and for momentum, which still air has little
+/// of. In a part of the way nothing gets farther than a cell.
+static void advect_boxes(GasPass *pass, int parts) {
+    GasPlan *plan = pass->plan;
+    for (int b = 0; b < 2; b++) {
+        GasBox *box = &pass->busy[b];
+        *box = GAS_NO_BOX;
+        for (int k = 0; k < plan->grid.n[2]; k++) gas_box_add(box, plan->plane_busy[k][b]);
+        if (box->high[0] <= box->low[0]) continue;
+        for (int d = 0; d < 3; d++) {
+            int low = box->low[d] - parts - 1, high = box->high[d] + parts + 1;
+            box->low[d] = low > 0 ? low : 0, box->high[d] = high < plan->grid.n[d] ? high : plan->grid.n[d];
         }
-        pass->plan->partial[k] = (double)most;
     }
 }
 
 void gas_advect(GasPass *pass) {
     GasPlan *plan = pass->plan;
     double fastest = 0;
-    gas_planes(pass, &plan->grid, advect_fastest);
+    gas_planes(pass, &plan->grid, advect_look);
     for (int k = 0; k < plan->grid.n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
     float way = (float)fastest * pass->dt / (plan->cell * ADVECT_COURANT);
     int parts = way > 1 ? way < ADVECT_PARTS_MOST ? (int)ceilf(way) : ADVECT_PARTS_MOST : 1;
@@ -110,11 +146,6 @@ void gas_advect(GasPass *pass) {
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
     pass->mix = ADVECT_MIXING * pass->dt / (plan->cell * plan->cell * (float)parts);
     if (pass->mix > ADVECT_MIX_MOST) pass->mix = ADVECT_MIX_MOST;
-    pass->source = pass->from->field;
-    for (int part = 0; part < parts; part++) {
-        bool last_but_even = (parts - part) % 2 == 0;
-        pass->target = last_but_even ? plan->spare : pass->to->field;
-        gas_planes(pass, &plan->grid, advect_planes);
-        pass->source = pass->target;
-    }
+    advect_boxes(pass, parts);
+    for (int f = 0; f < GAS_CARRIED; f++) advect_field(pass, f, &pass->busy[f >= GAS_VELOCITY], parts);
 }

@@ -18,6 +18,7 @@ typedef struct GasSettings {
     float ambient_temperature; ///< K
     float time_step;           ///< s
     float pace;
+    SingeInstructions instructions;
 } GasSettings;
 
 /// The grid, its two sets of fields and the scratch of a step.

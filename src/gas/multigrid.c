@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { SWEEPS = 2, SWEEPS_COARSEST = 20 };
+enum { SWEEPS = 2, SWEEPS_COARSEST = 10 };
 
 /// What a cell's equation lacks.
 static inline float grid_residual(const GasLevel *level, size_t c) {

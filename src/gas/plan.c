@@ -2,12 +2,12 @@
 //
 // The grid reaches from a few cells beside and below the sheets, as they are at rest, to `height` above them. A face
 // of cells lies at the lower end of the sheets along each axis: a flat sheet is then between two layers of cells.
-#include "gas/plan.h"
+#include "gas/sweep.h"
 
 #include <string.h>
 
 static const float PLAN_RATE = 96;         ///< 1/s, steps of the gas
-static const float PLAN_CELLS_ACROSS = 45; ///< cells along the diagonal of the sheets
+static const float PLAN_CELLS_ACROSS = 42; ///< cells along the diagonal of the sheets
 static const float PLAN_CELL_LEAST = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
 static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MOST = 2e6;
 enum { PLAN_PARTS_MOST = 16, PLAN_COARSEST = 4 };
@@ -106,7 +106,7 @@ static size_t plan_turn(const GasPlan *plan, float *base, GasTurn *turn) {
 
 static size_t plan_scratch(GasPlan *plan, float *base) {
     size_t used = 0, cells = plan->grid.cells;
-    for (int f = 0; f < GAS_CARRIED; f++) plan->spare[f] = take(base, &used, cells);
+    for (int f = 0; f < 2; f++) plan->spare[f] = take(base, &used, cells);
     for (int d = 0; d < 3; d++) plan->open[d] = take(base, &used, cells);
     plan->expansion = take(base, &used, cells);
     plan->solid = (uint8_t *)take(base, &used, cells / sizeof(float) + 1);
@@ -132,7 +132,7 @@ static bool plan_allocate(Memory *memory, GasPlan *plan) {
     if (!NEW(memory, plan->scratch, plan->scratch_size)) return false;
     plan_scratch(plan, plan->scratch);
     return NEW(memory, plan->normal, plan->particles) && NEW(memory, plan->partial, (size_t)plan->grid.n[2]) &&
-           NEW(memory, plan->hot, (size_t)plan->grid.n[2]);
+           NEW(memory, plan->hot, (size_t)plan->grid.n[2]) && NEW(memory, plan->plane_busy, (size_t)plan->grid.n[2]);
 }
 
 /// Points a state's arrays at the turn that holds.
@@ -148,6 +148,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
     GasPlan *plan;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
     plan->settings = *settings;
+    plan->rows = sweep_choose(settings->instructions);
     plan->particles = shell->particle_count, plan->cell_count = shell->cell_count;
     float steps = 1 / (PLAN_RATE * settings->time_step);
     plan->every = steps > 1 ? (uint64_t)(steps + 0.5f) : 1;
@@ -176,6 +177,7 @@ void gas_plan_free(Memory *memory, GasPlan *plan) {
     FREE(memory, plan->normal, plan->particles);
     FREE(memory, plan->partial, (size_t)plan->grid.n[2]);
     FREE(memory, plan->hot, (size_t)plan->grid.n[2]);
+    FREE(memory, plan->plane_busy, (size_t)plan->grid.n[2]);
     FREE(memory, plan->scratch, plan->scratch_size);
     for (int t = 0; t < 2; t++) FREE(memory, plan->block[t], plan->block_size);
     FREE(memory, plan, 1);

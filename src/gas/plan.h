@@ -46,6 +46,21 @@ static inline size_t gas_at(const GasGrid *grid, int i, int j, int k) {
            grid->stride[2] * (size_t)(k + GAS_GHOSTS);
 }
 
+/// Cells [low, high) along each axis.
+typedef struct GasBox {
+    int low[3], high[3];
+} GasBox;
+
+#define GAS_NO_BOX ((GasBox){{1 << 30, 1 << 30, 1 << 30}, {0, 0, 0}})
+
+/// Makes a box hold another one as well.
+static inline void gas_box_add(GasBox *box, GasBox other) {
+    for (int d = 0; d < 3; d++) {
+        if (other.low[d] < box->low[d]) box->low[d] = other.low[d];
+        if (other.high[d] > box->high[d]) box->high[d] = other.high[d];
+    }
+}
+
 /// A level of the pressure's equation (multigrid.c): sum over faces of weight (p_beyond - p) = rhs.
 typedef struct GasLevel {
     GasGrid grid;
@@ -61,8 +76,11 @@ typedef struct GasTurn {
     float (*air)[4];                         ///< [particles]
 } GasTurn;
 
+struct Sweep;
+
 struct GasPlan {
     GasSettings settings;
+    void (*rows)(const struct Sweep *sweep, int task, int first, int count); ///< sweep.h
     GasGrid grid;
     float cell;          ///< m
     float origin[3];     ///< m
@@ -76,13 +94,14 @@ struct GasPlan {
     size_t block_size;   ///< floats
 
     // scratch
-    float *spare[GAS_CARRIED];
+    float *spare[2];
     float *open[3];      ///< share of a cell's lower face that nothing covers
     uint8_t *solid;      ///< a collider's
     GasLevel level[GAS_LEVELS];
     int levels;
     float *expansion;    ///< L that a step adds
     double *partial;     ///< [planes]
+    GasBox (*plane_busy)[2]; ///< [planes] where there is something to carry, and momentum
     float (*normal)[3];  ///< [particles] unit
     int *hot;            ///< [planes] whether anything there is warmer than the air around
     float *scratch;      ///< all of them but normals
@@ -109,8 +128,7 @@ typedef struct GasPass {
     // of one pass
     float courant; ///< dt/cell of a part of the way
     float mix;     ///< share of a difference that a face evens out in it
-    float *const *source;
-    float *const *target;
+    GasBox busy[2];
     GasLevel *level;
     int colour;
 } GasPass;

@@ -14,6 +14,9 @@
 //
 // Gas that leaves the sheet pushes the hot gas away from it: m'' kg/(m2 s) of it lower the conductance by the classical
 // factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). The gas loses what the sheet takes.
+//
+// The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
+// whole sheet the gas flows along it, and only flakes and edges are in its way.
 #include "gas/plan.h"
 
 static const float SHEET_REACH = 1.25f;     ///< cells
@@ -134,6 +137,17 @@ static Vec sheets_upstream(const GasPass *pass, Vec x) {
     return vec_mad(x, v, -SHEET_REACH * plan->cell / (vec_length(v) + SHEET_STILL));
 }
 
+/// Share of the air that can pass by at a particle: nearly all at a flake, nothing where the sheet is whole.
+static float sheets_open(const GasPlan *plan, const float place[3], const float normal[3]) {
+    float sum = 0;
+    for (int d = 0; d < 3; d++) {
+        int at[3];
+        for (int e = 0; e < 3; e++) at[e] = (int)(place[e] + (e == d ? 1 : 0.5f));
+        sum += normal[d] * normal[d] * plan->open[d][gas_at(&plan->grid, at[0], at[1], at[2])];
+    }
+    return sum;
+}
+
 static void sheets_meet(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
@@ -146,7 +160,8 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!(pass->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
         Vec x = vec_load(pass->state->dynamics.position[i]);
         if (!gas_place(plan, x, place)) continue;
-        for (int d = 0; d < 3; d++) air[d] = gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
+        float open = sheets_open(plan, place, plan->normal[i]);
+        for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
         if (!(g0 > 0) || !sheets_place(pass, i, &x) || !gas_place(plan, sheets_upstream(pass, x), place)) continue;
         float temperature = ambient / (1 - gas_sample(&plan->grid, pass->to->field[GAS_LIGHTNESS], place));
         if (temperature < ambient + SHEET_LEAST) continue;

@@ -198,7 +198,8 @@ SingeResult sim_build(SingeSim *sim) {
                        .gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                        .ambient_temperature = def->ambient_temperature,
                        .time_step = def->time_step,
-                       .pace = def->pace};
+                       .pace = def->pace,
+                       .instructions = def->instructions};
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,

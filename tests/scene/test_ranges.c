@@ -155,12 +155,15 @@ static void walk_row(Walk *walk, const SchemaRow *row, const char *path) {
             walk_schema(walk, &schema_noise, inner, ~0u);
         return;
     case ROW_STRENGTH: walk->rows++, walk_float(walk, row, path); // falls through
-    case ROW_LIST:
-        for (int i = 0; i < (row->sub->kind_offset ? 4 : 1); i++) {
+    case ROW_LIST: {
+        int kinds = 1;
+        while (row->sub->kind_offset && row->sub->rows[0].names[kinds]) kinds++;
+        for (int i = 0; i < kinds; i++) {
             snprintf(inner, sizeof inner, "%s.%d.", path, i);
             walk_schema(walk, row->sub, inner, row->sub->kind_offset ? 1u << i : ~0u);
         }
         return;
+    }
     case ROW_MAP:
         snprintf(inner, sizeof inner, "%s.", path);
         walk_schema(walk, row->sub, inner, ~0u);

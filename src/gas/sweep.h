@@ -1,0 +1,29 @@
+// One axis of what advect.c carries: the loops over cells, which have a file for each instruction set.
+#ifndef GAS_SWEEP_H
+#define GAS_SWEEP_H
+
+#include "gas/plan.h"
+
+enum { SWEEP_RUN = 128 }; ///< cells in a row at a time
+
+typedef struct Sweep Sweep;
+/// Columns [first, first + count) of the box in the rows of one task, from the first along the axis to the last.
+typedef void SweepFn(const Sweep *sweep, int task, int first, int count);
+
+/// One axis of one field's way.
+struct Sweep {
+    const GasPass *pass;
+    const GasBox *box;
+    const float *from, *start; ///< before this axis, before the first one
+    float *to;
+    int axis, across;          ///< `across`: the axis that the tasks are cut along
+    bool last;                 ///< takes off what the divergence added
+    SweepFn *rows;
+};
+
+extern SweepFn sweep_plain, sweep_v3;
+
+/// Those for these instructions.
+SweepFn *sweep_choose(SingeInstructions instructions);
+
+#endif
