@@ -8,6 +8,7 @@
 #include "gas/plan.h"
 
 static const float FLAME_TIME = 0.03f, FLAME_HOTTEST = 1450, SMOKE_TIME = 4;
+static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
 static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-5f, FLAME_SMOKE_LEAST = 1e-9f;
 
 static void flame_planes(void *context, int begin, int end) {
@@ -18,7 +19,7 @@ static void flame_planes(void *context, int begin, int end) {
     float most = 1 - plan->settings.ambient_temperature / FLAME_HOTTEST;
     most = most > 0.01f ? most : 0.01f;
     float rate = pass->dt / FLAME_TIME, thin = 1 / (1 + pass->dt / SMOKE_TIME), shown = 1 / (pass->dt * (1 - def->radiated));
-    float sooty = def->soot / (GAS_FUEL_HEAT * (1 - def->radiated));
+    float sooty = def->soot / (FLAME_FUEL_HEAT * (1 - def->radiated));
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);

@@ -13,7 +13,6 @@
 #include "gas/gas.h"
 
 #define GAS_HEAT (353 * 1005.f) ///< J/m3
-#define GAS_FUEL_HEAT 17.5e6f ///< J/kg of paper or cotton that burns
 
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature

@@ -2,10 +2,10 @@
 //
 // What left a particle since the gas's last step, dm, brings the gas the fuel
 //
-//   E = (1 - radiated) dm H_gas/pace,   H_gas = H - eta c
+//   E = (1 - radiated) dm H_gas/pace
 //
-// half a cell off the sheet on the particle's own side: H is the heat of combustion, eta c what of it stayed in the
-// sheet (eq 1). The fire runs `pace` times as fast as the gas moves, and its power is that of the real fire.
+// half a cell off the sheet on the particle's own side, H_gas J/kg being what of the heat of combustion did not stay in
+// the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas moves, and its power is that of the real fire.
 //
 // In turn the gas heats, from the place that the flow has come from, so that heat arrives by the flow only and not by
 // the size of the cells:
@@ -103,12 +103,6 @@ bool gas_fed(const GasPass *pass) {
     return fed;
 }
 
-/// J that the gas gets of a kilogram burnt.
-static float sheets_heat(const Matter *matter, uint32_t i) {
-    float heat = GAS_FUEL_HEAT - field_at(matter->heating, i) * matter->capacity[i] / matter->mass[i];
-    return heat > 0 ? heat : 0;
-}
-
 void gas_feed(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
@@ -120,7 +114,7 @@ void gas_feed(GasPass *pass) {
         float gone = before[i] - now[i];
         pass->to->mass[i] = now[i];
         if (gone > 0 && sheets_place(pass, i, &x))
-            sheets_add(plan, pass->to->field[GAS_FUEL], x, gone * matter->mass[i] * sheets_heat(matter, i) * scale);
+            sheets_add(plan, pass->to->field[GAS_FUEL], x, gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
     }
 }
 
