@@ -7,7 +7,7 @@
 // grows by what burns, and thins in the time it takes to be spread finer than the grid.
 #include "gas/plan.h"
 
-static const float FLAME_TIME = 0.03f, FLAME_HOTTEST = 1450, SMOKE_TIME = 4;
+static const float FLAME_TIME = 0.03f, SMOKE_TIME = 4;
 static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
 static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-5f, FLAME_SMOKE_LEAST = 1e-9f;
 
@@ -16,7 +16,7 @@ static void flame_planes(void *context, int begin, int end) {
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const SingeGasDef *def = &plan->settings.def;
-    float most = 1 - plan->settings.ambient_temperature / FLAME_HOTTEST;
+    float most = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
     most = most > 0.01f ? most : 0.01f;
     float rate = pass->dt / FLAME_TIME, thin = 1 / (1 + pass->dt / SMOKE_TIME), shown = 1 / (pass->dt * (1 - def->radiated));
     float sooty = def->soot / (FLAME_FUEL_HEAT * (1 - def->radiated));

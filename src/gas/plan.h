@@ -14,6 +14,8 @@
 
 #define GAS_HEAT (353 * 1005.f) ///< J/m3
 
+#define GAS_HOTTEST 1450.f ///< K, of a flame
+
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature
     GAS_LEVELS = 12,

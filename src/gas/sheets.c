@@ -20,6 +20,7 @@
 #include "gas/plan.h"
 
 static const float SHEET_REACH = 1.25f;     ///< cells
+static const float SHEET_LAYER = 5e-3f;     ///< m, of the gas that flows along a sheet
 static const float SHEET_STILL = 0.05f;     ///< m/s, u_0
 static const float SHEET_LEAST = 1;         ///< K above the ambient that are felt
 static const float SHEET_CP = 1005;         ///< J/(kg K)
@@ -142,6 +143,14 @@ static float sheets_open(const GasPlan *plan, const float place[3], const float 
     return sum;
 }
 
+/// L of the gas that flows along a sheet at a place: a cell's heat, where it is thicker than that layer, is all in it.
+static float sheets_lightness(const GasPlan *plan, const float *L, const float place[3]) {
+    float thick = plan->cell / SHEET_LAYER, most = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
+    float light = gas_sample(&plan->grid, L, place), layer = thick > 1 ? light * thick : light;
+    most = light > most ? light : most;
+    return layer < most ? layer : most;
+}
+
 static void sheets_meet(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
@@ -157,7 +166,7 @@ static void sheets_meet(void *context, int begin, int end) {
         float open = sheets_open(plan, place, plan->normal[i]);
         for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
         if (!(g0 > 0) || !sheets_place(pass, i, &x) || !gas_place(plan, sheets_upstream(pass, x), place)) continue;
-        float temperature = ambient / (1 - gas_sample(&plan->grid, pass->to->field[GAS_LIGHTNESS], place));
+        float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], place));
         if (temperature < ambient + SHEET_LEAST) continue;
         float gone = (pass->from->mass[i] - pass->state->burn.mass[i]) * matter->mass[i] / (matter->area[i] * pass->fire);
         pass->to->conductance[i] = g0 * sheets_blown(gone * SHEET_CP / g0);

@@ -199,16 +199,19 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
     pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
 }
 
-/// Gas that is hotter than a particle heats it; what is hotter than the gas loses no heat to it beyond the losses to
-/// still air.
+/// Gas that is hotter than a particle heats it, and it loses nothing to air that is not there: what the losses take by
+/// convection to the ambient is given back. What is hotter than the gas has the losses to still air alone.
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     HeatPlan *plan = job->pass->plan;
     const GasState *gas = &job->pass->state->gas;
-    const float *temperature = job->pass->state->heat.temperature;
+    const float *temperature = job->pass->state->heat.temperature, ambient = plan->settings.ambient_temperature;
+    const Field convection = job->pass->shell->matter.convection;
     for (int i = begin; i < end; i++)
-        if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i])
+        if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
             source_add(plan, (uint32_t)i, gas->conductance[i], gas->temperature[i]);
+            plan->flux[i] += field_at(convection, (uint32_t)i) * (temperature[i] - ambient);
+        }
 }
 
 static void source_gas(HeatPass *pass) {

@@ -124,7 +124,7 @@ static SingeGasDef standard_gas(void) {
     return (SingeGasDef){
         .struct_size = sizeof(SingeGasDef),
         .height = 0.25f,
-        .conductance = 35,
+        .conductance = 12,
         .radiated = 0.3f,
         .soot = 0.01f,
     };
