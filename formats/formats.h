@@ -1,4 +1,4 @@
-// Files in and out: meshes, pictures, the PLY cache. Readers work on bytes in memory; file.h does the
+// Files in and out: meshes, pictures, the cache of PLY and VDB. Readers work on bytes in memory; file.h does the
 // reading and the writing-whole-or-not-at-all. Memory comes from a SingeAllocator (zeroed: libc).
 #ifndef FORMATS_FORMATS_H
 #define FORMATS_FORMATS_H
@@ -103,5 +103,30 @@ SINGE_NODISCARD SingeResult ply_write_surface(const char *path, const SingeSurfa
 SINGE_NODISCARD SingeResult ply_read_surface(const char *name, const uint8_t *bytes, size_t size,
                                              SingeAllocator allocator, SingeSurface *surface, double *time,
                                              SingeError *error);
+
+// ---- the gas: one OpenVDB file per frame (docs/formats.md)
+
+/// A gas of one's own. `view` points at its arrays.
+typedef struct Gas {
+    SingeGas view; ///< size 0: none
+    float *temperature, *smoke, *flame;
+    float (*velocity)[3];
+    SingeAllocator allocator;
+} Gas;
+
+/// Cells that a Gas may have.
+enum { GAS_CELL_LIMIT = 1 << 24 };
+
+/// What a file keeps of a gas: blocks of 8 x 8 x 8 cells of which none holds smoke, flame or heat worth a look become
+/// still air of the coolest cell's temperature. SINGE_ERROR_ARGUMENT where a value is not finite, SINGE_ERROR_LIMIT
+/// above GAS_CELL_LIMIT cells.
+SINGE_NODISCARD SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, SingeError *error);
+void gas_free(Gas *gas);
+
+SINGE_NODISCARD SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeError *error);
+/// Reads what vdb_write_gas wrote, no other VDB files; free with gas_free. *time may be NULL. What gas_copy made comes
+/// back with the same bits.
+SINGE_NODISCARD SingeResult vdb_read_gas(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                         Gas *gas, double *time, SingeError *error);
 
 #endif

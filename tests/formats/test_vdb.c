@@ -1,0 +1,185 @@
+// The gas in a file: the same bits back, sparse, and no byte believed unchecked. test_vdb_library.py asks OpenVDB
+// itself.
+
+#include "gas_sample.h"
+#include "support.h"
+
+#include <unistd.h>
+
+static char *folder;
+static char path[512];
+
+static Bytes written(const Gas *gas, double time) {
+    SingeError error;
+    Bytes bytes;
+    if (vdb_write_gas(path, gas, time, &error)) fail_msg("%s", error.message);
+    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+    unlink(path);
+    return bytes;
+}
+
+static void make(uint32_t nx, uint32_t ny, uint32_t nz, Gas *gas) {
+    GasSample sample;
+    SingeError error;
+    assert_true(gas_sample_make(&sample, nx, ny, nz));
+    if (gas_copy(&sample.gas, (SingeAllocator){0}, gas, &error)) fail_msg("%s", error.message);
+    gas_sample_free(&sample);
+}
+
+static void assert_same(const SingeGas *a, const SingeGas *b) {
+    assert_memory_equal(a->size, b->size, sizeof a->size);
+    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
+    assert_true(a->cell == b->cell);
+    size_t count = (size_t)a->size[0] * a->size[1] * a->size[2];
+    assert_memory_equal(a->temperature, b->temperature, count * sizeof(float));
+    assert_memory_equal(a->smoke, b->smoke, count * sizeof(float));
+    assert_memory_equal(a->flame, b->flame, count * sizeof(float));
+    assert_memory_equal(a->velocity, b->velocity, count * sizeof(float[3]));
+}
+
+static void round_trip_is_bitwise(void **state) {
+    (void)state;
+    static const uint32_t sizes[][3] = {{1, 1, 1}, {8, 8, 8}, {37, 21, 60}, {9, 140, 17}, {130, 3, 129}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        Gas gas, read;
+        SingeError error;
+        double time = 0;
+        make(sizes[i][0], sizes[i][1], sizes[i][2], &gas);
+        Bytes bytes = written(&gas, 1 / 24.0 + 7);
+        if (vdb_read_gas("a.vdb", bytes.data, bytes.size, (SingeAllocator){0}, &read, &time, &error))
+            fail_msg("%s", error.message);
+        assert_true(time == 1 / 24.0 + 7);
+        assert_same(&gas.view, &read.view);
+        Bytes again = written(&read, time);
+        assert_int_equal(again.size, bytes.size);
+        assert_memory_equal(again.data, bytes.data, bytes.size);
+        bytes_free(&again), bytes_free(&bytes);
+        gas_free(&gas), gas_free(&read);
+    }
+}
+
+/// Still air costs nothing but the root.
+static void empty_is_small(void **state) {
+    (void)state;
+    enum { SIDE = 64 };
+    GasSample sample;
+    Gas gas, read;
+    SingeError error;
+    assert_true(gas_sample_make(&sample, SIDE, SIDE, SIDE));
+    for (size_t i = 0; i < SIDE * SIDE * SIDE; i++)
+        sample.temperature[i] = 300 + (float)(i % 3) * 0.5f, sample.smoke[i] = 1e-9f, sample.flame[i] = 1;
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_OK);
+    for (size_t i = 0; i < SIDE * SIDE * SIDE; i++)
+        assert_true(gas.temperature[i] == 300 && gas.smoke[i] == 0 && gas.flame[i] == 0 && gas.velocity[i][2] == 0);
+    Bytes bytes = written(&gas, 0);
+    assert_in_range(bytes.size, 100, 4000);
+    assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, (SingeAllocator){0}, &read, NULL, &error), SINGE_OK);
+    assert_same(&gas.view, &read.view);
+    bytes_free(&bytes), gas_free(&gas), gas_free(&read);
+    // one warm cell: one block in each grid
+    sample.temperature[SIDE * SIDE * SIDE / 2 + 5] = 310;
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_OK);
+    bytes = written(&gas, 0);
+    assert_in_range(bytes.size, 512 * 4 * 6, 512 * 4 * 6 + 45000);
+    bytes_free(&bytes), gas_free(&gas);
+    gas_sample_free(&sample);
+}
+
+static void bad_gas_is_refused(void **state) {
+    (void)state;
+    GasSample sample;
+    Gas gas, none = {0};
+    SingeError error;
+    assert_true(gas_sample_make(&sample, 4, 5, 6));
+    sample.velocity[7][1] = INFINITY;
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_ERROR_ARGUMENT);
+    sample.velocity[7][1] = 0, sample.gas.size[0] = 5000;
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_ERROR_LIMIT);
+    sample.gas.size[0] = 4, sample.gas.cell = 0;
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_ERROR_LIMIT);
+    sample.gas = (SingeGas){0};
+    assert_int_equal(gas_copy(&sample.gas, (SingeAllocator){0}, &gas, &error), SINGE_OK); // there is none
+    assert_int_equal(gas.view.size[0], 0);
+    assert_int_equal(vdb_write_gas(path, &none, 0, &error), SINGE_ERROR_ARGUMENT);
+    assert_int_not_equal(access(path, F_OK), 0);
+    gas_free(&gas);
+    gas_sample_free(&sample);
+}
+
+/// Cut off anywhere, and with any byte of the head changed: refused or read, and nothing is leaked.
+static void bad_bytes_are_refused(void **state) {
+    (void)state;
+    Gas gas, read;
+    SingeError error;
+    make(12, 9, 20, &gas);
+    Bytes bytes = written(&gas, 0.25);
+    Counter counter = {0};
+    size_t step = 1;
+    for (size_t size = 0; size < bytes.size; size += step, step = size < 3000 ? 1 : 977) {
+        uint8_t *cut = malloc(size + 1); // of its own, so that a sanitizer sees what is read behind it
+        memcpy(cut, bytes.data, size);
+        SingeResult result = vdb_read_gas("a.vdb", cut, size, counter_allocator(&counter), &read, NULL, &error);
+        free(cut);
+        if (!result) fail_msg("read whole from %zu of %zu bytes", size, bytes.size);
+        assert_int_equal(result, SINGE_ERROR_FORMAT);
+        assert_message(&error, "a.vdb");
+        assert_null(read.smoke);
+    }
+    for (size_t at = 0; at < bytes.size; at += at < 1500 ? 1 : 499) {
+        uint8_t before = bytes.data[at];
+        bytes.data[at] ^= 0x9d;
+        if (!vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL, &error))
+            gas_free(&read);
+        bytes.data[at] = before;
+    }
+    counter_check(&counter);
+    bytes_free(&bytes), gas_free(&gas);
+}
+
+static void no_memory_is_told(void **state) {
+    (void)state;
+    GasSample sample;
+    SingeError error;
+    Gas gas, read;
+    assert_true(gas_sample_make(&sample, 12, 9, 20));
+    Bytes bytes = {0};
+    for (long fail_at = 1;; fail_at++) {
+        Counter counter = {.fail_at = fail_at};
+        SingeResult result = gas_copy(&sample.gas, counter_allocator(&counter), &gas, &error);
+        if (!result) result = vdb_write_gas(path, &gas, 0, &error);
+        if (!result && !bytes.data)
+            assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+        if (!result) result = vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL,
+                                           &error);
+        if (!result) gas_free(&read);
+        gas_free(&gas);
+        counter_check(&counter);
+        if (!result) break;
+        assert_int_equal(result, SINGE_ERROR_MEMORY);
+        assert_in_range(fail_at, 1, 20);
+    }
+    unlink(path);
+    bytes_free(&bytes);
+    gas_sample_free(&sample);
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    folder = test_folder();
+    snprintf(path, sizeof path, "%s/a.vdb", folder);
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    return rmdir(folder);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip_is_bitwise), cmocka_unit_test(empty_is_small),
+        cmocka_unit_test(bad_gas_is_refused),    cmocka_unit_test(bad_bytes_are_refused),
+        cmocka_unit_test(no_memory_is_told),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
