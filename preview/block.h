@@ -22,6 +22,7 @@ typedef struct Block {
     V3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
+    FireView fire[LANES]; ///< through the middles of the pixels
     float low[LANES], high[LANES];
     bool blocked[LANES];
     LayerSum layer[LANES];

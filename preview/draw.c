@@ -159,6 +159,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         if (point->lit && preview->scene.light_count)
             colour = v3_add(colour, light_embers(&preview->scene, point, stride > 1 ? sample % stride : 0, stride));
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
+        if (preview->fire.size[0]) colour = fire_over(&block->fire[i], point->distance, colour);
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = v3_add(block->sum[i], colour);
         layers_add(preview, point, block->direction[i], &block->layer[i]);
@@ -222,9 +223,18 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
 }
 
+/// Fire has no edges as sharp as a sheet's: one ray a pixel is enough, whatever its samples then see behind it.
+static void see_fire(const Preview *preview, Block *block, const int *active) {
+    if (!preview->fire.size[0]) return;
+    aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
+    for (int i = 0; i < LANES; i++)
+        if (active[i]) fire_see(preview, block->direction[i], &block->fire[i]);
+}
+
 static void draw_block(Preview *preview, Block *block) {
     int active[LANES], taken[LANES];
     start_block(preview, block, active);
+    see_fire(preview, block, active);
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
         aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
@@ -309,6 +319,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     if (result) return result;
     preview->layers = *layers;
     light_gather(preview);
+    fire_light_smoke(preview);
     mask_fill(preview);
     if (!preview->table_known) draw_all(preview, fill_table);
     preview->table_known = true;

@@ -2,6 +2,7 @@
 #ifndef PREVIEW_INTERNAL_H
 #define PREVIEW_INTERNAL_H
 
+#include "preview/fire.h"
 #include "preview/noise.h"
 #include "preview/preview.h"
 
@@ -114,6 +115,7 @@ struct Preview {
     uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
     V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
     Scene scene;
+    Fire fire;
     PreviewLayers layers;      ///< being drawn
     double time;
 };

@@ -2,11 +2,12 @@
 //
 // A patch of area A and radiance L that glows to both sides lights a place at distance r by about L A / (2 pi r^2)
 // per unit of its albedo. Triangles are summed in the cells of a grid over the surface; the strongest cells become
-// lights, scaled so that the total is kept. A sphere of radius R gives L R^2 / r^2.
+// lights, scaled so that the total is kept. A sphere of radius R gives L R^2 / r^2. A flame of volume V that emits j
+// (radiance a metre) gives j V / (pi r^2); its clusters are made and chosen in the same way.
 
 #include "preview/internal.h"
 
-enum { GRID = 10 };
+enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
 
 typedef struct Cluster { V3 place, strength; float weight; } Cluster;
 
@@ -20,6 +21,18 @@ static float coverage(const PaperVertex *a, const PaperVertex *b, const PaperVer
     float gradient = (a->gradient + b->gradient + c->gradient) / 3, half = EMBER_WIDTH * maxf(gradient, 20.0f);
     float overlap = minf(high, EMBER_BURN + 1.3f * half) - maxf(low, EMBER_BURN - half);
     return overlap > 0 ? overlap / maxf(high - low, 2 * half) : 0;
+}
+
+static void add_to_cluster(Cluster *clusters, V3 low, V3 high, V3 place, V3 strength, float weight) {
+    V3 size = v3_sub(high, low);
+    int cell[3];
+    float at[3] = {(place.x - low.x) / maxf(size.x, 1e-6f), (place.y - low.y) / maxf(size.y, 1e-6f),
+                   (place.z - low.z) / maxf(size.z, 1e-6f)};
+    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
+    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
+    cluster->place = v3_mad(cluster->place, place, weight);
+    cluster->strength = v3_add(cluster->strength, strength);
+    cluster->weight += weight;
 }
 
 static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster *clusters) {
@@ -38,15 +51,7 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     V3 strength = v3_scale(radiance, ember_air(preview, place) * area * share / (2 * PI_F));
     float weight = v3_luminance(strength);
     if (!(weight > 0)) return;
-    V3 size = v3_sub(scene->high, scene->low);
-    int cell[3];
-    float at[3] = {(place.x - scene->low.x) / maxf(size.x, 1e-6f), (place.y - scene->low.y) / maxf(size.y, 1e-6f),
-                   (place.z - scene->low.z) / maxf(size.z, 1e-6f)};
-    for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
-    Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
-    cluster->place = v3_mad(cluster->place, place, weight);
-    cluster->strength = v3_add(cluster->strength, strength);
-    cluster->weight += weight;
+    add_to_cluster(clusters, scene->low, scene->high, place, strength, weight);
 }
 
 static void add_light(Scene *scene, V3 place, V3 strength, float softness) {
@@ -68,21 +73,30 @@ static void add_shapes(Preview *preview) {
     }
 }
 
-void light_gather(Preview *preview) {
-    Scene *scene = &preview->scene;
-    Cluster clusters[GRID * GRID * GRID] = {{{0, 0, 0}, {0, 0, 0}, 0}};
-    scene->light_count = 0;
-    scene->lights = (EmberLights){{0}, {0}, {0}, {0}, {{0, 0, 0}}};
-    for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
-    add_shapes(preview);
-    for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], clusters);
+static void gather_flames(const Preview *preview, Cluster *clusters) {
+    const Fire *fire = &preview->fire;
+    float volume = fire->cell * fire->cell * fire->cell;
+    V3 strength = v3_scale(fire_emission(preview), 0.14f * volume / PI_F);
+    const FireCell *cell = fire->cells;
+    for (int z = 0; z < fire->size[2]; z++)
+        for (int y = 0; y < fire->size[1]; y++)
+            for (int x = 0; x < fire->size[0]; x++, cell++) {
+                float share = fire_share(cell);
+                if (share <= 0) continue;
+                V3 place = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), fire->cell);
+                V3 light = v3_scale(strength, share);
+                add_to_cluster(clusters, fire->low, fire->high, place, light, v3_luminance(light));
+            }
+}
+
+/// Makes the strongest clusters lights until there are `limit`, and scales them to what all clusters have.
+static void choose_lights(Scene *scene, Cluster *clusters, int limit, float softness) {
     float total = 0, kept = 0;
     int first = scene->light_count;
-    for (int i = 0; i < GRID * GRID * GRID; i++) total += clusters[i].weight;
-    float cell = v3_length(v3_sub(scene->high, scene->low)) / GRID, softness = 0.02f * cell * cell + 4e-6f;
-    while (scene->light_count < LIGHT_LIMIT) {
+    for (int i = 0; i < CELLS; i++) total += clusters[i].weight;
+    while (scene->light_count < limit) {
         int best = 0;
-        for (int i = 1; i < GRID * GRID * GRID; i++)
+        for (int i = 1; i < CELLS; i++)
             if (clusters[i].weight > clusters[best].weight) best = i;
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
@@ -93,4 +107,23 @@ void light_gather(Preview *preview) {
     }
     for (int i = first; i < scene->light_count && kept > 0; i++)
         scene->lights.strength[i] = v3_scale(scene->lights.strength[i], total / kept);
+}
+
+void light_gather(Preview *preview) {
+    Scene *scene = &preview->scene;
+    scene->light_count = 0;
+    scene->lights = (EmberLights){{0}, {0}, {0}, {0}, {{0, 0, 0}}};
+    for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
+    add_shapes(preview);
+    if (preview->fire.size[0]) {
+        Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
+        gather_flames(preview, flames);
+        float side = v3_length(v3_sub(preview->fire.high, preview->fire.low)) / GRID;
+        int limit = scene->light_count + FLAME_LIGHTS;
+        choose_lights(scene, flames, limit, 0.1f * side * side + 1e-4f);
+    }
+    Cluster clusters[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
+    for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], clusters);
+    float cell = v3_length(v3_sub(scene->high, scene->low)) / GRID;
+    choose_lights(scene, clusters, LIGHT_LIMIT, 0.02f * cell * cell + 4e-6f);
 }

@@ -211,6 +211,7 @@ void preview_destroy(Preview *preview) {
     const PreviewDef *def = &preview->def;
     SingeAllocator allocator = preview->allocator;
     tracer_free(preview);
+    fire_free(preview);
     if (preview->device) rtcReleaseDevice(preview->device);
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);

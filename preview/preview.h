@@ -70,6 +70,9 @@ SINGE_NODISCARD SingeResult preview_create(const PreviewDef *def, SingeAllocator
 /// Replaces the shapes (they move from frame to frame); the array is copied.
 SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uint32_t count,
                                                SingeError *error);
+/// Replaces the gas (it changes from frame to frame), of which flame, smoke and velocity are looked at; what is needed
+/// is copied. NULL or one of size 0: none.
+SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
 /// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives what
 /// flickers. The picture depends neither on the number of threads nor on the frames drawn before. Triangles of a piece
 /// share their vertices: by that its borders are known.

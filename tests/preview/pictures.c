@@ -3,6 +3,7 @@
 
 #include "preview/preview.h"
 #include "synthetic.h"
+#include "synthetic_gas.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,21 +17,34 @@ typedef struct Shot {
     float radius, eye[3], target[3], fov;
     bool ball;
     int samples;
+    bool flames;
 } Shot;
 
 static const Shot shots[] = {
-    {"fresh", SYNTHETIC_FRESH, 0.04f, {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, false, 8},
-    {"flat", SYNTHETIC_FLAT, 0.04f, {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, false, 8},
-    {"close", SYNTHETIC_FLAT, 0.04f, {0.03f, -0.16f, 0.15f}, {0.01f, -0.005f, 0}, 0.45f, false, 16},
-    {"cold", SYNTHETIC_COLD, 0.06f, {0.03f, -0.25f, 0.24f}, {0.01f, 0.01f, 0}, 0.55f, false, 8},
-    {"hanging", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, false, 8},
-    {"ball", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, true, 8},
+    {"fresh", SYNTHETIC_FRESH, 0.04f, {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, false, 8, false},
+    {"flat", SYNTHETIC_FLAT, 0.04f, {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, false, 8, false},
+    {"close", SYNTHETIC_FLAT, 0.04f, {0.03f, -0.16f, 0.15f}, {0.01f, -0.005f, 0}, 0.45f, false, 16, false},
+    {"cold", SYNTHETIC_COLD, 0.06f, {0.03f, -0.25f, 0.24f}, {0.01f, 0.01f, 0}, 0.55f, false, 8, false},
+    {"hanging", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, false, 8, false},
+    {"ball", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, true, 8, false},
+    {"flames", SYNTHETIC_FLAT, 0.04f, {0.05f, -0.45f, 0.34f}, {0, -0.012f, 0.04f}, 0.58f, false, 16, true},
+    {"flames-near", SYNTHETIC_FLAT, 0.04f, {0.05f, -0.30f, 0.16f}, {0, -0.012f, 0.05f}, 0.5f, false, 16, true},
+    {"flames-up", SYNTHETIC_HANGING, 0.07f, {0.16f, -0.75f, 0.42f}, {0, 0, 0.30f}, 0.60f, false, 16, true},
 };
 
 static double seconds(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static SingeResult time_frame(Preview *preview, const SingeSurface *surface, uint8_t *rgb, double *cpu, double *wall,
+                              SingeError *error) {
+    double begun = seconds();
+    clock_t start = clock();
+    SingeResult result = preview_draw(preview, surface, 1.0, rgb, error);
+    *cpu = (double)(clock() - start) / CLOCKS_PER_SEC, *wall = seconds() - begun;
+    return result;
 }
 
 static int draw(const Shot *shot, const Image *picture, const char *folder, int threads) {
@@ -41,6 +55,7 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0.02f, -0.03f, 0.24f}, .rotation = {0, 0, 0, 1},
                          .radius = 0.02f, .colour = {0.3f, 0.3f, 0.32f}, .temperature = 1250};
     memcpy(def.camera.eye, shot->eye, sizeof shot->eye), memcpy(def.camera.target, shot->target, sizeof shot->target);
+    if (shot->flames) def.width = 1280, def.height = 720;
     def.camera.fov = shot->fov, def.samples = shot->samples, def.thread_count = threads;
     const float from_front[3] = {-0.6f, -0.55f, 0.55f};
     if (shot->kind == SYNTHETIC_HANGING) memcpy(def.sun_direction, from_front, sizeof from_front);
@@ -49,19 +64,25 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
     if (!rgb || !synthetic_make(shot->kind, 66, shot->radius, &surface)) return 1;
 
     Preview *preview = NULL;
+    SyntheticGas gas = {0};
+    if (shot->flames && !synthetic_gas_make(&surface, 0.008f, 1, &gas)) return 1;
     SingeResult result = preview_create(&def, (SingeAllocator){0}, &preview, &error);
-    double wall = seconds();
-    clock_t start = clock();
-    if (!result) result = preview_draw(preview, &surface, 1.0, rgb, &error);
-    double cpu = (double)(clock() - start) / CLOCKS_PER_SEC;
-    wall = seconds() - wall;
+    // a frame before it, so that the table is known and only the flames differ
+    double without = 0, cpu = 0, wall = 0;
+    if (!result && shot->flames) result = preview_draw(preview, &surface, 1.0, rgb, &error);
+    if (!result && shot->flames) result = time_frame(preview, &surface, rgb, &without, &wall, &error);
+    if (!result) result = preview_set_gas(preview, &gas.gas, &error);
+    if (!result) result = time_frame(preview, &surface, rgb, &cpu, &wall, &error);
     char path[1024];
     snprintf(path, sizeof path, "%s/%s.png", folder, shot->name);
     if (!result) result = png_write(path, def.width, def.height, rgb, &error);
     if (result) fprintf(stderr, "%s: %s\n", shot->name, error.message);
-    else printf("%-8s %6u triangles, %d samples: %.3f s, %.3f s of processor\n", shot->name, surface.triangle_count,
+    else printf("%-11s %6u triangles, %d samples: %.3f s, %.3f s of processor", shot->name, surface.triangle_count,
                 shot->samples, wall, cpu);
+    if (!result && shot->flames) printf(", of which flames %.3f s", cpu - without);
+    if (!result) printf("\n");
     preview_destroy(preview);
+    synthetic_gas_free(&gas);
     synthetic_free(&surface);
     free(rgb);
     return result != 0;

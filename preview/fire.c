@@ -1,0 +1,246 @@
+// The gas made ready to be looked at: what burns and what smokes, cell by cell, and where there is nothing.
+//
+// Burning is q / (q + q0) of the heat set free, q (W/m3). The height of a flame's gas above its root is found by
+// following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the share that was burning
+// there; it tells the clear base from the bright middle and the torn tip. Smoke is its extinction, 8.7 m2/g times its
+// density (Mulholland & Croarkin 2000, for the soot of flames).
+
+#include "preview/internal.h"
+
+#include <string.h>
+
+#define BURNING 2e6f       ///< W/m3, q0
+#define EXTINCTION 8700.0f ///< m2/kg
+#define FLAME_SEEN 0.06f   ///< less is below the edge of a flame wherever noise puts it
+#define SMOKE_SEEN 0.08f   ///< 1/m
+
+static size_t at(const Fire *fire, int x, int y, int z) {
+    return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
+}
+
+// ---- the cells
+
+static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell) {
+    float flame = gas->flame[from], smoke = gas->smoke[from];
+    cell->flame = flame > 0 ? flame / (flame + BURNING) : 0;
+    cell->smoke = smoke > 0 ? EXTINCTION * smoke : 0;
+}
+
+/// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
+static FireCell upstream(const Fire *fire, const float velocity[3], int x, int y, int z) {
+    float up = maxf(velocity[2], 0.1f), fx, fy;
+    int ix = noise_floor((float)x - clampf(velocity[0] / up, -1, 1), &fx);
+    int iy = noise_floor((float)y - clampf(velocity[1] / up, -1, 1), &fy);
+    const FireCell *a = &fire->cells[at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
+    FireCell out = {.flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy)};
+    out.rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
+    return out;
+}
+
+static void raise_cell(Fire *fire, const float velocity[3], int x, int y, int z) {
+    FireCell *cell = &fire->cells[at(fire, x, y, z)];
+    if (cell->flame <= 0) return;
+    FireCell below = upstream(fire, velocity, x, y, z);
+    if (below.flame <= 0) return;
+    float share = minf(2 * below.flame / cell->flame, 1);
+    cell->rise = cell->flame * share * (below.rise / below.flame + fire->cell);
+}
+
+static void fill_cells(Fire *fire, const SingeGas *gas) {
+    memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
+    size_t from = 0;
+    for (uint32_t z = 0; z < gas->size[2]; z++)
+        for (uint32_t y = 0; y < gas->size[1]; y++)
+            for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
+                int place[3] = {(int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER};
+                fill_cell(gas, from, &fire->cells[at(fire, place[0], place[1], place[2])]);
+                raise_cell(fire, gas->velocity[from], place[0], place[1], place[2]);
+            }
+}
+
+// ---- the bricks
+
+static size_t brick_at(const Fire *fire, int x, int y, int z) {
+    return (size_t)x + (size_t)fire->bricks[0] * ((size_t)y + (size_t)fire->bricks[1] * (size_t)z);
+}
+
+/// Marks the bricks that come nearer than `reach` cells to the box of cell (x, y, z).
+static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t what) {
+    const int place[3] = {x, y, z};
+    int low[3], high[3];
+    for (int c = 0; c < 3; c++) {
+        low[c] = (int)(maxf((float)place[c] - 0.5f - reach, 0) / FIRE_BRICK);
+        int last = (int)(((float)place[c] + 0.5f + reach) / FIRE_BRICK);
+        high[c] = last < fire->bricks[c] ? last : fire->bricks[c] - 1;
+    }
+    for (int k = low[2]; k <= high[2]; k++)
+        for (int j = low[1]; j <= high[1]; j++)
+            for (int i = low[0]; i <= high[0]; i++) fire->seen[brick_at(fire, i, j, k)] |= what;
+}
+
+/// Marks the cells about (x, y, z), itself included.
+static void mark_cells(Fire *fire, int x, int y, int z) {
+    int reach = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000), low[3], high[3];
+    const int place[3] = {x, y, z};
+    for (int c = 0; c < 3; c++) {
+        low[c] = place[c] > reach ? place[c] - reach : 0;
+        high[c] = place[c] + reach < fire->size[c] ? place[c] + reach : fire->size[c] - 1;
+    }
+    for (int k = low[2]; k <= high[2]; k++)
+        for (int j = low[1]; j <= high[1]; j++)
+            memset(&fire->burns[at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
+}
+
+/// The most that the spline can be in a cell's box: the largest of its Bezier points, which are the means of the
+/// cells that meet in its faces, edges and corners.
+static float most_flame(const Fire *fire, int x, int y, int z) {
+    float most = 0;
+    for (int k = 0; k < 27; k++) {
+        int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        float sum = 0;
+        for (int m = 0; m < 8; m++)
+            sum += fire->cells[at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))].flame;
+        most = maxf(most, 0.125f * sum);
+    }
+    return most;
+}
+
+static void mark_all(Fire *fire) {
+    memset(fire->seen, 0, fire->brick_capacity);
+    memset(fire->burns, 0, fire->cell_capacity);
+    float reach = (FIRE_WARP_WIDE + FIRE_WARP_FINE) / fire->cell;
+    for (int z = 1; z < fire->size[2] - 1; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) {
+                if (most_flame(fire, x, y, z) > FLAME_SEEN) {
+                    mark_bricks(fire, x, y, z, reach, FIRE_FLAME);
+                    mark_cells(fire, x, y, z);
+                }
+                if (fire->cells[at(fire, x, y, z)].smoke > SMOKE_SEEN) mark_bricks(fire, x, y, z, 1, FIRE_SMOKE);
+            }
+}
+
+/// Bounds of what is not empty. False where all is.
+static bool find_bounds(Fire *fire) {
+    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    float side = FIRE_BRICK * fire->cell;
+    for (int z = 0; z < fire->bricks[2]; z++)
+        for (int y = 0; y < fire->bricks[1]; y++)
+            for (int x = 0; x < fire->bricks[0]; x++) {
+                if (!fire->seen[brick_at(fire, x, y, z)]) continue;
+                V3 corner = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), side);
+                low = v3(minf(low.x, corner.x), minf(low.y, corner.y), minf(low.z, corner.z));
+                high = v3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
+            }
+    fire->low = low, fire->high = high;
+    return low.x < high.x;
+}
+
+// ---- the whole
+
+/// A block that could not be had is NULL and has no size.
+static void free_cells(const Preview *preview, const Fire *fire) {
+    const SingeAllocator *allocator = &preview->allocator;
+    preview_resize(allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
+    preview_resize(allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
+    preview_resize(allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
+}
+
+static bool make_room(const Preview *preview, Fire *fire) {
+    size_t cells = 1, bricks = 1;
+    for (int c = 0; c < 3; c++) {
+        fire->bricks[c] = (fire->size[c] + FIRE_BRICK - 1) / FIRE_BRICK;
+        cells *= (size_t)fire->size[c], bricks *= (size_t)fire->bricks[c];
+    }
+    if (cells != fire->cell_capacity || bricks != fire->brick_capacity) {
+        Fire old = *fire;
+        fire->cells = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->cells);
+        fire->seen = preview_resize(&preview->allocator, NULL, 0, bricks);
+        fire->burns = preview_resize(&preview->allocator, NULL, 0, cells);
+        fire->cell_capacity = cells, fire->brick_capacity = bricks;
+        free_cells(preview, &old);
+    }
+    return fire->cells && fire->seen && fire->burns;
+}
+
+static bool is_finite(const SingeGas *gas) {
+    size_t count = (size_t)gas->size[0] * gas->size[1] * gas->size[2];
+    float sum = 0; // of zeros, unless something is not finite
+    for (size_t i = 0; i < count; i++)
+        sum += 0 * gas->smoke[i] + 0 * gas->flame[i] + 0 * gas->velocity[i][0] + 0 * gas->velocity[i][1] +
+               0 * gas->velocity[i][2];
+    return sum == 0;
+}
+
+static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
+    const uint32_t *n = gas->size;
+    bool good = n[0] <= 4096 && n[1] <= 4096 && n[2] <= 4096 && n[1] && n[2] &&
+                (uint64_t)n[0] * n[1] * n[2] <= GAS_CELL_LIMIT && gas->cell > 1e-6f && gas->cell < 1e3f;
+    for (int c = 0; c < 3; c++) good = good && fabsf(gas->origin[c]) < 1e4f;
+    if (good && gas->flame && gas->smoke && gas->velocity && is_finite(gas)) return SINGE_OK;
+    return preview_fail(error, SINGE_ERROR_ARGUMENT, -1,
+                        "gas: size, cell, origin or a value is out of range, or no array");
+}
+
+/// Fills what does not change with the gas.
+static bool make_tables(Preview *preview) {
+    Fire *fire = &preview->fire;
+    if (fire->noise) return true;
+    size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
+    fire->noise = preview_resize(&preview->allocator, NULL, 0, count * sizeof *fire->noise);
+    if (!fire->noise) return false;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
+    fire_fill_colours(preview);
+    return true;
+}
+
+SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error) {
+    Fire *fire = &preview->fire;
+    memset(fire->size, 0, sizeof fire->size);
+    if (!gas || !gas->size[0]) return SINGE_OK;
+    SingeResult result = check_gas(gas, error);
+    if (result) return result;
+    for (int c = 0; c < 3; c++) fire->size[c] = (int)gas->size[c] + 2 * FIRE_BORDER;
+    if (!make_tables(preview) || !make_room(preview, fire)) {
+        fire_free(preview);
+        return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a gas of %u x %u x %u cells",
+                            gas->size[0], gas->size[1], gas->size[2]);
+    }
+    float shift = (0.5f - FIRE_BORDER) * gas->cell;
+    fire->cell = gas->cell;
+    fire->origin = v3_add(v3_load(gas->origin), v3(shift, shift, shift));
+    fill_cells(fire, gas);
+    mark_all(fire);
+    if (!find_bounds(fire)) memset(fire->size, 0, sizeof fire->size);
+    return SINGE_OK;
+}
+
+void fire_light_smoke(Preview *preview) {
+    Fire *fire = &preview->fire;
+    const EmberLights *lights = &preview->scene.lights;
+    // the sun lights one side, the sky all
+    V3 sky = v3_add(sky_ambient(&preview->sky, v3(0, 0, 1)), sky_ambient(&preview->sky, v3(0, 0, -1)));
+    fire->daylight = v3_mad(v3_scale(sky, 0.5f), preview->sun_light, 0.28f);
+    for (int z = 0; z < fire->size[2]; z++)
+        for (int y = 0; y < fire->size[1]; y++)
+            for (int x = 0; x < fire->size[0]; x++) {
+                FireCell *cell = &fire->cells[at(fire, x, y, z)];
+                cell->glow = 0;
+                if (cell->smoke <= SMOKE_SEEN) continue;
+                V3 p = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), fire->cell);
+                for (int k = 0; k < preview->scene.light_count; k++) {
+                    V3 to = v3_sub(v3(lights->x[k], lights->y[k], lights->z[k]), p);
+                    // scattered to all sides alike: a quarter of what white paper would send back
+                    cell->glow += 0.25f * lights->strength[k].x / (v3_dot(to, to) + lights->softness[k] + 4e-4f);
+                }
+            }
+}
+
+void fire_free(Preview *preview) {
+    Fire *fire = &preview->fire;
+    free_cells(preview, fire);
+    preview_resize(&preview->allocator, fire->noise,
+                   fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
+    *fire = (Fire){.cells = NULL};
+}

@@ -1,0 +1,79 @@
+// Flame and smoke as the renderer keeps and meets them.
+#ifndef PREVIEW_FIRE_H
+#define PREVIEW_FIRE_H
+
+#include "preview/vec3.h"
+#include "singe/sim.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    FIRE_BORDER = 2,  ///< empty cells around the gas, so that interpolation needs no bounds
+    FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of what is skipped
+    FIRE_STEPS = 96,  ///< a ray's steps through what is not empty
+    FIRE_NOISE = 16,  ///< corners along the side of the lattice of noise, a power of two
+    FIRE_COLOURS = 64,
+};
+
+/// What is looked up at a place. Four floats: interpolated together.
+typedef struct FireCell {
+    float flame;  ///< 0 none to 1 burning fully
+    float rise;   ///< m times flame: how far above its root the flame is
+    float smoke;  ///< 1/m, extinction
+    float glow;   ///< light of the flames that reaches the smoke, per unit of albedo
+} FireCell;
+
+typedef struct Fire {
+    int size[3];      ///< cells with their border; all 0 where nothing is to be seen
+    float cell;       ///< m
+    V3 origin;        ///< m, middle of cell (0, 0, 0), border included
+    FireCell *cells;
+    size_t cell_capacity;
+    int bricks[3];
+    uint8_t *seen;    ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
+    uint8_t *burns;   ///< [cells] whether flame may be in reach of the small eddies alone
+    size_t brick_capacity;
+    V3 daylight;      ///< of sun and sky, per unit of the smoke's albedo
+    V3 low, high;     ///< m, bounds of the bricks that are not empty
+    float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
+    V3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
+} Fire;
+
+// m, how far eddies shift what is seen, at most
+#define FIRE_WARP_WIDE 0.0055f
+#define FIRE_WARP_FINE 0.0018f
+
+enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
+
+/// What a ray meets in steps from `from` to `distance`: behind one, `light` has been added and `clear` of what comes
+/// from farther is left.
+typedef struct FireView {
+    int count;
+    float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
+    V3 light[FIRE_STEPS];
+} FireView;
+
+typedef struct Preview Preview;
+
+/// Corner (x, y, z) of the noise, which repeats.
+static inline size_t fire_noise_at(int x, int y, int z) {
+    const int m = FIRE_NOISE - 1;
+    return (size_t)((x & m) + FIRE_NOISE * ((y & m) + FIRE_NOISE * (z & m)));
+}
+
+// fire.c
+void fire_free(Preview *preview);
+/// The light that falls on smoke: the day's and the flames'. The lights have been gathered.
+void fire_light_smoke(Preview *preview);
+
+// fire_march.c
+void fire_fill_colours(Preview *preview);
+/// Light of a full flame, radiance a metre, for the lamps that stand for it, and how much of it a cell gives.
+V3 fire_emission(const Preview *preview);
+float fire_share(const FireCell *cell);
+void fire_see(const Preview *preview, V3 direction, FireView *view);
+/// The colour of what is at `distance`, seen through the fire.
+V3 fire_over(const FireView *view, float distance, V3 colour);
+
+#endif
