@@ -55,7 +55,7 @@ static SingeResult time_steps(const Job *job, SingeSim *sim, CheckTimes *times, 
     if (!result && pictures_available()) result = pictures_open(job, &pictures, error);
     if (!result && pictures) {
         begun = console_clock();
-        if (!pictures_draw(pictures, &surface, 0, error)) result = error->code;
+        if (!pictures_draw(pictures, &surface, NULL, 0, error)) result = error->code;
         times->picture = console_clock() - begun;
     }
     pictures_close(pictures);

@@ -67,34 +67,37 @@ SingeResult folder_make(const char *path, SingeError *error) {
     return result;
 }
 
-static SingeResult make_inner(const Folder *folder, const char *inner, SingeError *error) {
-    char *path = text_format("%s/%s", folder->path, inner);
-    SingeResult result = make_one(path, error);
-    if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
-    free(path);
-    return result;
+/// The folders of frames, and how their files end.
+enum { INNER_PLY, INNER_FRAMES, INNER_GAS, INNER_EXR, INNER_COUNT };
+static const struct { const char *name, *ending; } inner[INNER_COUNT] = {
+    [INNER_PLY] = {"ply", ".ply"}, [INNER_FRAMES] = {"frames", ".png"}, [INNER_GAS] = {"gas", ".vdb"},
+    [INNER_EXR] = {"exr", ".exr"}};
+
+static bool is_asked(FolderParts parts, int which) {
+    const bool asked[INNER_COUNT] = {true, parts.pictures, parts.gas, parts.exr};
+    return asked[which];
 }
 
-SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error) {
+static char *frame_path(const Folder *folder, int which, int frame) {
+    return text_format("%s/%s/%s.%04d%s", folder->path, inner[which].name, folder->name, frame, inner[which].ending);
+}
+
+SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error) {
     SingeResult result = folder_make(folder->path, error);
-    if (!result) result = make_inner(folder, "ply", error);
-    if (!result && pictures) result = make_inner(folder, "frames", error);
+    for (int i = 0; i < INNER_COUNT && !result; i++) {
+        if (!is_asked(parts, i)) continue;
+        char *path = text_format("%s/%s", folder->path, inner[i].name);
+        result = make_one(path, error);
+        if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
+        free(path);
+    }
     return result;
 }
 
-SingeResult folder_create_exr(const Folder *folder, SingeError *error) { return make_inner(folder, "exr", error); }
-
-char *folder_ply(const Folder *folder, int frame) {
-    return text_format("%s/ply/%s.%04d.ply", folder->path, folder->name, frame);
-}
-
-char *folder_png(const Folder *folder, int frame) {
-    return text_format("%s/frames/%s.%04d.png", folder->path, folder->name, frame);
-}
-
-char *folder_exr(const Folder *folder, int frame) {
-    return text_format("%s/exr/%s.%04d.exr", folder->path, folder->name, frame);
-}
+char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, INNER_PLY, frame); }
+char *folder_png(const Folder *folder, int frame) { return frame_path(folder, INNER_FRAMES, frame); }
+char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
+char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
 
 /// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
 static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
@@ -125,14 +128,13 @@ static SingeResult remove_file(const char *path, int *removed, SingeError *error
 }
 
 /// Removes frames, where `frames` is set, and what a killed run left half written. The folder need not be there.
-static SingeResult clean_frames(const Folder *folder, const char *inner, const char *ending, bool frames, int *removed,
-                                SingeError *error) {
-    char *path = text_format("%s/%s", folder->path, inner);
+static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
+    char *path = text_format("%s/%s", folder->path, inner[which].name);
     DIR *dir = opendir(path);
     SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
     for (struct dirent *entry; dir && (entry = readdir(dir)) && !result;) {
         const char *rest;
-        if (!frame_of(folder, entry->d_name, ending, &rest)) continue;
+        if (!frame_of(folder, entry->d_name, inner[which].ending, &rest)) continue;
         if (!(*rest == 0 && frames) && !is_temporary(rest)) continue;
         char *file = text_format("%s/%s", path, entry->d_name);
         result = remove_file(file, removed, error);
@@ -166,30 +168,23 @@ static SingeResult clean_top(const Folder *folder, int *removed, SingeError *err
 SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     int removed = 0;
     SingeResult result = clean_top(folder, &removed, error);
-    if (!result) result = clean_frames(folder, "ply", ".ply", false, &removed, error);
-    if (!result) result = clean_frames(folder, "frames", ".png", false, &removed, error);
-    if (!result) result = clean_frames(folder, "exr", ".exr", false, &removed, error);
+    for (int i = 0; i < INNER_COUNT && !result; i++) result = clean_frames(folder, i, false, &removed, error);
     return result;
 }
 
-/// Fails, and may, where something else is in it.
-static void remove_empty(const Folder *folder, const char *inner) {
-    char *path = text_format("%s/%s", folder->path, inner);
-    rmdir(path);
-    free(path);
-}
-
-SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error) {
+SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {
     *removed = 0;
     // the checkpoint goes first: without its frames it must not be resumed from
     SingeResult result = remove_file(folder->checkpoint, removed, error);
     if (!result) result = remove_file(folder->video, removed, error);
     if (!result) result = remove_file(folder->gif, removed, error);
-    if (!result) result = clean_frames(folder, "ply", ".ply", true, removed, error);
-    if (!result) result = clean_frames(folder, "frames", ".png", true, removed, error);
-    if (!result) result = clean_frames(folder, "exr", ".exr", true, removed, error);
-    if (!result) remove_empty(folder, "exr");
-    if (!result && !pictures) remove_empty(folder, "frames");
+    for (int i = 0; i < INNER_COUNT && !result; i++) {
+        result = clean_frames(folder, i, true, removed, error);
+        if (result || is_asked(parts, i)) continue;
+        char *path = text_format("%s/%s", folder->path, inner[i].name);
+        rmdir(path); // fails, and may, where something else is in it
+        free(path);
+    }
     return result;
 }
 

@@ -1,5 +1,5 @@
-// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/frames/NAME.0001.png, DIR/exr/NAME.0001.exr and those that exist
-// once.
+// Where a run's files are: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
+// DIR/exr/NAME.0001.exr and those that exist once.
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
@@ -23,19 +23,22 @@ void folder_free(Folder *folder);
 /// Makes a folder and those above it. `path` is not empty.
 SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
-/// Makes the folder, those above it, ply/ and, for `pictures`, frames/ in it.
-SINGE_NODISCARD SingeResult folder_create(const Folder *folder, bool pictures, SingeError *error);
-/// Makes exr/ in it.
-SINGE_NODISCARD SingeResult folder_create_exr(const Folder *folder, SingeError *error);
+/// What a run writes besides the surface: a folder of its own each.
+typedef struct FolderParts { bool pictures, gas, exr; } FolderParts;
+
+/// Makes the folder, those above it, ply/ and, as `parts` ask, frames/, gas/ and exr/ in it.
+SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.
 char *folder_ply(const Folder *folder, int frame);
 char *folder_png(const Folder *folder, int frame);
+char *folder_vdb(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
 
 /// Removes what an earlier run of the same name left (its frames, checkpoint, video, GIF), and nothing that is
-/// not named as such files are. *removed is the number of files. Without `pictures` an empty frames/ goes too.
-SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, bool pictures, int *removed, SingeError *error);
+/// not named as such files are. *removed is the number of files. What `parts` do not ask for goes too when it is
+/// empty: frames/, gas/ and exr/.
+SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 
 /// Removes what a killed run left half written under temporary names.
 SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);

@@ -36,7 +36,8 @@ SingeResult pictures_open(const Job *job, Pictures **made, SingeError *error) {
     return result;
 }
 
-const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error) {
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
+                             SingeError *error) {
     // a ball may be hot at one time and not at another, so the number may have grown
     uint32_t count = scene_shapes(pictures->scene, time, NULL, 0);
     if (count > pictures->shape_max) {
@@ -49,6 +50,7 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, do
     }
     count = scene_shapes(pictures->scene, time, pictures->shapes, pictures->shape_max);
     if (preview_set_shapes(pictures->preview, pictures->shapes, count, error)) return NULL;
+    if (preview_set_gas(pictures->preview, gas, error)) return NULL;
     if (preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error)) return NULL;
     return pictures->rgb;
 }
@@ -58,17 +60,18 @@ SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     PreviewLayers *l = &pictures->layers;
     l->beauty = calloc(count, sizeof *l->beauty), l->glow = calloc(count, sizeof *l->glow);
     l->normal = calloc(count, sizeof *l->normal), l->coverage = calloc(count, sizeof *l->coverage);
+    l->fire = calloc(count, sizeof *l->fire);
     l->temperature = calloc(count, sizeof *l->temperature), l->burn = calloc(count, sizeof *l->burn);
     l->depth = calloc(count, sizeof *l->depth);
     l->sheet = calloc(count, sizeof *l->sheet), l->piece = calloc(count, sizeof *l->piece);
-    bool all = l->beauty && l->glow && l->normal && l->coverage && l->temperature && l->burn && l->depth && l->sheet &&
-               l->piece;
+    bool all = l->beauty && l->glow && l->normal && l->coverage && l->fire && l->temperature && l->burn && l->depth &&
+               l->sheet && l->piece;
     return all ? SINGE_OK : no_memory(error);
 }
 
 static void free_layers(PreviewLayers *l) {
     free(l->beauty), free(l->glow), free(l->normal), free(l->coverage), free(l->temperature), free(l->burn);
-    free(l->depth), free(l->sheet), free(l->piece);
+    free(l->fire), free(l->depth), free(l->sheet), free(l->piece);
 }
 
 /// Ids as they are written: counted from 1, so that 0 is none.
@@ -87,7 +90,9 @@ SingeResult pictures_write_layers(const Pictures *pictures, const char *path, Si
         {"R", EXR_KIND_HALF, &l->beauty[0][0], 3}, {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
         {"B", EXR_KIND_HALF, &l->beauty[0][2], 3}, {"Z", EXR_KIND_FLOAT, l->depth, 1},
         {"glow.R", EXR_KIND_HALF, &l->glow[0][0], 3}, {"glow.G", EXR_KIND_HALF, &l->glow[0][1], 3},
-        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3}, {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
+        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3}, {"fire.R", EXR_KIND_HALF, &l->fire[0][0], 4},
+        {"fire.G", EXR_KIND_HALF, &l->fire[0][1], 4}, {"fire.B", EXR_KIND_HALF, &l->fire[0][2], 4},
+        {"fire.A", EXR_KIND_HALF, &l->fire[0][3], 4}, {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
         {"normal.Y", EXR_KIND_HALF, &l->normal[0][1], 3}, {"normal.Z", EXR_KIND_HALF, &l->normal[0][2], 3},
         {"temperature.K", EXR_KIND_FLOAT, l->temperature, 1}, {"char.Y", EXR_KIND_HALF, l->burn, 1},
         {"coverage.Y", EXR_KIND_HALF, l->coverage, 1}, {"id.sheet", EXR_KIND_ID, sheet, 1},

@@ -12,8 +12,10 @@ bool pictures_available(void);
 /// The job must outlive *pictures.
 SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error);
 
-/// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure.
-const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error);
+/// Draws a frame and returns its pixels, [height * width * 3], valid until the next call; NULL on failure. The gas may
+/// be NULL.
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
+                             SingeError *error);
 
 /// Has pictures_draw keep the layers of the frame, too, for pictures_write_layers.
 SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error);

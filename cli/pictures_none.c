@@ -14,8 +14,9 @@ SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error
     return SINGE_ERROR_STATE;
 }
 
-const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, double time, SingeError *error) {
-    (void)pictures, (void)surface, (void)time, (void)error;
+const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
+                             SingeError *error) {
+    (void)pictures, (void)surface, (void)gas, (void)time, (void)error;
     return NULL;
 }
 

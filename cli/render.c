@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/args.h"
 #include "cli/contact_sheet.h"
@@ -159,9 +160,24 @@ static ExitCode find_frames(Render *render) {
 
 // ---- drawing
 
+/// The gas of a frame; none where the cache has no file of it.
+static SingeResult read_gas(Render *render, int frame, Gas *gas, SingeError *error) {
+    Bytes bytes = {0};
+    SingeResult result = SINGE_OK;
+    char *path = folder_vdb(&render->folder, frame);
+    if (access(path, F_OK) == 0) {
+        result = file_read(path, (SingeAllocator){0}, &bytes, error);
+        if (!result) result = vdb_read_gas(path, bytes.data, bytes.size, (SingeAllocator){0}, gas, NULL, error);
+        bytes_free(&bytes);
+    }
+    free(path);
+    return result;
+}
+
 static SingeResult draw_frame(Render *render, int frame, const uint8_t **rgb, SingeError *error) {
     Bytes bytes = {0};
     SingeSurface surface = {0};
+    Gas gas = {0};
     double time;
     char *path = folder_ply(&render->folder, frame);
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
@@ -169,9 +185,11 @@ static SingeResult draw_frame(Render *render, int frame, const uint8_t **rgb, Si
         result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &surface, &time, error);
         bytes_free(&bytes);
     }
-    if (!result && !(*rgb = pictures_draw(render->pictures, &surface, time, error)))
+    if (!result) result = read_gas(render, frame, &gas, error);
+    if (!result && !(*rgb = pictures_draw(render->pictures, &surface, &gas.view, time, error)))
         result = error->code ? error->code : SINGE_ERROR_STATE;
     singe_surface_free(&surface);
+    gas_free(&gas);
     free(path);
     return result;
 }
@@ -225,8 +243,8 @@ static ExitCode render_frames(Render *render) {
     int width, height;
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
-    if (!result) result = folder_create(&render->folder, !o->only_sheet, &error);
-    if (!result && o->exr) result = folder_create_exr(&render->folder, &error);
+    FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr};
+    if (!result) result = folder_create(&render->folder, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
     if (!result && o->columns) {
         pictures_size(render->pictures, &width, &height);

@@ -1,5 +1,5 @@
 // singe run: frame 1 is the start, at time 0; each later frame is `steps` steps on from the one before it. Within
-// a frame the order is PLY, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on the disk.
+// a frame the order is PLY, VDB, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on the disk.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,6 +51,7 @@ typedef struct Run {
     Pictures *pictures; ///< NULL without a preview
     bool layers;        ///< written as EXR, too
     SingeSurface surface;
+    Gas gas;                    ///< of the frame, as its file has it
     StatsFile stats;
     Record record;
     Totals *totals;             ///< the record's
@@ -144,7 +145,7 @@ static void charge(Run *run, int total, double *clock) {
 }
 
 static SingeResult write_picture(Run *run, int frame, double time, SingeError *error) {
-    const uint8_t *rgb = pictures_draw(run->pictures, &run->surface, time, error);
+    const uint8_t *rgb = pictures_draw(run->pictures, &run->surface, &run->gas.view, time, error);
     if (!rgb) return error->code ? error->code : SINGE_ERROR_STATE;
     int width, height;
     pictures_size(run->pictures, &width, &height);
@@ -154,6 +155,21 @@ static SingeResult write_picture(Run *run, int frame, double time, SingeError *e
     if (result || !run->layers) return result;
     path = folder_exr(&run->folder, frame);
     result = pictures_write_layers(run->pictures, path, error);
+    free(path);
+    return result;
+}
+
+static bool has_gas(const Run *run) { return singe_sim_gas(run->sim).size[0] > 0; }
+
+/// Where the simulation has gas every frame has a file of it, however still the air.
+static SingeResult write_gas(Run *run, int frame, double time, SingeError *error) {
+    SingeGas gas = singe_sim_gas(run->sim);
+    gas_free(&run->gas);
+    if (!has_gas(run)) return SINGE_OK;
+    SingeResult result = gas_copy(&gas, (SingeAllocator){0}, &run->gas, error);
+    if (result) return result;
+    char *path = folder_vdb(&run->folder, frame);
+    result = vdb_write_gas(path, &run->gas, time, error);
     free(path);
     return result;
 }
@@ -174,6 +190,7 @@ static SingeResult write_frame(Run *run, int frame, SingeStats *stats, SingeErro
     char *path = folder_ply(&run->folder, frame);
     result = ply_write_surface(path, &run->surface, stats->time, error);
     free(path);
+    if (!result) result = write_gas(run, frame, stats->time, error);
     if (result) return result;
     charge(run, TOTAL_PLY, &clock);
     if (run->pictures && (result = write_picture(run, frame, stats->time, error))) return result;
@@ -256,11 +273,15 @@ static ExitCode resume(Run *run) {
     return EXIT_GOOD;
 }
 
+static FolderParts folder_parts(const Run *run) {
+    return (FolderParts){.pictures = run->pictures != NULL, .gas = has_gas(run), .exr = run->layers};
+}
+
 /// Starts from the beginning, over whatever an earlier run of this name left.
 static ExitCode start(Run *run) {
     SingeError error = {0};
     int removed = 0;
-    SingeResult result = folder_clean(&run->folder, run->pictures != NULL, &removed, &error);
+    SingeResult result = folder_clean(&run->folder, folder_parts(run), &removed, &error);
     if (removed)
         console_note(run->console, "removed %d files of an earlier run of '%s' in %s", removed, run->folder.name,
                      run->folder.path);
@@ -281,13 +302,12 @@ static ExitCode prepare(Run *run, const RunOptions *options) {
     if (options->resume && (code = resume(run))) return code;
     // built before anything of an earlier run is touched
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
-    result = folder_create(&run->folder, run->pictures != NULL, &error);
+    run->layers = options->exr;
+    result = folder_create(&run->folder, folder_parts(run), &error);
     if (!result) result = folder_sweep(&run->folder, &error);
     if (result) return fail(run, &error, EXIT_FAILED);
     if (!run->first && (code = start(run))) return code;
-    run->layers = options->exr;
-    if (run->layers) result = folder_create_exr(&run->folder, &error);
-    if (run->layers && !result) result = pictures_keep_layers(run->pictures, &error);
+    if (run->layers) result = pictures_keep_layers(run->pictures, &error);
     return result ? fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
 }
 
@@ -358,6 +378,7 @@ int command_run(int argc, char **argv) {
         if (!code) code = run_scene(&run, &options);
         stats_close(&run.stats);
         singe_surface_free(&run.surface);
+        gas_free(&run.gas);
         pictures_close(run.pictures);
         singe_sim_destroy(run.sim);
         folder_free(&run.folder);

@@ -6,8 +6,8 @@
 
 /// What the layers of a pixel are made of.
 typedef struct LayerSum {
-    V3 normal, glow;
-    float temperature, burn, depth;
+    V3 normal, glow, fire;
+    float fire_hides, temperature, burn, depth;
     int hits, samples;
     int32_t sheet, piece;
 } LayerSum;
@@ -43,7 +43,8 @@ enum { SAMPLE_MIDDLE = -1 };
 
 // layers.c
 void layers_begin(LayerSum *sum);
-void layers_add(const Preview *preview, const Point *point, V3 direction, LayerSum *sum);
+/// `fire` is the light of flame and smoke before the point, `clear` what they leave of its own.
+void layers_add(const Preview *preview, const Point *point, V3 fire, float clear, V3 direction, LayerSum *sum);
 void layers_write(const Preview *preview, size_t pixel, V3 colour, const LayerSum *sum);
 
 // lighting.c

@@ -159,10 +159,15 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         if (point->lit && preview->scene.light_count)
             colour = v3_add(colour, light_embers(&preview->scene, point, stride > 1 ? sample % stride : 0, stride));
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
-        if (preview->fire.size[0]) colour = fire_over(&block->fire[i], point->distance, colour);
+        V3 fire = {0, 0, 0};
+        float clear = 1;
+        if (preview->fire.size[0]) {
+            fire_until(&block->fire[i], point->distance, &fire, &clear);
+            colour = v3_mad(fire, colour, clear);
+        }
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = v3_add(block->sum[i], colour);
-        layers_add(preview, point, block->direction[i], &block->layer[i]);
+        layers_add(preview, point, fire, clear, block->direction[i], &block->layer[i]);
     }
 }
 

@@ -73,7 +73,7 @@ void fire_fill_colours(Preview *preview);
 V3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
 void fire_see(const Preview *preview, V3 direction, FireView *view);
-/// The colour of what is at `distance`, seen through the fire.
-V3 fire_over(const FireView *view, float distance, V3 colour);
+/// The light of the fire as far as `distance`, and what it leaves of the light from there.
+void fire_until(const FireView *view, float distance, V3 *light, float *clear);
 
 #endif

@@ -272,7 +272,7 @@ void fire_see(const Preview *preview, V3 d, FireView *view) {
     }
 }
 
-V3 fire_over(const FireView *view, float distance, V3 colour) {
+void fire_until(const FireView *view, float distance, V3 *light, float *clear) {
     int low = 0, high = view->count;
     while (low < high) {
         int middle = (low + high) / 2;
@@ -280,11 +280,10 @@ V3 fire_over(const FireView *view, float distance, V3 colour) {
         else high = middle;
     }
     // `low` steps lie wholly in front, and of the next a part
-    V3 light = low ? view->light[low - 1] : v3(0, 0, 0);
-    float clear = low ? view->clear[low - 1] : 1;
+    *light = low ? view->light[low - 1] : v3(0, 0, 0);
+    *clear = low ? view->clear[low - 1] : 1;
     if (low < view->count && view->from[low] < distance) {
         float part = (distance - view->from[low]) / (view->distance[low] - view->from[low]);
-        light = v3_mix(light, view->light[low], part), clear = mixf(clear, view->clear[low], part);
+        *light = v3_mix(*light, view->light[low], part), *clear = mixf(*clear, view->clear[low], part);
     }
-    return v3_mad(light, colour, clear);
 }

@@ -90,6 +90,7 @@ typedef struct PreviewLayers {
     float *burn;          ///< of hits, 0 fresh to 1 ash; 0 on shapes
     float *depth;         ///< first, m along the camera's view; infinite where there is nothing
     int32_t *sheet, *piece; ///< first; -1 where there is none
+    float (*fire)[4];     ///< mean; light of flame and smoke alone, and the share that they hide of what is behind
 } PreviewLayers;
 
 /// As preview_draw, and fills the layers. `rgb` may be NULL.

@@ -174,6 +174,32 @@ static void test_smoke(void **state) {
     }
 }
 
+/// The layer of the fire is what it adds to the picture and what it hides of it.
+static void test_layer(void **state) {
+    (void)state;
+    static float with[W * H][3], without[W * H][3], fire[W * H][4];
+    static Ball ball;
+    SingeSurface nothing = {0};
+    PreviewDef def = aside(0.3f);
+    Preview *preview = NULL;
+    SingeError error;
+    ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 5e-4f);
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
+    PreviewLayers layers = {.beauty = without, .fire = fire};
+    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
+    for (int i = 0; i < W * H; i++) assert_true(fire[i][0] == 0 && fire[i][3] == 0);
+    assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_OK);
+    layers.beauty = with;
+    assert_int_equal(preview_draw_layers(preview, &nothing, 0.3, NULL, &layers, &error), SINGE_OK);
+    for (int i = 0; i < W * H; i++)
+        for (int c = 0; c < 3; c++)
+            assert_true(fabsf(with[i][c] - fire[i][c] - (1 - fire[i][3]) * without[i][c]) < 1e-3f * (1 + with[i][c]));
+    const float *middle_of = fire[W * (H / 2) + W / 2];
+    assert_true(middle_of[0] > 1 && middle_of[0] > middle_of[2] && middle_of[3] > 0.3f && middle_of[3] < 1);
+    assert_true(fire[0][0] == 0 && fire[0][3] == 0);
+    preview_destroy(preview);
+}
+
 /// From kilometres away, and from inside of the flame: rays come to an end.
 static void test_far_and_near(void **state) {
     (void)state;
@@ -259,7 +285,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nothing_burns), cmocka_unit_test(test_flame), cmocka_unit_test(test_flicker),
         cmocka_unit_test(test_hidden),
-        cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_light), cmocka_unit_test(test_smoke),
+        cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_layer), cmocka_unit_test(test_light), cmocka_unit_test(test_smoke),
         cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,63 @@
+"""The gas in a run's folder: drawn from its files, cleared away with the rest, refused when damaged."""
+
+import os
+import shutil
+import subprocess
+import unittest
+
+from support import HAS_PREVIEW, Case
+
+SAMPLE = os.environ["VDB_SAMPLE"]
+
+
+class Gas(Case):
+    def vdb(self, frame, out="o"):
+        return self.path(out, "gas", "tiny.%04d.vdb" % frame)
+
+    def put_gas(self, frame):
+        """A column of flame over the sheet, as if the run had left it."""
+        os.makedirs(self.path("o", "gas"), exist_ok=True)
+        subprocess.run([SAMPLE, self.vdb(frame), "37", "21", "40"], check=True, stdout=subprocess.DEVNULL)
+
+    def read(self, path):
+        with open(path, "rb") as file:
+            return file.read()
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_render_reads_it(self):
+        self.run_scene("o", "--quiet", preview=True)
+        shutil.rmtree(self.path("o", "gas"), ignore_errors=True)
+        png = self.path("o", "frames", "tiny.0002.png")
+        self.singe("render", self.path("o"), "--frames", "2")
+        without = self.read(png)
+        self.put_gas(2)
+        self.singe("render", self.path("o"), "--frames", "2", "--threads", "2")
+        burning = self.read(png)
+        self.assertNotEqual(burning, without)
+        self.singe("render", self.path("o"), "--frames", "2", "--threads", "1")
+        self.assertEqual(self.read(png), burning)
+        with open(self.vdb(2), "r+b") as file:
+            file.truncate(9000)
+        self.assertIn("tiny.0002.vdb", self.singe("render", self.path("o"), "--frames", "2", expect=2)[1])
+        os.remove(self.vdb(2))
+        self.singe("render", self.path("o"), "--frames", "2")
+        self.assertEqual(self.read(png), without)
+
+    def test_left_overs(self):
+        """A new run clears away what an earlier one left, a resumed one what was half written; others' files stay."""
+        self.run_scene("o", "--quiet", "--frames", "3")
+        self.put_gas(5)
+        for name in "tiny.0002.vdb.4711-0.tmp", "tiny.0002.vdb.bak", "other.0001.vdb":
+            shutil.copy(self.vdb(5), self.path("o", "gas", name))
+        self.run_scene("o", "--quiet", "--frames", "4", "--resume")
+        self.no_temporaries("o")
+        self.assertTrue(os.path.exists(self.vdb(5)))
+        self.run_scene("o", "--quiet", "--frames", "3")
+        self.assertFalse(os.path.exists(self.vdb(5)))
+        left = sorted(os.listdir(self.path("o", "gas")))
+        self.assertEqual([n for n in left if not n.startswith("tiny.000") or n.endswith(".bak")],
+                         ["other.0001.vdb", "tiny.0002.vdb.bak"])
+
+
+if __name__ == "__main__":
+    unittest.main()
