@@ -67,7 +67,7 @@ static void material_shrinks(SingeMaterialDef *material, float ratio) {
     material->mass_min = singe_param(least);
     material->mass_loss = singe_param(0);
     material->ash_density = singe_param(least / ratio);
-    material->shrink_front = material->shrink_back = singe_param(1);
+    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
 }
 
 /// A corner's vertex alone where the sheet swings, else a patch.

@@ -121,8 +121,11 @@ typedef struct SingeMaterialDef {
     SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
     SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
     SingeParam ash_density;          ///< rho at m_min over rho_init, > 0
-    SingeParam shrink_front;         ///< how much of eq 6's shrinkage the corner layer takes, 0 to 2
-    SingeParam shrink_back;          ///< the same for the centre layer; unequal values curl the sheet
+    SingeParam shrink_front;         ///< how much of eq 6's shrinkage the front (centre) layer takes, 0 to 2
+    /// the same for the back (corner) layer; the sheet curls towards the layer that shrinks more
+    SingeParam shrink_back;
+    SingeParam fibre_angle;          ///< rad, of the fibres from the direction of growing u, towards growing v
+    SingeParam fibre_shrink;         ///< shrinkage across the fibres over that along them, 0.1 to 10; 1: no fibres
     bool ablate;                     ///< false: nothing is removed (Fig 4 b)
 
     // mechanics, eq 8 to 19

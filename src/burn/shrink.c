@@ -1,13 +1,25 @@
 // Target length of a spring, eq 6 with the layers' own share of the shrinkage:
 //
-//   l = l_init (1 - s (1 - (v0 + v1)/2))
+//   l = l_init (1 - e),   e = s (1 - (v0 + v1)/2)
 //
 //   l_init  initial length, m (the paper's l_rest is the same length; compounding would shrink without end)
 //   v0, v1  volume ratios of the ends, eq 5
 //   s       mean of the ends' shrink factors; 1 is the paper, and the layers' difference makes curl
 //
+// Paper shrinks more across its fibres than along them: for bond paper that dries, 1.5 to 4 times (Roberts &
+// Etherington, Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio, `fibre_shrink`,
+// and b = e (q - 1)/(q + 1), lengths along the fibres become 1 - e + b of what they were, those across 1 - e - b. So all
+// springs measure one stretched plane: at the angle phi to the fibres
+//
+//   (l/l_init)^2 = (1 - e + b)^2 cos^2 phi + (1 - e - b)^2 sin^2 phi = (1 - e)^2 + b (b + 2 (1 - e) cos 2 phi)
+//
+// What of a red spring stands on the sheet shrinks by 1 - e: with the share p of its square in the plane it has
+// p b^2 in place of b^2, and p is in its `grain` already (shell/fibre.c).
+//
 // v follows from the mass alone, so that only springs with an end that lost mass need a new length.
 #include "burn/burn_job.h"
+
+#include <math.h>
 
 /// A strong shrink factor must not turn a spring inside out.
 #define LEAST_RATIO 0.05f
@@ -16,11 +28,12 @@
 typedef struct SpringEnd {
     float volume; ///< v of eq 5
     float shrink; ///< s
+    float fibres; ///< q
 } SpringEnd;
 
 static inline SpringEnd spring_end(const Matter *matter, const float *mass, uint32_t i) {
     float volume = burn_volume_ratio(mass[i], field_at(matter->mass_min, i), field_at(matter->ash_density, i));
-    return (SpringEnd){volume, field_at(matter->shrink, i)};
+    return (SpringEnd){volume, field_at(matter->shrink, i), field_at(matter->fibre_shrink, i)};
 }
 
 static inline float length_ratio(SpringEnd a, SpringEnd b) {
@@ -29,9 +42,31 @@ static inline float length_ratio(SpringEnd a, SpringEnd b) {
     return ratio < LEAST_RATIO ? LEAST_RATIO : ratio;
 }
 
-static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b) {
+/// The ratio of a spring that lies in the fibres' direction as `grain` says; `even` is the one without fibres.
+static inline float fibre_ratio(SpringEnd a, SpringEnd b, float even, float grain, float in_plane) {
+    float q = 0.5f * (a.fibres + b.fibres), most = even - LEAST_RATIO, stretch = (1 - even) * (q - 1) / (q + 1);
+    stretch = stretch > most ? most : stretch < -most ? -most : stretch;
+    return sqrtf(even * even + stretch * (in_plane * stretch + 2 * even * grain));
+}
+
+/// The share p of the square of a red spring that lies in the plane of the sheet.
+static inline float red_in_plane(const Matter *matter, const SpringSet *red, uint32_t s, uint32_t centre) {
+    if (!red->grain) return 1; // nobody asks
+    float upright = field_at(matter->thickness, centre) / red->rest[s];
+    return upright < 1 ? 1 - upright * upright : 0;
+}
+
+/// Target length of a spring whose share `in_plane` of its square lies in the sheet.
+static inline float target_length(const SpringSet *springs, uint32_t s, SpringEnd a, SpringEnd b, float in_plane) {
+    float ratio = length_ratio(a, b);
+    if (springs->grain) ratio = fibre_ratio(a, b, ratio, springs->grain[s], in_plane);
+    return springs->rest[s] * ratio;
+}
+
+static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b,
+                                 float in_plane) {
     if (job->state->ablate.spring_flags[colour][s] & SINGE_ALIVE)
-        job->burn->spring_length[colour][s] = job->shell->springs[colour].rest[s] * length_ratio(a, b);
+        job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
 }
 
 /// The springs of a cell of which an end burns. One that lies in two cells is left to the first of them that sees an
@@ -45,14 +80,18 @@ static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool bu
     for (int i = 0; i < 4; i++) {
         uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
         int next = (i + 1) & 3;
-        if (centre_burns | burns[i]) shrink_spring(job, SINGE_RED, springs->red[i], centre, corner[i]);
+        if (centre_burns | burns[i]) {
+            uint32_t s = springs->red[i];
+            float in_plane = red_in_plane(&shell->matter, &shell->springs[SINGE_RED], s, shell_centre(shell, cell));
+            shrink_spring(job, SINGE_RED, s, centre, corner[i], in_plane);
+        }
         if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
-            shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next]);
+            shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
         if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))
-            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, mass, beyond));
+            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, mass, beyond), 1);
     }
     for (int i = 0; i < 2; i++)
-        if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2]);
+        if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
 }
 
 static void shrink_cells(void *context, int begin, int end) {
@@ -76,9 +115,13 @@ void burn_restore_lengths(const Shell *shell, const State *state, BurnState *bur
         const SpringSet *springs = &shell->springs[colour];
         for (uint32_t s = 0; s < springs->count; s++) {
             if (!(state->ablate.spring_flags[colour][s] & SINGE_ALIVE)) continue;
-            SpringEnd a = spring_end(&shell->matter, burn->mass, springs->ends[s][0]);
-            SpringEnd b = spring_end(&shell->matter, burn->mass, springs->ends[s][1]);
-            burn->spring_length[colour][s] = springs->rest[s] * length_ratio(a, b);
+            uint32_t first = springs->ends[s][0], second = springs->ends[s][1];
+            SpringEnd a = spring_end(&shell->matter, burn->mass, first);
+            SpringEnd b = spring_end(&shell->matter, burn->mass, second);
+            float in_plane = 1;
+            if (colour == SINGE_RED) // a centre comes after all vertices
+                in_plane = red_in_plane(&shell->matter, springs, s, first > second ? first : second);
+            burn->spring_length[colour][s] = target_length(springs, s, a, b, in_plane);
         }
     }
 }

@@ -9,6 +9,7 @@
 // the opposite side of the cell, a red one at the centre into that of the opposite corner, and at a vertex
 // each into the one opposite in the fan of cells, where there is one.
 #include "shell/family.h"
+#include "shell/fibre.h"
 #include "shell/half_edge.h"
 #include "shell/matter.h"
 #include "shell/measure.h"
@@ -267,6 +268,9 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
         matter_weigh(shell, sources);
         result = measure_springs(shell, error);
     }
+    if (result == SINGE_OK && !fibre_measure(memory, shell))
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
+                           shell->cell_count);
     if (result != SINGE_OK) shell_free(memory, shell);
     return result;
 }

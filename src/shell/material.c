@@ -32,6 +32,8 @@ typedef struct ParamRule {
 #define NOT_NEGATIVE 0, INFINITY, false, true, "0 or more"
 #define BELOW_ONE 0, 1, false, true, "from 0 to below 1"
 #define UP_TO_TWO 0, 2, false, false, "from 0 to 2"
+#define FINITE -INFINITY, INFINITY, true, true, "finite"
+#define TENTH_TO_TEN 0.1f, 10, false, false, "from 0.1 to 10"
 #define UP_TO_ONE 0, 1, false, false, "from 0 to 1"
 #define SHARE_ABOVE_ZERO 0, 1, true, false, "above 0, to 1"
 
@@ -54,8 +56,10 @@ static const ParamRule param_rules[] = {
     {FIELD(mass_min), PARAM_MASS_MIN, AT_BOTH, BELOW_ONE},
     {FIELD(mass_loss), PARAM_MASS_LOSS, AT_BOTH, BELOW_ONE},
     {FIELD(ash_density), PARAM_ASH_DENSITY, AT_BOTH, POSITIVE},
-    {FIELD(shrink_front), PARAM_SHRINK, AT_VERTICES, UP_TO_TWO},
-    {FIELD(shrink_back), PARAM_SHRINK, AT_CENTRES, UP_TO_TWO},
+    {FIELD(shrink_front), PARAM_SHRINK, AT_CENTRES, UP_TO_TWO},
+    {FIELD(shrink_back), PARAM_SHRINK, AT_VERTICES, UP_TO_TWO},
+    {FIELD(fibre_angle), PARAM_FIBRE_ANGLE, AT_BOTH, FINITE},
+    {FIELD(fibre_shrink), PARAM_FIBRE_SHRINK, AT_BOTH, TENTH_TO_TEN},
     {FIELD(weight[SINGE_RED]), PARAM_WEIGHT + SINGE_RED, AT_BOTH, UP_TO_ONE},
     {FIELD(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, AT_BOTH, UP_TO_ONE},
     {FIELD(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, AT_BOTH, UP_TO_ONE},

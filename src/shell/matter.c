@@ -35,6 +35,8 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_MASS_LOSS] = &matter->mass_loss,
         [PARAM_ASH_DENSITY] = &matter->ash_density,
         [PARAM_SHRINK] = &matter->shrink,
+        [PARAM_FIBRE_ANGLE] = &matter->fibre_angle,
+        [PARAM_FIBRE_SHRINK] = &matter->fibre_shrink,
         [PARAM_LAYER_EXCHANGE] = &matter->layer_exchange,
         [PARAM_CONVECTION] = &matter->convection,
         [PARAM_EMISSIVITY] = &matter->emissivity,

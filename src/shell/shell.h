@@ -20,6 +20,7 @@ typedef struct SpringSet {
     uint32_t count;
     uint32_t (*ends)[2];
     float *rest; ///< m, initial length
+    float *grain; ///< cos 2(angle to the fibres) times the square of its share in the sheet; NULL without fibres
     uint32_t strand_count;
     uint32_t *strand_first;
     uint8_t *strand_ring; ///< 1 where the strand is a ring
@@ -59,6 +60,8 @@ typedef struct Matter {
     Field mass_loss;
     Field ash_density;
     Field shrink;              ///< of its own layer
+    Field fibre_angle;         ///< rad
+    Field fibre_shrink;        ///< across over along
     Field weight[SINGE_COLOUR_COUNT];
     Field compliance[SINGE_COLOUR_COUNT]; ///< m/N
     Field char_weight;
@@ -98,7 +101,8 @@ typedef struct Shell {
 typedef enum ShellParam {
     PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEAT_OF_COMBUSTION,
     PARAM_HEAT_SHARE, PARAM_MASS_RATE, PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY,
-    PARAM_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE, PARAM_CONVECTION, PARAM_EMISSIVITY,
+    PARAM_SHRINK, PARAM_FIBRE_ANGLE, PARAM_FIBRE_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE,
+    PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four

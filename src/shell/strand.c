@@ -199,6 +199,7 @@ SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSpr
 void strand_free(Memory *memory, SpringSet *set) {
     FREE(memory, set->ends, set->count);
     FREE(memory, set->rest, set->count);
+    FREE(memory, set->grain, set->count);
     FREE(memory, set->strand_first, (size_t)set->strand_count + 1);
     FREE(memory, set->strand_ring, set->strand_count);
     FREE(memory, set->family_first, (size_t)set->family_count + 1);

@@ -34,6 +34,8 @@ static SingeMaterialDef standard_material(void) {
         .ash_density = singe_param(0.3f),
         .shrink_front = singe_param(0.5f),
         .shrink_back = singe_param(0.5f),
+        .fibre_angle = singe_param(0),
+        .fibre_shrink = singe_param(1),
         .ablate = true,
         .char_weight = singe_param(0.4f),
         .drag = singe_param(1.3f),

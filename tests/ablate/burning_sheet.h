@@ -35,6 +35,7 @@ static inline SingeMaterialDef plain_material(void) {
     material.temperature = singe_param(300);
     material.ash_density = singe_param(1);
     material.shrink_front = material.shrink_back = singe_param(1);
+    material.fibre_shrink = singe_param(1);
     return material;
 }
 

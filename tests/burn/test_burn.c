@@ -220,7 +220,7 @@ static void all_colours_shrink_and_do_not_compound(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     material.ash_density = singe_param(0.3f);
-    material.shrink_back = singe_param(0.5f);
+    material.shrink_front = singe_param(0.5f);
     BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 400 + 10 * (float)i;
     b->state.ablate.spring_flags[SINGE_RED][7] = 0;
@@ -238,6 +238,43 @@ static void all_colours_shrink_and_do_not_compound(void **unused) {
             if (colour == SINGE_RED && s == 7) expected = 1;
             assert_float_equal((double)b->state.burn.spring_length[colour][s] / rest, expected, 2e-6);
         }
+    burning_sheet_free(b);
+}
+
+/// Where a stretched plane takes the way d: l_along and l_across the fibres at `angle`, l_up along z.
+static double stretched_length(const double *d, double angle, double l_along, double l_across, double l_up) {
+    double along = cos(angle) * d[0] + sin(angle) * d[1], across = cos(angle) * d[1] - sin(angle) * d[0];
+    return sqrt(pow(l_along * along, 2) + pow(l_across * across, 2) + pow(l_up * d[2], 2));
+}
+
+/// Across fibres a sheet shrinks q times as much as along them, and all springs of all colours measure one plane.
+static void fibres_turn_shrinkage(void **unused) {
+    (void)unused;
+    const double q = 2.5, angles[] = {0, 0.3, 1.2, -0.7};
+    for (int k = 0; k < 4; k++) {
+        SingeMaterialDef material = plain_material();
+        material.fibre_angle = singe_param((float)angles[k]);
+        material.fibre_shrink = singe_param((float)q);
+        BurningSheet *b = burning_sheet(5, 4, 0.01f, &material);
+        for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 800;
+        assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
+        const double even = (double)b->state.burn.mass[0], stretch = (1 - even) * (q - 1) / (q + 1);
+        assert_float_equal(even, 0.7, 1e-6);
+        for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+            for (uint32_t s = 0; s < b->shell.springs[colour].count; s++) {
+                const uint32_t *ends = b->shell.springs[colour].ends[s];
+                double d[3];
+                for (int axis = 0; axis < 3; axis++)
+                    d[axis] = (double)b->shell.rest_position[ends[1]][axis] - (double)b->shell.rest_position[ends[0]][axis];
+                double expected = stretched_length(d, angles[k], even + stretch, even - stretch, even);
+                assert_float_equal((double)b->state.burn.spring_length[colour][s], expected, 1e-7);
+            }
+        burning_sheet_free(b);
+    }
+    SingeMaterialDef even = plain_material();
+    even.fibre_shrink = singe_param(1);
+    BurningSheet *b = burning_sheet(2, 2, 0.01f, &even);
+    assert_null(b->shell.springs[SINGE_BLUE].grain); // no room taken where there is no direction
     burning_sheet_free(b);
 }
 
@@ -320,6 +357,7 @@ int main(void) {
         cmocka_unit_test(burnt_when_mass_is_below_loss),
         cmocka_unit_test(springs_shrink_by_eq_6),
         cmocka_unit_test(all_colours_shrink_and_do_not_compound),
+        cmocka_unit_test(fibres_turn_shrinkage),
         cmocka_unit_test(bad_mass_is_named),
         cmocka_unit_test(mass_ledger_closes),
         cmocka_unit_test(threads_change_nothing),

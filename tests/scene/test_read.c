@@ -112,8 +112,9 @@ static void test_all_vary(void **state) {
             char set[128];
             const char *sets[] = {set};
             float from = strcmp(place.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
-            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g, to: %g, %s}", place.key, (double)from,
-                     (double)to, fields[f]);
+            const char *unit = strcmp(place.key, "fibre_angle") ? "" : " rad"; // a bare angle is degrees
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", place.key, (double)from, unit,
+                     (double)to, unit, fields[f]);
             Scene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;

@@ -53,7 +53,7 @@ static void refuse(const SingeSheetDef *def, int64_t element, const char *says) 
 
 #define AT(member) offsetof(SingeMaterialDef, member)
 
-enum { ABOVE_0, FROM_0, TO_1, BELOW_1, TO_2, OVER_0_TO_1, ABOVE_0_OR_INFINITE };
+enum { ABOVE_0, FROM_0, TO_1, BELOW_1, TO_2, OVER_0_TO_1, ABOVE_0_OR_INFINITE, ANY_FINITE, TENTH_TO_10 };
 enum { CORNERS = 1, CENTRES = 2, BOTH = 3 };
 
 /// Every parameter that may vary, where it is evaluated and what it may be.
@@ -79,8 +79,10 @@ static const struct {
     {AT(mass_min), PARAM_MASS_MIN, BOTH, BELOW_1},
     {AT(mass_loss), PARAM_MASS_LOSS, BOTH, BELOW_1},
     {AT(ash_density), PARAM_ASH_DENSITY, BOTH, ABOVE_0},
-    {AT(shrink_front), PARAM_SHRINK, CORNERS, TO_2},
-    {AT(shrink_back), PARAM_SHRINK, CENTRES, TO_2},
+    {AT(shrink_front), PARAM_SHRINK, CENTRES, TO_2},
+    {AT(shrink_back), PARAM_SHRINK, CORNERS, TO_2},
+    {AT(fibre_angle), PARAM_FIBRE_ANGLE, BOTH, ANY_FINITE},
+    {AT(fibre_shrink), PARAM_FIBRE_SHRINK, BOTH, TENTH_TO_10},
     {AT(weight[SINGE_RED]), PARAM_WEIGHT + SINGE_RED, BOTH, TO_1},
     {AT(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, BOTH, TO_1},
     {AT(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, BOTH, TO_1},
@@ -158,7 +160,7 @@ static void test_numbers(void **state) {
                 assert_true(field_at(fields[k], p) == 0.01f * (float)(k + 1));
         assert_true(field_at(matter->heating, p) == share * heat / m->specific_heat.value);
         assert_true(field_at(matter->gas_heat, p) == heat * (1 - share));
-        assert_true(field_at(matter->shrink, p) == (p < 9 ? 1.25f : 0.75f));
+        assert_true(field_at(matter->shrink, p) == (p < 9 ? 0.75f : 1.25f));
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->weight[k], p) == 0.5f + 0.1f * (float)k);
         for (int k = 0; k < 8; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
@@ -412,10 +414,12 @@ static void test_ranges(void **state) {
     (void)state;
     static const float good[][2] = {[ABOVE_0] = {1e-6f, 1e6f}, [FROM_0] = {0, 1e6f}, [TO_1] = {0, 1},
                                     [BELOW_1] = {0, 0.999f}, [TO_2] = {0, 2}, [OVER_0_TO_1] = {1e-6f, 1},
-                                    [ABOVE_0_OR_INFINITE] = {1e-6f, INFINITY}};
+                                    [ABOVE_0_OR_INFINITE] = {1e-6f, INFINITY},
+                                    [ANY_FINITE] = {-1e6f, 1e6f}, [TENTH_TO_10] = {0.1f, 10}};
     static const float bad[][2] = {[ABOVE_0] = {0, -1}, [FROM_0] = {-1e-6f, -INFINITY}, [TO_1] = {-1e-6f, 1.0001f},
                                    [BELOW_1] = {-1e-6f, 1}, [TO_2] = {-1e-6f, 2.0001f}, [OVER_0_TO_1] = {0, 1.01f},
-                                   [ABOVE_0_OR_INFINITE] = {0, -INFINITY}};
+                                   [ABOVE_0_OR_INFINITE] = {0, -INFINITY},
+                                   [ANY_FINITE] = {-INFINITY, INFINITY}, [TENTH_TO_10] = {0.09f, 10.1f}};
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     for (int i = 0; i < VARYING; i++) {

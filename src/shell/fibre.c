@@ -1,0 +1,71 @@
+// How the springs lie to the fibres. A fibre runs at `fibre_angle` phi from e1, the direction of growing u in the
+// cell's tangent plane (its first side where uv says nothing), towards e2 = n x e1. A spring along d has
+//
+//   grain = [(x^2 - y^2) cos 2 phi + 2 x y sin 2 phi] / |d|^2,   x = d . e1,   y = d . e2
+//
+// which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring that leaves it. A spring of
+// two cells has the mean of both.
+#include "shell/fibre.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+
+typedef struct FibreFrame {
+    Vec e1, e2;
+    float cosine, sine; ///< of 2 phi
+} FibreFrame;
+
+/// The direction in which u grows where v does not; the first side where there is none.
+static Vec fibre_along_u(const Shell *shell, const uint32_t *corner, Vec a, Vec b) {
+    float da[2], db[2];
+    for (int k = 0; k < 2; k++) {
+        da[k] = shell->uv[corner[2]][k] - shell->uv[corner[0]][k];
+        db[k] = shell->uv[corner[3]][k] - shell->uv[corner[1]][k];
+    }
+    float turn = da[0] * db[1] - db[0] * da[1];
+    if (turn == 0) return vec_sub(vec_load(shell->rest_position[corner[1]]), vec_load(shell->rest_position[corner[0]]));
+    Vec along = vec_sub(vec_scale(a, db[1]), vec_scale(b, da[1]));
+    return turn > 0 ? along : vec_scale(along, -1);
+}
+
+static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
+    const uint32_t *corner = shell->cells[cell];
+    Vec p[4];
+    for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
+    Vec a = vec_sub(p[2], p[0]), b = vec_sub(p[3], p[1]), normal = vec_unit(vec_cross(a, b));
+    Vec along = fibre_along_u(shell, corner, a, b);
+    Vec e1 = vec_unit(vec_mad(along, normal, -vec_dot(along, normal)));
+    float angle = field_at(shell->matter.fibre_angle, shell_centre(shell, cell));
+    return (FibreFrame){e1, vec_cross(normal, e1), cosf(2 * angle), sinf(2 * angle)};
+}
+
+/// Adds `share` of a cell's view of a spring.
+static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour, uint32_t spring, float share) {
+    SpringSet *set = &shell->springs[colour];
+    const uint32_t *ends = set->ends[spring];
+    Vec d = vec_sub(vec_load(shell->rest_position[ends[1]]), vec_load(shell->rest_position[ends[0]]));
+    float x = vec_dot(d, frame->e1), y = vec_dot(d, frame->e2), square = vec_dot(d, d);
+    set->grain[spring] += share * ((x * x - y * y) * frame->cosine + 2 * x * y * frame->sine) / square;
+}
+
+static void fibre_cell(Shell *shell, uint32_t cell) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    FibreFrame frame = fibre_frame(shell, cell);
+    for (int i = 0; i < 4; i++) {
+        bool alone = springs->green[i] == SHELL_NONE;
+        fibre_add(shell, &frame, SINGE_RED, springs->red[i], 1);
+        fibre_add(shell, &frame, SINGE_BLUE, springs->blue[i], alone ? 1 : 0.5f);
+        if (!alone) fibre_add(shell, &frame, SINGE_GREEN, springs->green[i], 0.5f);
+    }
+    for (int i = 0; i < 2; i++) fibre_add(shell, &frame, SINGE_YELLOW, springs->yellow[i], 1);
+}
+
+bool fibre_measure(Memory *memory, Shell *shell) {
+    const Field ratio = shell->matter.fibre_shrink;
+    if (ratio.mask == 0 && field_at(ratio, 0) == 1) return true;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        if (!NEW(memory, shell->springs[colour].grain, shell->springs[colour].count)) return false;
+    for (uint32_t c = 0; c < shell->cell_count; c++) fibre_cell(shell, c);
+    return true;
+}
