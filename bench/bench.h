@@ -36,5 +36,7 @@ BenchFn bench_width;
 BenchFn bench_stability;
 /// How much the look hangs on time step, substeps and resolution.
 BenchFn bench_look;
+/// The spectrum of the wrinkles of a burning edge, and how much its peak hangs on time step and resolution.
+BenchFn bench_spectrum;
 
 #endif

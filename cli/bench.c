@@ -56,6 +56,10 @@ static const struct {
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
          BENCH_BIT(QUICK) | SOLVER | OUTPUT,
      "Rest shape, sag and wrinkles at other time steps, substeps and resolutions."},
+    {"spectrum", "bench spectrum", bench_spectrum,
+     BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
+         BENCH_BIT(SUBSTEPS) | OUTPUT,
+     "Wrinkles of a burning edge by wavelength, and their peak at other time steps, resolutions and thickness."},
 };
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };

@@ -353,8 +353,9 @@ static const SchemaRow solver_rows[] = {
     {"method", ROW_ENUM, DIM_NONE, AT(SingeSolverDef, method), .names = method_names,
      .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; all "
             "colours in one system; or Hooke's law. The defaults below are those of `strand`"},
-    {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(1, 1000),
-     .doc = "parts of a step; firm, thick sheets of small cells need more ([equations.md](equations.md#firmness))"},
+    {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(0, 1000),
+     .doc = "parts of a step; firm, thick sheets of small cells need more ([equations.md](equations.md#firmness)); 0: "
+            "as many as these need, by their red compliance"},
     {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
      .doc = "of all colours, a substep"},
     {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),

@@ -298,7 +298,7 @@ typedef enum SingeSolverMethod {
 typedef struct SingeSolverDef {
     size_t struct_size;
     SingeSolverMethod method;
-    int substeps;                              ///< per step, 1 to 1000
+    int substeps; ///< per step, 1 to 1000, or 0 for the least with which red springs are as firm as they should be
     int projections;                           ///< of all colours, per substep, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; > 0

@@ -3,6 +3,7 @@
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
 #include "base/clock.h"
+#include "dynamics/firmness.h"
 #include "dynamics/paper.h"
 #include "dynamics/plan.h"
 
@@ -27,13 +28,17 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     DynamicsPlan *plan = memory_new(memory, 1, sizeof *plan);
     if (!plan) return SINGE_ERROR_MEMORY;
     plan->settings = *settings;
+    SingeSolverDef *solver = &plan->settings.solver;
+    if (solver->substeps == 0)
+        solver->substeps = firmness_substeps(shell, settings->time_step, solver->regularisation[SINGE_RED]);
+    float h_sub = settings->time_step / (float)solver->substeps;
     plan->particle_count = shell->particle_count;
     plan->cell_count = shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         plan->spring_count[colour] = shell->springs[colour].count;
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
-        !strands_create(memory, shell, settings->thread_count, plan->kernels->solve, &plan->strands) ||
+        !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
         !attach_create(memory, shell, &plan->attachments) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
@@ -42,6 +47,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     *out = plan;
     return SINGE_OK;
 }
+
+int dynamics_plan_substeps(const DynamicsPlan *plan) { return plan->settings.solver.substeps; }
 
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;

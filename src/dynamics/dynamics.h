@@ -12,7 +12,8 @@
 typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
-    SingeSolverDef solver;
+    SingeSolverDef solver;   ///< substeps 0: as many as the sheets' firmness needs
+    float time_step;         ///< s
     SingeInstructions instructions;
     int thread_count; ///< that may work at once
 } DynamicsSettings;
@@ -25,6 +26,9 @@ typedef struct DynamicsPlan DynamicsPlan;
 SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const DynamicsSettings *settings,
                                  DynamicsPlan **plan);
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan);
+
+/// Substeps in a step.
+int dynamics_plan_substeps(const DynamicsPlan *plan);
 
 /// What the plan remembers of earlier steps, as part of a snapshot.
 void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream);

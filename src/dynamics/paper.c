@@ -6,6 +6,7 @@
 #include "dynamics/paper.h"
 
 #include "base/clock.h"
+#include "dynamics/firmness.h"
 
 /// A system of n rows takes some hundreds of iterations at most; a singular one would take for ever.
 enum { PAPER_ITERATIONS = 5000 };
@@ -123,7 +124,8 @@ static void paper_fill_particles(void *task, int begin, int end) {
 
 static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
-    const Field compliance = job->shell->matter.compliance[job->colour];
+    Firmness firmness;
+    firmness_begin(job->shell, job->colour, 0, 0, &firmness);
     const float *length = job->state->burn.spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
@@ -131,7 +133,7 @@ static void paper_fill_springs(void *task, int begin, int end) {
         uint32_t spring = job->paper->order[job->colour][k], row = job->offset + k;
         const uint32_t *ends = job->group->ends[row];
         job->group->length[row] = (double)length[spring];
-        job->group->compliance[row] = 0.5 * ((double)field_at(compliance, ends[0]) + (double)field_at(compliance, ends[1]));
+        job->group->compliance[row] = (double)firmness_compliance(&firmness, spring);
         bool alive = flags[spring] & SINGE_ALIVE;
         job->group->weight[row] = alive ? (double)dynamics_weight(material, job->plan->soft, ends[0], ends[1]) : 0;
     }

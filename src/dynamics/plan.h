@@ -36,7 +36,9 @@ typedef struct Strands {
     _Atomic uint64_t taken;
 } Strands;
 
-bool strands_create(Memory *memory, const Shell *shell, int room_count, StrandSolve *solve, Strands *strands);
+/// For substeps of h seconds.
+bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *solver, float h, int room_count,
+                    StrandSolve *solve, Strands *strands);
 void strands_free(Memory *memory, Strands *strands);
 
 typedef struct Paper Paper;

@@ -1,6 +1,7 @@
 // Projection of one colour: the groups of a family side by side, family after family. Families follow each other as
 // in block Gauss-Seidel; groups of a family share no particle, so that their order and the number of threads do not
 // matter.
+#include "dynamics/firmness.h"
 #include "dynamics/plan.h"
 
 #include <sched.h>
@@ -16,26 +17,28 @@ static size_t keep_floats(const Strands *strands) {
 /// beside each other do without the nodes.
 enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
-static void strands_comply(const Shell *shell, int colour, StrandSet *set) {
+static void strands_comply(const Shell *shell, SingeColour colour, float h, float regularisation, StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
-    const Field compliance = shell->matter.compliance[colour];
+    Firmness firmness;
+    firmness_begin(shell, colour, h, regularisation, &firmness);
     set->compliance_all = 0;
     for (uint32_t s = 0; s < set->strand_count; s++) {
         float *slot = set->compliance + set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
-            *slot = 0.5f * (field_at(compliance, springs->ends[k][0]) + field_at(compliance, springs->ends[k][1]));
+            *slot = firmness_compliance(&firmness, k);
             if (s == 0 && k == 0) set->compliance_all = *slot;
             if (*slot != set->compliance_all) set->compliance_all = -1;
         }
     }
 }
 
-bool strands_create(Memory *memory, const Shell *shell, int room_count, StrandSolve *solve, Strands *strands) {
+bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *solver, float h, int room_count,
+                    StrandSolve *solve, Strands *strands) {
     *strands = (Strands){.solve = solve, .room_count = room_count};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         StrandSet *set = &strands->sets[colour];
         if (!strand_set_create(memory, &shell->springs[colour], shell->particle_count, set)) return false;
-        strands_comply(shell, colour, set);
+        strands_comply(shell, (SingeColour)colour, h, solver->regularisation[colour], set);
         if (strands->longest < set->longest) strands->longest = set->longest;
     }
     return NEW(memory, strands->keep, keep_floats(strands) * (size_t)room_count) != NULL;

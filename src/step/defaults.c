@@ -14,7 +14,7 @@ static SingeMaterialDef standard_material(void) {
         .grammage = singe_param(0.080f),
         .reference_grammage = 0.080f,
         .specific_heat = singe_param(1400),
-        .thickness = singe_param(1e-3f),
+        .thickness = singe_param(1.5e-3f),
         .heat_operator = SINGE_HEAT_SURFACE,
         .diffusivity = singe_param(3.4e-6f),
         .layer_exchange = singe_param(36),
@@ -32,10 +32,11 @@ static SingeMaterialDef standard_material(void) {
         .mass_min = singe_param(0.15f),
         .mass_loss = singe_param(0.25f),
         .ash_density = singe_param(0.3f),
-        .shrink_front = singe_param(0.5f),
-        .shrink_back = singe_param(0.5f),
-        .fibre_angle = singe_param(0),
-        .fibre_shrink = singe_param(1),
+        // the front shrinks more in patches of a centimetre: fine wrinkles, and curl towards the front
+        .shrink_front = {.value = 0.1f, .to = 0.9f, .field = SINGE_FIELD_NOISE, .noise = {0.008f, 2, 2}},
+        .shrink_back = singe_param(0.3f),
+        .fibre_angle = singe_param(0.4363f), // 25 degrees
+        .fibre_shrink = singe_param(2),
         .ablate = true,
         .char_weight = singe_param(0.4f),
         .drag = singe_param(1.3f),
@@ -45,9 +46,9 @@ static SingeMaterialDef standard_material(void) {
         def.weight[colour] = singe_param(1);
         def.compliance[colour] = singe_param(0);
     }
-    def.compliance[SINGE_RED] = singe_param(0.1f);
-    def.compliance[SINGE_GREEN] = singe_param(1);
-    def.compliance[SINGE_YELLOW] = singe_param(0.2f);
+    def.compliance[SINGE_RED] = singe_param(0.4f);
+    def.compliance[SINGE_GREEN] = singe_param(0.045f);
+    def.compliance[SINGE_YELLOW] = singe_param(0.02f);
     return def;
 }
 
@@ -96,7 +97,7 @@ static SingeSolverDef standard_solver(void) {
         .substeps = 3,
         .projections = 1,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
-        .regularisation = {[SINGE_RED] = 0.1f, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
+        .regularisation = {[SINGE_RED] = 1, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
         .attachments = true,
         .early_exit = true,
         .tolerance = 1e-7f,

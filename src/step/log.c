@@ -23,7 +23,7 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
     const Sheet *sheet = &sim->shell.sheets[index];
     sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", index,
             1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
-    float h = def->time_step / (float)def->solver.substeps;
+    float h = def->time_step / (float)dynamics_plan_substeps(sim->dynamics);
     float gravity = vec_length(vec_load(def->gravity));
     if (gravity * h * h > fall_most * sheet->cell_size)
         sim_log(sim, SINGE_LOG_WARNING,
@@ -37,10 +37,15 @@ static void sim_log_solver(const SingeSim *sim) {
     const SingeSolverDef *solver = &sim->def.solver;
     double tolerance = (double)solver->tolerance;
     const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
-    if (solver->method == SINGE_SOLVER_STRAND) return;
+    if (solver->method == SINGE_SOLVER_STRAND) {
+        if (solver->substeps == 0)
+            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' firmness",
+                    dynamics_plan_substeps(sim->dynamics));
+        return;
+    }
     if (solver->method == SINGE_SOLVER_MASS_SPRING) {
         sim_log(sim, SINGE_LOG_INFO, "solver: mass-spring, %g N/m, %d substeps", (double)solver->stiffness,
-                solver->substeps);
+                dynamics_plan_substeps(sim->dynamics));
     } else if (solver->early_exit) {
         sim_log(sim, SINGE_LOG_INFO,
                 "solver: up to %d projections a substep, ending when no %s has an error above %g of its lengths; "

@@ -19,7 +19,8 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
     if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
     if (!in_range(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
     if (!in_range(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
-    if (solver->substeps < 1 || solver->substeps > 1000) return "solver.substeps must be between 1 and 1000";
+    if (solver->substeps < 0 || solver->substeps > 1000)
+        return "solver.substeps must be between 1 and 1000, or 0 for as many as firmness needs";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
@@ -203,6 +204,7 @@ SingeResult sim_build(SingeSim *sim) {
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,
+                                 .time_step = def->time_step,
                                  .instructions = def->instructions,
                                  .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
     bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;

@@ -1,8 +1,9 @@
 // Bending by compliance: a strip that is clamped at one end sags as a plate of the stiffness D = t^2/c_green does,
 //
-//   w = rho g l^4 / (8 D)
+//   w = rho g l^4 / (8 D) + rho g l^2 / (2 S)
 //
-// for small w: rho the mass per area, l the free length.
+// for small w: rho the mass per area, l the free length, S = 1/c_red the stiffness of transverse shear, which no more
+// than D may hang on cells and substeps.
 #include "support/support.h"
 
 #include <math.h>
@@ -23,8 +24,8 @@ static void clamp(SingeSim *sim, float cell) {
     test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
 }
 
-/// m, of the middle of the free end after two seconds, of a strip of stiffness D in N m.
-static double sag(float cell, double stiffness, int substeps) {
+/// m, of the middle of the free end after two seconds, of a strip of stiffness D in N m whose shear gives 1/S in m/N.
+static double sag(float cell, double stiffness, double give, int substeps) {
     SingeSimDef def = singe_default_sim();
     def.solver.substeps = substeps;
     def.solver.smoothing = def.solver.height_min = 0;
@@ -35,6 +36,7 @@ static double sag(float cell, double stiffness, int substeps) {
     material.drag = singe_param(0), material.damping = singe_param(5);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.compliance[c] = singe_param(0);
     material.compliance[SINGE_GREEN] = singe_param((float)((double)(thickness * thickness) / stiffness));
+    material.compliance[SINGE_RED] = singe_param((float)give);
     uint32_t nx = (uint32_t)lroundf(length / cell), ny = (uint32_t)lroundf(width / cell);
     SingeSim *sim = test_sim(&def, test_grid(nx, ny, cell, cell), &material);
     clamp(sim, cell);
@@ -44,17 +46,34 @@ static double sag(float cell, double stiffness, int substeps) {
     return -z;
 }
 
-static double plate(double stiffness) { return 0.08 * 9.81 * pow((double)(length - clamped), 4) / (8 * stiffness); }
+static double plate(double stiffness, double give) {
+    double l = (double)(length - clamped), weight = 0.08 * 9.81;
+    return weight * pow(l, 4) / (8 * stiffness) + weight * l * l / 2 * give;
+}
 
 static void cantilever(void **unused) {
     (void)unused;
-    const double stiffness = 1e-3, expected = plate(stiffness);
+    const double stiffness = 1e-3, expected = plate(stiffness, 0);
     for (float cell = 0.005f; cell > 0.002f; cell /= 2) {
-        double w = sag(cell, stiffness, 12);
+        double w = sag(cell, stiffness, 0, 12);
         print_message("cells of %.1f mm: sags by %.2f mm, a plate by %.2f\n", 1e3 * (double)cell, 1e3 * w,
                       1e3 * expected);
         assert_true(fabs(w / expected - 1) < 0.15);
     }
+}
+
+/// Firm in bending and soft in shear, at the least number of substeps that the solver finds itself and at more.
+static void shear(void **unused) {
+    (void)unused;
+    const double stiffness = 1e-3, give = 0.4;
+    const double expected = plate(stiffness, give);
+    for (float cell = 0.005f; cell > 0.002f; cell /= 2)
+        for (int substeps = 0; substeps <= 24; substeps += 12) {
+            double w = sag(cell, stiffness, give, substeps);
+            print_message("cells of %.1f mm, %2d substeps: sags by %.2f mm, a plate by %.2f\n", 1e3 * (double)cell,
+                          substeps, 1e3 * w, 1e3 * expected);
+            assert_true(fabs(w / expected - 1) < 0.15);
+        }
 }
 
 /// The table of docs/equations.md, Firmness.
@@ -64,7 +83,7 @@ static int print_table(void) {
     for (int d = 0; d < 2; d++)
         for (int k = 0; k < 6; k++)
             printf("D %.2g N m, %2d substeps: %.1f mm, a plate by %.2f\n", stiffnesses[d], substeps[k],
-                   1e3 * sag(0.005f, stiffnesses[d], substeps[k]), 1e3 * plate(stiffnesses[d]));
+                   1e3 * sag(0.005f, stiffnesses[d], 0, substeps[k]), 1e3 * plate(stiffnesses[d], 0));
     return 0;
 }
 
@@ -72,6 +91,6 @@ static int print_table(void) {
 int main(int argc, char **argv) {
     (void)argv;
     if (argc > 1) return print_table();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cantilever)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cantilever), cmocka_unit_test(shear)};
     return cmocka_run_group_tests_name("bending", tests, NULL, NULL);
 }

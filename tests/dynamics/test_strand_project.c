@@ -47,7 +47,10 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     static double a[N_MAX][N_MAX], b[N_MAX], u[N_MAX][3], stretch[N_MAX];
     const float *w = bench->plan->inverse_mass;
     double relative = (double)bench->settings.solver.regularisation[colour];
-    double compliance = (double)singe_default_material().compliance[colour].value;
+    const SingeMaterialDef material = singe_default_material();
+    double compliance = (double)material.compliance[colour].value;
+    double t = (double)material.thickness.value, s = (double)bench->shell.sheets[0].cell_size;
+    if (colour == SINGE_RED) compliance *= t * t / (s * s / 2 + t * t); // no step, so all of it
     for (int k = 0; k < n; k++) {
         const uint32_t *e = set->ends[first + (uint32_t)k];
         double l = (double)bench->state.burn.spring_length[colour][first + (uint32_t)k], length = 0;

@@ -42,7 +42,7 @@ static void bad_simulations(void **state) {
     SIM_BAD(wind.gust_time, 0, "gust_time");
     SIM_BAD(wind.gust_size, 0, "gust_size");
     SIM_BAD(wind.velocity[0], NAN, "velocity");
-    SIM_BAD(solver.substeps, 0, "substeps");
+    SIM_BAD(solver.substeps, -1, "substeps");
     SIM_BAD(solver.substeps, 1001, "substeps");
     SIM_BAD(solver.order[0], SINGE_RED, "order");
     SIM_BAD(solver.order[3], (SingeColour)4, "order");
