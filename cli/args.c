@@ -1,6 +1,7 @@
 #include "cli/args.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,5 +165,23 @@ bool args_int(const ArgReader *reader, int option, const char *text, int low, in
     }
     args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'",
                   reader->command->options[option].name, low, high, text);
+    return false;
+}
+
+bool args_span(const ArgReader *reader, int option, const char *text, int *first, int *last) {
+    char *end;
+    errno = 0;
+    long a = strtol(text, &end, 10), b = a;
+    bool good = errno == 0 && end != text;
+    if (good && *end == '-') {
+        const char *second = end + 1;
+        b = strtol(second, &end, 10);
+        good = errno == 0 && end != second;
+    }
+    if (good && *end == 0 && a >= 1 && a <= b && b <= INT_MAX) {
+        *first = (int)a, *last = (int)b;
+        return true;
+    }
+    args_complain(reader, "--%s: expected A-B with 1 <= A <= B, got '%s'", reader->command->options[option].name, text);
     return false;
 }

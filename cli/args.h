@@ -43,6 +43,9 @@ void args_help(const ArgCommand *command);
 /// Reads a whole number within [low, high], or prints what was expected of the option and returns false.
 bool args_int(const ArgReader *reader, int option, const char *text, int low, int high, int *number);
 
+/// Reads "A-B", or "A" for both, with 1 <= A <= B, or prints what was expected of the option and returns false.
+bool args_span(const ArgReader *reader, int option, const char *text, int *first, int *last);
+
 /// Prints "singe COMMAND: error: TEXT" and the hint to the help. Returns ARG_ERROR.
 int args_complain(const ArgReader *reader, const char *format, ...)
 #if defined(__GNUC__)

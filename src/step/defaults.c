@@ -14,7 +14,7 @@ static SingeMaterialDef standard_material(void) {
         .grammage = singe_param(0.080f),
         .reference_grammage = 0.080f,
         .specific_heat = singe_param(1400),
-        .thickness = singe_param(1.5e-3f),
+        .thickness = singe_param(1e-3f),
         .heat_operator = SINGE_HEAT_SURFACE,
         .diffusivity = singe_param(3.4e-6f),
         .layer_exchange = singe_param(36),
@@ -47,7 +47,7 @@ static SingeMaterialDef standard_material(void) {
         def.compliance[colour] = singe_param(0);
     }
     def.compliance[SINGE_RED] = singe_param(0.4f);
-    def.compliance[SINGE_GREEN] = singe_param(0.045f);
+    def.compliance[SINGE_GREEN] = singe_param(0.1f);
     def.compliance[SINGE_YELLOW] = singe_param(0.02f);
     return def;
 }

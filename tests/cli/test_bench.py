@@ -25,6 +25,7 @@ TINY = (
     ("--compare", ["--springs", "250", "--time", "0.1", "--quick"], ["ratio"]),
     ("width", ["--springs", "1000", "--steps", "5"], ["instructions", "bytes"]),
     ("stability", ["--cells", "8", "--quick", "--time", "0.1"], ["result", "max_strain_pct"]),
+    ("spectrum", ["--quick", "--time", "0.05", "--substeps", "2"], ["wavelength_mm", "base", "h_x_2", "s_div_2"]),
     ("look", ["--cells", "8", "--quick", "--time", "0.2"], ["sag_m", "shape_mm", "wavelength_mm"]),
 )
 

@@ -1,0 +1,345 @@
+// singe measure: what a cache looks like in numbers, frame by frame and as a whole.
+//
+// Jitter is what a vertex's velocity has that its way does not show: of vertices that never ignited, in three frames
+// dt apart,
+//
+//   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
+//
+// A smooth motion of frequency f leaves (2 pi f dt)^2/6 of its speed in j: 1 % at a hertz and 24 frames a second.
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/cli.h"
+#include "cli/console.h"
+#include "cli/folder.h"
+#include "cli/text.h"
+#include "cli/wrinkles.h"
+#include "formats/formats.h"
+
+enum { OPT_FRAMES, OPT_CSV, OPT_COUNT };
+
+static const ArgOption measure_options[OPT_COUNT] = {
+    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
+    [OPT_CSV] = {"csv", 0, "FILE", "writes the numbers of every frame to FILE, too"},
+};
+
+static const ArgCommand measure_command = {
+    "measure", "DIR", "Measures the shape of a cache: creases, wrinkles, jitter.", measure_options, OPT_COUNT,
+    "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
+
+/// A number of every frame, and how it is summed up.
+typedef enum Number { BIAS, BEND, BURNT, UNBURNT, RATIO, JITTER, NUMBERS } Number;
+
+static const struct {
+    const char *key, *title, *format;
+    bool more_is_worse;
+} numbers[NUMBERS] = {
+    [BIAS] = {"crease_axis_over_diagonal", "creases along axes over diagonals", "%.3f", true},
+    [BEND] = {"crease_bend_per_m", "bend of creases, 1/m", "%.2f", true},
+    [BURNT] = {"burnt_angle_deg", "normal at 3-15 mm where burnt, rms degrees", "%.3f", false},
+    [UNBURNT] = {"unburnt_angle_deg", "normal at 3-15 mm where not, rms degrees", "%.3f", true},
+    [RATIO] = {"burnt_over_unburnt_power", "power of the two, burnt over unburnt", "%.3g", false},
+    [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
+};
+
+/// Vertices of the input mesh that have not burnt, in one frame.
+typedef struct Moment {
+    double time;
+    uint32_t count;                     ///< room
+    float (*position)[3], (*velocity)[3];
+    bool *there;
+} Moment;
+
+typedef struct Measure {
+    Console console;
+    Folder folder;
+    const char *csv;
+    int first, last;          ///< frames; first 0: all
+    double (*rows)[NUMBERS];  ///< of every frame
+    double *times;
+    Wrinkles all;
+    Moment moments[3];        ///< this frame's at index frame mod 3
+} Measure;
+
+// ---- one frame
+
+static SingeResult read_frame(const Measure *measure, int frame, SingeSurface *surface, double *time,
+                              SingeError *error) {
+    Bytes bytes = {0};
+    char *path = folder_ply(&measure->folder, frame);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
+    if (!result) result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, surface, time, error);
+    bytes_free(&bytes);
+    free(path);
+    return result;
+}
+
+static void moment_free(Moment *moment) {
+    free(moment->position);
+    free(moment->velocity);
+    free(moment->there);
+    *moment = (Moment){0};
+}
+
+static bool moment_take(const SingeSurface *surface, double time, Moment *moment) {
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < surface->vertex_count; v++)
+        if (surface->source_vertex[v] >= 0 && (uint32_t)surface->source_vertex[v] >= count)
+            count = (uint32_t)surface->source_vertex[v] + 1;
+    moment_free(moment);
+    moment->position = malloc(((size_t)count + 1) * sizeof *moment->position);
+    moment->velocity = malloc(((size_t)count + 1) * sizeof *moment->velocity);
+    moment->there = calloc((size_t)count + 1, sizeof *moment->there);
+    moment->count = count, moment->time = time;
+    if (!moment->position || !moment->velocity || !moment->there) return false;
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        if (surface->source_vertex[v] < 0 || surface->time_ignited[v] >= 0) continue;
+        uint32_t i = (uint32_t)surface->source_vertex[v];
+        memcpy(moment->position[i], surface->position[v], sizeof moment->position[i]);
+        memcpy(moment->velocity[i], surface->velocity[v], sizeof moment->velocity[i]);
+        moment->there[i] = true;
+    }
+    return true;
+}
+
+/// m/s, root mean square; NaN where nothing is left of it.
+static double jitter(const Moment *before, const Moment *now, const Moment *after) {
+    double sum = 0, inverse = 1 / (after->time - before->time);
+    uint32_t count = now->count, counted = 0;
+    if (count > before->count) count = before->count;
+    if (count > after->count) count = after->count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!before->there[i] || !now->there[i] || !after->there[i]) continue;
+        for (int k = 0; k < 3; k++) {
+            double way = ((double)after->position[i][k] - (double)before->position[i][k]) * inverse;
+            sum += pow((double)now->velocity[i][k] - way, 2);
+        }
+        counted++;
+    }
+    return counted && after->time > before->time ? sqrt(sum / counted) : (double)NAN;
+}
+
+static void sum_up(const Wrinkles *frame, Wrinkles *all) {
+    for (int b = 0; b < WRINKLE_BINS; b++) all->crease[b] += frame->crease[b];
+    all->axis += frame->axis, all->diagonal += frame->diagonal;
+    all->burnt_power += frame->burnt_power, all->burnt_area += frame->burnt_area;
+    all->unburnt_power += frame->unburnt_power, all->unburnt_area += frame->unburnt_area;
+}
+
+static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
+
+/// The numbers of a frame's wrinkles; `area` is what creases were looked for on.
+static void fill_row(const Wrinkles *frame, double area, double *row) {
+    double bend = 0;
+    for (int b = 0; b < WRINKLE_BINS; b++) bend += frame->crease[b];
+    row[BIAS] = wrinkles_bias(frame);
+    row[BEND] = area > 0 ? bend / area : (double)NAN;
+    row[BURNT] = degrees(wrinkles_burnt(frame));
+    row[UNBURNT] = degrees(wrinkles_unburnt(frame));
+    row[RATIO] = wrinkles_burnt(frame) / wrinkles_unburnt(frame);
+    row[JITTER] = (double)NAN;
+}
+
+static double rest_area(const SingeSurface *surface) {
+    double area = 0;
+    for (uint32_t f = 0; f < surface->triangle_count; f++) {
+        const uint32_t *t = surface->triangles[f];
+        double a[3], b[3], c[3];
+        for (int k = 0; k < 3; k++) {
+            a[k] = (double)surface->rest_position[t[1]][k] - (double)surface->rest_position[t[0]][k];
+            b[k] = (double)surface->rest_position[t[2]][k] - (double)surface->rest_position[t[0]][k];
+        }
+        for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        area += 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    }
+    return area;
+}
+
+static SingeResult out_of_memory(SingeError *error) {
+    *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+    snprintf(error->message, sizeof error->message, "no memory to measure a frame");
+    return SINGE_ERROR_MEMORY;
+}
+
+static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
+    SingeSurface surface = {0};
+    Wrinkles wrinkles = {0};
+    const int index = frame - measure->first;
+    SingeResult result = read_frame(measure, frame, &surface, &measure->times[index], error);
+    if (result) return result;
+    if (!wrinkles_add(&surface, &wrinkles) ||
+        !moment_take(&surface, measure->times[index], &measure->moments[index % 3]))
+        result = out_of_memory(error);
+    if (!result) {
+        fill_row(&wrinkles, rest_area(&surface), measure->rows[index]);
+        sum_up(&wrinkles, &measure->all);
+        const Moment *m = measure->moments;
+        if (index >= 2)
+            measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
+    }
+    singe_surface_free(&surface);
+    return result;
+}
+
+// ---- the whole
+
+static int ascending(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/// Median and worst over the frames that have the number, and the worst one's frame; false where none has.
+static bool summary(const Measure *measure, Number number, double *median, double *worst, int *worst_frame) {
+    const int frames = measure->last - measure->first + 1;
+    double *values = malloc((size_t)frames * sizeof *values);
+    int count = 0;
+    for (int i = 0; values && i < frames; i++) {
+        double value = measure->rows[i][number];
+        if (isnan(value)) continue;
+        if (count == 0 || (numbers[number].more_is_worse ? value > *worst : value < *worst))
+            *worst = value, *worst_frame = measure->first + i;
+        values[count++] = value;
+    }
+    if (count) {
+        qsort(values, (size_t)count, sizeof *values, ascending);
+        *median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+    }
+    free(values);
+    return count > 0;
+}
+
+static void print_number(const char *format, double number) {
+    char text[32];
+    snprintf(text, sizeof text, format, number);
+    printf("%10s", text);
+}
+
+/// Of all frames together, each with its area, or NaN where that says nothing.
+static double of_all(const Measure *measure, Number number) {
+    double row[NUMBERS];
+    fill_row(&measure->all, 0, row);
+    return row[number];
+}
+
+static void print_summary(const Measure *measure) {
+    printf("%-44s%10s%10s%10s%7s\n", "measure", "all", "median", "worst", "frame");
+    for (int n = 0; n < NUMBERS; n++) {
+        double median = 0, worst = 0, all = of_all(measure, (Number)n);
+        int frame = 0;
+        printf("%-44s", numbers[n].title);
+        if (isnan(all)) printf("%10s", "-");
+        else print_number(numbers[n].format, all);
+        if (!summary(measure, (Number)n, &median, &worst, &frame)) {
+            printf("%10s%10s%7s\n", "-", "-", "-");
+            continue;
+        }
+        print_number(numbers[n].format, median);
+        print_number(numbers[n].format, worst);
+        printf("%7d\n", frame);
+    }
+    printf("\ncreases by direction, degrees from that of growing u: share of all bend\n");
+    double total = 0;
+    for (int b = 0; b < WRINKLE_BINS; b++) total += measure->all.crease[b];
+    for (int b = 0; b < WRINKLE_BINS; b++)
+        printf("%s%5.1f %.4f%s", b % 6 ? "   " : "", (b + 0.5) * 180 / WRINKLE_BINS,
+               total > 0 ? measure->all.crease[b] / total : 0, b % 6 == 5 ? "\n" : "");
+}
+
+static ExitCode write_csv(Measure *measure) {
+    FILE *file = fopen(measure->csv, "w");
+    if (file) {
+        fputs("frame,time", file);
+        for (int n = 0; n < NUMBERS; n++) fprintf(file, ",%s", numbers[n].key);
+        for (int frame = measure->first; frame <= measure->last; frame++) {
+            fprintf(file, "\n%d,%.9g", frame, measure->times[frame - measure->first]);
+            for (int n = 0; n < NUMBERS; n++) {
+                double value = measure->rows[frame - measure->first][n];
+                if (isfinite(value)) fprintf(file, ",%.6g", value);
+                else fputc(',', file);
+            }
+        }
+        fputc('\n', file);
+    }
+    bool failed = !file || ferror(file);
+    if (file && fclose(file)) failed = true;
+    if (failed) console_error(&measure->console, "cannot write %s: %s", measure->csv, strerror(errno));
+    return failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
+static ExitCode measure_all(Measure *measure) {
+    const size_t frames = (size_t)(measure->last - measure->first) + 1;
+    SingeError error = {0};
+    measure->rows = calloc(frames, sizeof *measure->rows);
+    measure->times = calloc(frames, sizeof *measure->times);
+    SingeResult result = measure->rows && measure->times ? SINGE_OK : out_of_memory(&error);
+    for (int frame = measure->first; frame <= measure->last && !result; frame++)
+        result = measure_frame(measure, frame, &error);
+    ExitCode code = EXIT_GOOD;
+    if (result) {
+        console_result(&measure->console, &error);
+        code = result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
+    } else {
+        print_summary(measure);
+        if (measure->csv) code = write_csv(measure);
+    }
+    for (int k = 0; k < 3; k++) moment_free(&measure->moments[k]);
+    free(measure->rows);
+    free(measure->times);
+    return code;
+}
+
+// ---- the cache
+
+/// The name of a run's files, from its run.json; NULL after a message.
+static char *run_name(Console *console, const char *folder) {
+    SingeError error = {0};
+    Bytes bytes = {0};
+    char *record = text_format("%s/run.json", folder), *name = NULL;
+    const char *value;
+    size_t size;
+    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) console_result(console, &error);
+    else if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
+        name = text_json_unquote(value, size);
+    if (!name && !error.code) console_error(console, "%s is not a record of a run: no \"name\"", record);
+    bytes_free(&bytes);
+    free(record);
+    return name;
+}
+
+static ExitCode find_frames(Measure *measure) {
+    int first, last, count = folder_frames(&measure->folder, &first, &last);
+    if (count == 0) {
+        console_error(&measure->console, "no frames %s/ply/%s.*.ply", measure->folder.path, measure->folder.name);
+        return EXIT_INPUT;
+    }
+    if (measure->first == 0) measure->first = first, measure->last = last;
+    if (measure->first >= first && measure->last <= last) return EXIT_GOOD;
+    console_error(&measure->console, "frames %d-%d are asked for, but %s has %d-%d", measure->first, measure->last,
+                  measure->folder.path, first, last);
+    return EXIT_INPUT;
+}
+
+int command_measure(int argc, char **argv) {
+    Measure measure = {.console = console_make(false)};
+    ArgReader reader = args_begin(&measure_command, argc, argv);
+    const char *value, *path = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option == ARG_OPERAND) path = value;
+        else if (option == OPT_CSV) measure.csv = value;
+        else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
+            return EXIT_INPUT;
+    }
+    char *name = run_name(&measure.console, path);
+    if (!name) return EXIT_INPUT;
+    measure.folder = folder_name(path, name);
+    ExitCode code = find_frames(&measure);
+    if (!code) code = measure_all(&measure);
+    folder_free(&measure.folder);
+    free(name);
+    return code;
+}

@@ -1,0 +1,90 @@
+"""singe measure: its table and file, the jitter by another way, and what is refused."""
+
+import csv
+import math
+import os
+import struct
+import unittest
+
+from support import Case
+
+
+def read_ply(path):
+    """Time, and position, velocity and time of ignition by vertex of the input mesh."""
+    with open(path, "rb") as file:
+        header, _, data = file.read().partition(b"end_header\n")
+    lines = header.decode().splitlines()
+    time = float(next(line for line in lines if line.startswith("comment")).split()[-1])
+    count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
+    kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
+    columns = [line.split()[1:3] for line in kept if line.startswith("property")]
+    names = [name for _, name in columns]
+    form = "<" + "".join("i" if kind == "int" else "f" for kind, _ in columns)
+    found = {}
+    for row in struct.iter_unpack(form, data[: struct.calcsize(form) * count]):
+        value = dict(zip(names, row))
+        if value["vertex_id"] >= 0 and value["time_ignited"] < 0:
+            found[value["vertex_id"]] = ([value[k] for k in "xyz"], [value["v" + k] for k in "xyz"])
+    return time, found
+
+
+class Measure(Case):
+    def setUp(self):
+        super().setUp()
+        self.run_scene("o", "--quiet")
+
+    def rows(self, *args):
+        path = self.path("numbers.csv")
+        out, err = self.singe("measure", self.path("o"), "--csv", path, *args)
+        self.assertEqual(err, "")
+        with open(path, newline="") as file:
+            return out, list(csv.DictReader(file))
+
+    def test_table_and_file(self):
+        out, rows = self.rows()
+        self.assertEqual([int(row["frame"]) for row in rows], list(range(1, 7)))
+        self.assertIn("creases along axes over diagonals", out)
+        self.assertIn("jitter of the unburnt", out)
+        self.assertEqual(rows[0]["jitter_mm_per_s"], "")  # has no frame before it
+        shares = [float(word) for line in out.splitlines()[-4:] for word in line.split()[1::2]]
+        self.assertEqual(len(shares), 24)
+        self.assertAlmostEqual(sum(shares), 1, delta=0.01)
+
+    def test_jitter_by_another_way(self):
+        _, rows = self.rows()
+        frames = [read_ply(self.path("o", "ply", "tiny.%04d.ply" % i)) for i in range(1, 7)]
+        for i in range(1, 5):
+            (t0, a), (_, b), (t1, c) = frames[i - 1 : i + 2]
+            squares = [sum((b[v][1][k] - (c[v][0][k] - a[v][0][k]) / (t1 - t0)) ** 2 for k in range(3))
+                       for v in b if v in a and v in c]
+            self.assertGreater(len(squares), 50)
+            expected = 1e3 * math.sqrt(sum(squares) / len(squares))
+            self.assertAlmostEqual(float(rows[i]["jitter_mm_per_s"]), expected, delta=1e-3 * expected + 1e-6)
+
+    def test_frames(self):
+        _, rows = self.rows("--frames", "3-5")
+        self.assertEqual([int(row["frame"]) for row in rows], [3, 4, 5])
+        self.assertNotEqual(rows[1]["jitter_mm_per_s"], "")
+
+    def test_refusals(self):
+        for args, message in (
+            ([], "needs"),
+            ([self.path("nowhere")], "run.json"),
+            ([self.path("o"), "--frames", "5-9"], "has 1-6"),
+            ([self.path("o"), "--frames", "4-2"], "expected A-B"),
+            ([self.path("o"), "--frames", "x"], "expected A-B"),
+            ([self.path("o"), "--colour"], "unknown option"),
+        ):
+            with self.subTest(args):
+                self.assertIn(message, self.singe("measure", *args, expect=2)[1])
+        self.singe("measure", self.path("o"), "--csv", self.path("no", "such"), expect=1)
+
+    def test_damaged_frame(self):
+        path = self.path("o", "ply", "tiny.0003.ply")
+        with open(path, "r+b") as file:
+            file.truncate(os.path.getsize(path) // 2)
+        self.assertIn("tiny.0003.ply", self.singe("measure", self.path("o"), expect=2)[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
