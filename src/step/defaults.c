@@ -97,7 +97,7 @@ static SingeSolverDef standard_solver(void) {
         .substeps = 3,
         .projections = 1,
         .order = {SINGE_GREEN, SINGE_RED, SINGE_YELLOW, SINGE_BLUE},
-        .regularisation = {[SINGE_RED] = 1, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
+        .regularisation = {[SINGE_RED] = 2, [SINGE_GREEN] = 0.1f, [SINGE_BLUE] = 1e-3f, [SINGE_YELLOW] = 0.01f},
         .attachments = true,
         .early_exit = true,
         .tolerance = 1e-7f,

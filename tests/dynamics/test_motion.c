@@ -155,6 +155,7 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
 static double spin_left(int axis, float smoothing, bool bent) {
     Bench bench;
     SingeMaterialDef material = plain();
+    material.compliance[SINGE_GREEN] = singe_param(1); // a cloth: what is firm swings between bends as it turns
     Quads quads = quads_grid(20, 20, 0.01f, 0.01f, false);
     for (uint32_t v = 0; bent && v < quads.vertex_count; v++) { // an arc of 1 rad
         float *p = quads.positions + 3 * v, angle = 5 * (p[0] - 0.1f);

@@ -38,6 +38,18 @@ static void dense_solve(double a[N_MAX][N_MAX], double *b, int n) {
     }
 }
 
+/// What a spring gives without any compliance, m/N: (a + r) h^2/m.
+static double own_softness(const Bench *bench, SingeColour colour) {
+    const double h = (double)bench->settings.time_step / bench->settings.solver.substeps;
+    double s = (double)bench->shell.sheets[0].cell_size, area = 0, mass = 0;
+    for (uint32_t c = 0; c < bench->shell.cell_count; c++) {
+        area += (double)bench->shell.matter.area[shell_centre(&bench->shell, c)];
+        mass += (double)bench->shell.matter.mass[shell_centre(&bench->shell, c)];
+    }
+    double r = (double)bench->settings.solver.regularisation[colour], a = colour == SINGE_RED ? 2.5 : 0;
+    return (a + r) * h * h / (s * s * mass / area);
+}
+
 /// One strand by the definition: J M^-1 J^T assembled from the gradients of every spring.
 static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand, double (*x)[3]) {
     const SpringSet *set = &bench->shell.springs[colour];
@@ -50,7 +62,8 @@ static void dense_strand(const Bench *bench, SingeColour colour, uint32_t strand
     const SingeMaterialDef material = singe_default_material();
     double compliance = (double)material.compliance[colour].value;
     double t = (double)material.thickness.value, s = (double)bench->shell.sheets[0].cell_size;
-    if (colour == SINGE_RED) compliance *= t * t / (s * s / 2 + t * t); // no step, so all of it
+    if (colour == SINGE_RED) compliance *= t * t / (s * s / 2 + t * t);
+    compliance = fmax(0, compliance - own_softness(bench, colour));
     for (int k = 0; k < n; k++) {
         const uint32_t *e = set->ends[first + (uint32_t)k];
         double l = (double)bench->state.burn.spring_length[colour][first + (uint32_t)k], length = 0;
