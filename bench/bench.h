@@ -27,6 +27,8 @@ BenchFn bench_memory;
 
 /// The burning front of options->materials on strips, beside what sources say.
 BenchFn bench_front;
+/// How fast fire runs level, down and up in the gas that rises from it.
+BenchFn bench_spread;
 
 /// The paper's solver and ours on the same trajectories.
 BenchFn bench_compare;

@@ -3,27 +3,32 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double strip_length = 0.12, strip_lit = 0.02; // m
-static const double gate_first = 0.048, gate_last = 0.108;  // m, between which the front is looked at
-enum { STRIP_ACROSS = 3 }; // cells
+static const double strip_lit = 0.02; // m
+static const double gate_first = 0.4, gate_last = 0.9; // of the length, between which the front is looked at
 enum { STRIP_PATIENCE = 20000 }; // steps without a new place reached: the fire is out
 
 typedef struct Strip {
     SingeSim *sim;
-    uint32_t along; ///< cells
+    uint32_t along, across; ///< cells
+    double first, last;     ///< m, the gates
     float *positions;
     uint32_t *cells;
     float *lit; ///< 1 where it is hot at the start
 } Strip;
 
 StripSetup strip_setup(const SingeMaterialDef *material) {
-    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step, .threads = 1,
+    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step,
+                        .length = 0.12f, .width = 3e-3f, .gravity = {0, 0, -9.81f}, .pace = 1, .threads = 1,
                         .steps_most = 200000};
 }
 
-static bool strip_mesh(Strip *strip, float cell) {
-    strip->along = (uint32_t)lround(strip_length / (double)cell);
-    uint32_t n = strip->along, row = n + 1, vertices = row * (STRIP_ACROSS + 1), count = n * STRIP_ACROSS;
+static bool strip_mesh(Strip *strip, const StripSetup *setup) {
+    float cell = setup->cell;
+    strip->along = (uint32_t)lround((double)(setup->length / cell));
+    strip->across = (uint32_t)lround((double)(setup->width / cell));
+    if (strip->across < 3) strip->across = 3;
+    strip->first = gate_first * (double)setup->length, strip->last = gate_last * (double)setup->length;
+    uint32_t n = strip->along, row = n + 1, vertices = row * (strip->across + 1), count = n * strip->across;
     strip->positions = malloc((size_t)3 * vertices * sizeof *strip->positions);
     strip->lit = malloc(vertices * sizeof *strip->lit);
     strip->cells = malloc((size_t)4 * count * sizeof *strip->cells);
@@ -63,9 +68,9 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
     SingeAttribute lit = {"lit", strip->lit};
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
-    const float middle[3] = {(float)strip_length / 2, 0, 0};
-    sheet.vertex_count = (strip->along + 1) * (STRIP_ACROSS + 1), sheet.positions = strip->positions;
-    sheet.cell_count = strip->along * STRIP_ACROSS, sheet.cells = strip->cells;
+    const float middle[3] = {setup->length / 2, 0, 0};
+    sheet.vertex_count = (strip->along + 1) * (strip->across + 1), sheet.positions = strip->positions;
+    sheet.cell_count = strip->along * strip->across, sheet.cells = strip->cells;
     sheet.attribute_count = 1, sheet.attributes = &lit;
     sheet.material = strip_material(&setup->material);
     SingeResult result = singe_sim_add_sheet(strip->sim, &sheet, &pin.sheet);
@@ -76,34 +81,34 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
 
 /// How far along the middle the fire has come.
 static double strip_front(const Strip *strip, const SingeView *view) {
-    const float *ignited = view->time_ignited + (STRIP_ACROSS / 2) * (strip->along + 1);
+    const float *ignited = view->time_ignited + (strip->across / 2) * (strip->along + 1);
     uint32_t i = strip->along;
     while (i > 0 && ignited[i] < 0) i--;
     return (double)view->rest_position[i][0];
 }
 
 /// The line through places and times of ignition between the gates, by least squares.
-static double strip_speed(const SingeView *view) {
+static double strip_speed(const Strip *strip, const SingeView *view) {
     double n = 0, x1 = 0, t1 = 0, xt = 0, tt = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {
         double x = (double)view->rest_position[v][0], t = (double)view->time_ignited[v];
-        if (x < gate_first || x > gate_last || t < 0) continue;
+        if (x < strip->first || x > strip->last || t < 0) continue;
         n++, x1 += x, t1 += t, xt += x * t, tt += t * t;
     }
     return (n * xt - x1 * t1) / (n * tt - t1 * t1);
 }
 
-static void strip_read(const Strip *strip, StripResult *result) {
+static void strip_read(const Strip *strip, double pace, StripResult *result) {
     SingeView view = singe_sim_view(strip->sim);
     double area = 0, mass = 0;
     result->thickening = (double)singe_sim_stats(strip->sim).thickening;
-    result->speed = strip_front(strip, &view) > gate_last ? strip_speed(&view) : 0;
+    result->speed = strip_front(strip, &view) > strip->last ? strip_speed(strip, &view) / pace : 0;
     result->hottest = 0;
     for (uint32_t i = 0; i < view.particle_count; i++) {
         double x = (double)view.rest_position[i][0];
-        if (x < gate_first || x > gate_last) continue;
+        if (x < strip->first || x > strip->last) continue;
         result->hottest = fmax(result->hottest, (double)view.temperature_peak[i]);
-        if (x > gate_first + (gate_last - gate_first) / 2) continue; // long burnt
+        if (x > (strip->first + strip->last) / 2) continue; // long burnt
         area += (double)view.area[i], mass += (double)view.area[i] * (double)view.mass[i];
     }
     result->residue = mass / area;
@@ -111,7 +116,7 @@ static void strip_read(const Strip *strip, StripResult *result) {
 
 static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult *result) {
     double reached = 0;
-    for (int step = 0, since = 0; reached <= gate_last && step - since < STRIP_PATIENCE && step < setup->steps_most;
+    for (int step = 0, since = 0; reached <= strip->last && step - since < STRIP_PATIENCE && step < setup->steps_most;
          step++) {
         SingeResult failed = singe_sim_step(strip->sim);
         if (failed) return failed;
@@ -119,7 +124,7 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
         double front = strip_front(strip, &view);
         if (front > reached) reached = front, since = step;
     }
-    strip_read(strip, result);
+    strip_read(strip, (double)setup->pace, result);
     return SINGE_OK;
 }
 
@@ -129,7 +134,10 @@ SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError 
     def.time_step = setup->time_step;
     def.thread_count = setup->threads;
     def.solver.substeps = 1; // nothing moves
-    SingeResult code = strip_mesh(&strip, setup->cell) ? SINGE_OK : SINGE_ERROR_MEMORY;
+    def.pace = setup->pace;
+    def.gas.enabled = setup->gas, def.gas.cell_size = setup->gas_cell;
+    for (int d = 0; d < 3; d++) def.gravity[d] = setup->gravity[d];
+    SingeResult code = strip_mesh(&strip, setup) ? SINGE_OK : SINGE_ERROR_MEMORY;
     if (!code) code = singe_sim_create(&def, &strip.sim, error);
     else *error = (SingeError){.code = code, .element = -1};
     if (strip.sim) {

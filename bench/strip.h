@@ -8,6 +8,11 @@ typedef struct StripSetup {
     SingeMaterialDef material; ///< what varies over the sheet counts by its middle
     float cell;                ///< m
     float time_step;           ///< s
+    float length, width;       ///< m
+    float gravity[3];          ///< m/s2; the strip lies in the xy plane, and its front runs along x
+    float pace;
+    bool gas;
+    float gas_cell;            ///< m, 0: as it comes
     int threads;
     int steps_most;            ///< when they are over the fire has gone out
 } StripSetup;
@@ -19,7 +24,7 @@ typedef struct StripResult {
     double thickening; ///< F
 } StripResult;
 
-/// A strip of cells of a millimetre, in default steps.
+/// A level strip of cells of a millimetre, three across, in default steps and without gas.
 StripSetup strip_setup(const SingeMaterialDef *material);
 SingeResult strip_burn(const StripSetup *setup, StripResult *result, SingeError *error);
 

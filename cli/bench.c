@@ -41,6 +41,8 @@ static const struct {
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
      "The burning front of materials: speed, temperature and residue, beside what sources say."},
+    {"spread", "bench spread", bench_spread, BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
+     "How fast fire runs level, down and up in the gas that rises from it."},
     {"preview", "bench preview", bench_preview, BENCH_BIT(THREADS) | OUTPUT,
      "Pictures of 1280 x 720, 16 samples, of a burning sheet of 100,000 triangles: seconds of processor time."},
     {"compare", "bench compare", bench_compare,
