@@ -21,7 +21,7 @@
 
 enum { ADVECT_PARTS_MOST = 8 };
 static const float ADVECT_COURANT = 0.9f;
-static const float ADVECT_CALM = 0.1f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
+static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
 static const float ADVECT_MIXING = 2e-4f; ///< m2/s, of hot air: 1.9e-4 at 1100 K
 static const float ADVECT_MIX_MOST = 0.2f; ///< more would not be stable
 
@@ -70,7 +70,7 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
 }
 
 /// The largest speed in a row, and the columns where there is something to carry.
-static float advect_row(const GasPass *pass, size_t c, int count, int busy[2][2]) {
+static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_BOXES][2]) {
     const GasPlan *plan = pass->plan;
     const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
     const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
@@ -89,9 +89,9 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[2][2]
     float calm = ADVECT_CALM;
     for (int d = 0; d < 3; d++) calm = fabsf(pass->wind[d]) + ADVECT_CALM > calm ? fabsf(pass->wind[d]) + ADVECT_CALM : calm;
     for (int i = 0; i < count; i++) {
-        const bool something[2] = {L[i] > 0 || fuel[i] > 0 || smoke[i] > 0, speed[i] > calm || L[i] > ADVECT_LIGHT};
+        const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0, speed[i] > calm || L[i] > ADVECT_LIGHT};
         most = speed[i] > most ? speed[i] : most;
-        for (int b = 0; b < 2; b++)
+        for (int b = 0; b < GAS_BOXES; b++)
             if (something[b]) busy[b][0] = i < busy[b][0] ? i : busy[b][0], busy[b][1] = i;
     }
     return most;
@@ -103,14 +103,14 @@ static void advect_look(void *context, int begin, int end) {
     for (int k = begin; k < end; k++) {
         GasBox *box = pass->plan->plane_busy[k];
         float most = 0;
-        for (int b = 0; b < 2; b++) box[b] = GAS_NO_BOX;
+        for (int b = 0; b < GAS_BOXES; b++) box[b] = GAS_NO_BOX;
         for (int j = 0; j < grid->n[1]; j++)
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
-                int count = grid->n[0] - first, busy[2][2] = {{INT_MAX, -1}, {INT_MAX, -1}};
+                int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};
                 count = count < SWEEP_RUN ? count : SWEEP_RUN;
                 float fastest = advect_row(pass, gas_at(grid, first, j, k), count, busy);
                 most = fastest > most ? fastest : most;
-                for (int b = 0; b < 2; b++)
+                for (int b = 0; b < GAS_BOXES; b++)
                     if (busy[b][1] >= 0)
                         gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k}, {first + busy[b][1] + 1, j + 1, k + 1}});
             }
@@ -118,11 +118,11 @@ static void advect_look(void *context, int begin, int end) {
     }
 }
 
-/// The boxes outside of which nothing is carried: for what is carried, and for momentum, which still air has little
-/// of. In a part of the way nothing gets farther than a cell.
+/// The boxes outside of which nothing is carried: for heat and fuel, for smoke, and for momentum, which still air has
+/// little of. In a part of the way nothing gets farther than a cell.
 static void advect_boxes(GasPass *pass, int parts) {
     GasPlan *plan = pass->plan;
-    for (int b = 0; b < 2; b++) {
+    for (int b = 0; b < GAS_BOXES; b++) {
         GasBox *box = &pass->busy[b];
         *box = GAS_NO_BOX;
         for (int k = 0; k < plan->grid.n[2]; k++) gas_box_add(box, plan->plane_busy[k][b]);
@@ -147,5 +147,5 @@ void gas_advect(GasPass *pass) {
     pass->mix = ADVECT_MIXING * pass->dt / (plan->cell * plan->cell * (float)parts);
     if (pass->mix > ADVECT_MIX_MOST) pass->mix = ADVECT_MIX_MOST;
     advect_boxes(pass, parts);
-    for (int f = 0; f < GAS_CARRIED; f++) advect_field(pass, f, &pass->busy[f >= GAS_VELOCITY], parts);
+    for (int f = 0; f < GAS_CARRIED; f++) advect_field(pass, f, &pass->busy[f < GAS_SMOKE ? 0 : f < GAS_VELOCITY ? 1 : 2], parts);
 }

@@ -9,7 +9,7 @@
 
 static const float FLAME_TIME = 0.03f, SMOKE_TIME = 4;
 static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
-static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-5f, FLAME_SMOKE_LEAST = 1e-9f;
+static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-4f, FLAME_SMOKE_LEAST = 1e-7f;
 
 static void flame_planes(void *context, int begin, int end) {
     const GasPass *pass = context;

@@ -19,6 +19,7 @@
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature
     GAS_LEVELS = 12,
+    GAS_BOXES = 3,
 };
 
 /// What a cell has. The first ones are carried by the flow. GAS_THROUGH + d is the speed through its lower face
@@ -102,7 +103,7 @@ struct GasPlan {
     int levels;
     float *expansion;    ///< L that a step adds
     double *partial;     ///< [planes]
-    GasBox (*plane_busy)[2]; ///< [planes] where there is something to carry, and momentum
+    GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
     float (*normal)[3];  ///< [particles] unit
     int *hot;            ///< [planes] whether anything there is warmer than the air around
     float *scratch;      ///< all of them but normals
@@ -129,7 +130,7 @@ typedef struct GasPass {
     // of one pass
     float courant; ///< dt/cell of a part of the way
     float mix;     ///< share of a difference that a face evens out in it
-    GasBox busy[2];
+    GasBox busy[GAS_BOXES];
     GasLevel *level;
     int colour;
 } GasPass;

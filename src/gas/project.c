@@ -15,7 +15,7 @@
 #include <string.h>
 
 static const float PROJECT_OWN = 0.05f, PROJECT_FASTEST = 20;
-enum { PROJECT_CYCLES = 2 };
+enum { PROJECT_CYCLES = 1 };
 
 /// Speed of the face below cell c along axis d before the pressure; at the border that of the cell inside.
 static inline float project_face(const float *u, size_t c, size_t beyond, bool first, bool last) {
