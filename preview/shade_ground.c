@@ -50,13 +50,14 @@ static void wood(const Preview *preview, V3 place, float footprint, Table *table
     uint32_t seed = preview->def.seed + 77;
     Plank p = find_plank(seed, place.x, place.y);
     float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
-    float fibre = noise2(u * 7, place.y * 460, seed + 3) * visible(0.0022f, footprint);
-    float pores = noise2(u * 55, place.y * 1500, seed + 4) * visible(0.0008f, footprint);
+    float bow = 0.011f * noise2(u * 2.3f, p.across * 9, seed); // fibres follow the rings
+    float fibre = noise2(u * 9, (place.y + 0.4f * bow) * 520, seed + 3) * visible(0.0022f, footprint);
+    float pores = noise2(u * 75, (place.y + 0.4f * bow) * 1700, seed + 4) * visible(0.0008f, footprint);
     float hair = noise2(u * 16, place.y * 2100, seed + 7) * visible(0.0006f, footprint);
-    fibre += 0.8f * noise2(u * 12, place.y * 1100, seed + 8) * visible(0.001f, footprint);
+    fibre += 0.8f * noise2(u * 14, (place.y + 0.4f * bow) * 1100, seed + 8) * visible(0.001f, footprint);
     float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(place.x * 5, place.y * 5, seed + 6);
-    float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.46f * late + 0.13f * fibre + 0.10f * blotch + 0.05f * wear;
-    value += 0.07f * hair;
+    float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;
+    value += 0.05f * hair;
     value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
     // a joint: dark and a little soft, with a bevel beside it
     float soft = maxf(0.0009f, 0.7f * footprint), joint = 1 - stepf(0.0002f, soft + 0.0002f, p.edge);
@@ -66,7 +67,7 @@ static void wood(const Preview *preview, V3 place, float footprint, Table *table
     table->albedo = v3_scale(v3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
     table->polish = (0.42f - 0.18f * late + 0.10f * wear) * (1 - 0.8f * joint);
     table->tilt[0] = 0.004f * wear;
-    table->tilt[1] = 0.012f * blotch + 0.02f * fibre;
+    table->tilt[1] = 0.012f * blotch + 0.012f * fibre;
 }
 
 /// Noise of the slab, its slope added to the tilt.
