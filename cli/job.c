@@ -81,6 +81,32 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
     return finish_open(job, console, result, &messages, threads);
 }
 
+ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {
+    SingeError error = {0};
+    Bytes bytes = {0};
+    char *record = text_format("%s/run.json", folder);
+    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
+        console_result(console, &error);
+        free(record);
+        return EXIT_INPUT;
+    }
+    const char *scene, *scene_folder, *json = (const char *)bytes.data;
+    size_t scene_size, folder_size;
+    ExitCode code = EXIT_INPUT;
+    if (text_json_member(json, bytes.size, "scene", &scene, &scene_size) &&
+        text_json_member(json, bytes.size, "scene_folder", &scene_folder, &folder_size)) {
+        char *base = text_json_unquote(scene_folder, folder_size);
+        if (base) code = job_parse(job, console, record, scene, scene_size, base, sets, threads);
+        else console_error(console, "%s: bad \"scene_folder\"", record);
+        free(base);
+    } else {
+        console_error(console, "%s is not a record of a run: no \"scene\" and \"scene_folder\"", record);
+    }
+    bytes_free(&bytes);
+    free(record);
+    return code;
+}
+
 ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
     SceneMessages messages = {0};
     SingeResult result = scene_build(job->scene, &job->assets, &job->hooks, sim, &messages);

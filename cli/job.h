@@ -31,6 +31,9 @@ ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetL
 ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
                    const SetList *sets, int threads);
 
+/// The scene of a run's record, FOLDER/run.json.
+ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
+
 ExitCode job_build(Job *job, Console *console, SingeSim **sim);
 void job_close(Job *job);
 

@@ -16,11 +16,14 @@
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
+#include "cli/job.h"
+#include "cli/pictures.h"
 #include "cli/text.h"
 #include "cli/wrinkles.h"
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_COUNT };
+enum { EMBER_FRAMES = 8, EMBER_SCALE = 3 };
 
 static const ArgOption measure_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
@@ -28,11 +31,11 @@ static const ArgOption measure_options[OPT_COUNT] = {
 };
 
 static const ArgCommand measure_command = {
-    "measure", "DIR", "Measures the shape of a cache: creases, wrinkles, jitter.", measure_options, OPT_COUNT,
+    "measure", "DIR", "Measures what a cache looks like: creases, wrinkles, jitter, embers.", measure_options, OPT_COUNT,
     "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summed up.
-typedef enum Number { BIAS, BEND, BURNT, UNBURNT, RATIO, JITTER, NUMBERS } Number;
+typedef enum Number { BIAS, BEND, BURNT, UNBURNT, RATIO, JITTER, EMBER, NUMBERS } Number;
 
 static const struct {
     const char *key, *title, *format;
@@ -44,6 +47,7 @@ static const struct {
     [UNBURNT] = {"unburnt_angle_deg", "normal at 3-15 mm where not, rms degrees", "%.3f", true},
     [RATIO] = {"burnt_over_unburnt_power", "power of the two, burnt over unburnt", "%.3g", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
+    [EMBER] = {"ember_width_mm", "width of the ember line, mm, of some frames", "%.2f", true},
 };
 
 /// Vertices of the input mesh that have not burnt, in one frame.
@@ -63,6 +67,8 @@ typedef struct Measure {
     double *times;
     Wrinkles all;
     Moment moments[3];        ///< this frame's at index frame mod 3
+    Job job;
+    Pictures *pictures;       ///< NULL where the program draws none
 } Measure;
 
 // ---- one frame
@@ -141,7 +147,7 @@ static void fill_row(const Wrinkles *frame, double area, double *row) {
     row[BURNT] = degrees(wrinkles_burnt(frame));
     row[UNBURNT] = degrees(wrinkles_unburnt(frame));
     row[RATIO] = wrinkles_burnt(frame) / wrinkles_unburnt(frame);
-    row[JITTER] = (double)NAN;
+    row[JITTER] = row[EMBER] = (double)NAN;
 }
 
 static double rest_area(const SingeSurface *surface) {
@@ -165,6 +171,12 @@ static SingeResult out_of_memory(SingeError *error) {
     return SINGE_ERROR_MEMORY;
 }
 
+/// Embers are measured on EMBER_FRAMES frames spread over those asked for: each is drawn large.
+static bool is_drawn(const Measure *measure, int frame) {
+    const int count = measure->last - measure->first + 1, index = frame - measure->first;
+    return count <= EMBER_FRAMES || (index + 1) * EMBER_FRAMES / count > index * EMBER_FRAMES / count;
+}
+
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
     SingeSurface surface = {0};
     Wrinkles wrinkles = {0};
@@ -180,6 +192,11 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
         const Moment *m = measure->moments;
         if (index >= 2)
             measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
+    }
+    if (!result && measure->pictures && is_drawn(measure, frame)) {
+        double width;
+        result = pictures_ember_width(measure->pictures, &surface, measure->times[index], &width, error);
+        if (!result) measure->rows[index][EMBER] = 1e3 * width;
     }
     singe_surface_free(&surface);
     return result;
@@ -294,22 +311,6 @@ static ExitCode measure_all(Measure *measure) {
 
 // ---- the cache
 
-/// The name of a run's files, from its run.json; NULL after a message.
-static char *run_name(Console *console, const char *folder) {
-    SingeError error = {0};
-    Bytes bytes = {0};
-    char *record = text_format("%s/run.json", folder), *name = NULL;
-    const char *value;
-    size_t size;
-    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) console_result(console, &error);
-    else if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
-        name = text_json_unquote(value, size);
-    if (!name && !error.code) console_error(console, "%s is not a record of a run: no \"name\"", record);
-    bytes_free(&bytes);
-    free(record);
-    return name;
-}
-
 static ExitCode find_frames(Measure *measure) {
     int first, last, count = folder_frames(&measure->folder, &first, &last);
     if (count == 0) {
@@ -334,12 +335,19 @@ int command_measure(int argc, char **argv) {
         else if (option != OPT_FRAMES || !args_span(&reader, option, value, &measure.first, &measure.last))
             return EXIT_INPUT;
     }
-    char *name = run_name(&measure.console, path);
-    if (!name) return EXIT_INPUT;
-    measure.folder = folder_name(path, name);
-    ExitCode code = find_frames(&measure);
+    SetList sets = {0};
+    ExitCode code = job_reopen(&measure.job, &measure.console, path, &sets, job_threads());
+    if (code) return code;
+    measure.folder = folder_name(path, measure.job.scene->name);
+    code = find_frames(&measure);
+    SingeError error = {0};
+    if (!code && pictures_available() && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
+        console_result(&measure.console, &error);
+        code = EXIT_FAILED;
+    }
     if (!code) code = measure_all(&measure);
+    pictures_close(measure.pictures);
     folder_free(&measure.folder);
-    free(name);
+    job_close(&measure.job);
     return code;
 }

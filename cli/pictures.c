@@ -19,13 +19,12 @@ static SingeResult no_memory(SingeError *error) {
     return SINGE_ERROR_MEMORY;
 }
 
-SingeResult pictures_open(const Job *job, Pictures **made, SingeError *error) {
+static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **made, SingeError *error) {
     *made = NULL;
     Pictures *pictures = calloc(1, sizeof *pictures);
     if (!pictures) return no_memory(error);
     pictures->scene = job->scene;
-    scene_preview(job->scene, &job->assets, &pictures->def);
-    pictures->def.thread_count = job->hooks.thread_count;
+    pictures->def = *def;
     pictures->shape_max = scene_shapes(job->scene, 0, NULL, 0);
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
     pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
@@ -33,6 +32,28 @@ SingeResult pictures_open(const Job *job, Pictures **made, SingeError *error) {
     if (!result) result = preview_create(&pictures->def, (SingeAllocator){0}, &pictures->preview, error);
     if (result) pictures_close(pictures);
     else *made = pictures;
+    return result;
+}
+
+static PreviewDef scene_def(const Job *job) {
+    PreviewDef def;
+    scene_preview(job->scene, &job->assets, &def);
+    def.thread_count = job->hooks.thread_count;
+    return def;
+}
+
+SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error) {
+    const PreviewDef def = scene_def(job);
+    return open_def(job, &def, pictures, error);
+}
+
+SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
+    PreviewDef def = scene_def(job);
+    def.width *= scale, def.height *= scale, def.samples = 4;
+    def.camera.aperture = 0, def.shutter = 0;
+    SingeResult result = open_def(job, &def, pictures, error);
+    if (!result) result = pictures_keep_layers(*pictures, error);
+    if (result) pictures_close(*pictures), *pictures = NULL;
     return result;
 }
 
@@ -67,6 +88,12 @@ SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     bool all = l->beauty && l->glow && l->normal && l->coverage && l->fire && l->temperature && l->burn && l->depth &&
                l->sheet && l->piece;
     return all ? SINGE_OK : no_memory(error);
+}
+
+SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time, double *width,
+                                 SingeError *error) {
+    if (!pictures_draw(pictures, surface, NULL, time, error)) return error->code;
+    return preview_glow_width(&pictures->def, &pictures->layers, width, error);
 }
 
 static void free_layers(PreviewLayers *l) {

@@ -23,6 +23,12 @@ SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError 
 /// Writes the layers of the frame drawn last as an EXR (docs/formats.md).
 SINGE_NODISCARD SingeResult pictures_write_layers(const Pictures *pictures, const char *path, SingeError *error);
 
+/// The same, sharp and `scale` times as large, with its layers: for pictures_ember_width.
+SINGE_NODISCARD SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error);
+/// Draws a frame without gas and measures the line that glows; m, NaN where nothing does.
+SINGE_NODISCARD SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time,
+                                                 double *width, SingeError *error);
+
 void pictures_size(const Pictures *pictures, int *width, int *height);
 void pictures_close(Pictures *pictures);
 

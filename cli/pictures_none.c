@@ -14,6 +14,17 @@ SingeResult pictures_open(const Job *job, Pictures **pictures, SingeError *error
     return SINGE_ERROR_STATE;
 }
 
+SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, SingeError *error) {
+    (void)scale;
+    return pictures_open(job, pictures, error);
+}
+
+SingeResult pictures_ember_width(Pictures *pictures, const SingeSurface *surface, double time, double *width,
+                                 SingeError *error) {
+    (void)pictures, (void)surface, (void)time, (void)width, (void)error;
+    return SINGE_ERROR_STATE;
+}
+
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
                              SingeError *error) {
     (void)pictures, (void)surface, (void)gas, (void)time, (void)error;

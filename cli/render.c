@@ -114,35 +114,6 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
 
 // ---- the cache
 
-/// The scene of run.json, with the --set of now laid over it.
-static ExitCode open_scene(Render *render) {
-    SingeError error = {0};
-    Bytes bytes = {0};
-    char *record = text_format("%s/run.json", render->options->folder);
-    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
-        console_result(render->console, &error);
-        free(record);
-        return EXIT_INPUT;
-    }
-    const char *scene, *folder, *json = (const char *)bytes.data;
-    size_t scene_size, folder_size;
-    ExitCode code = EXIT_INPUT;
-    if (text_json_member(json, bytes.size, "scene", &scene, &scene_size) &&
-        text_json_member(json, bytes.size, "scene_folder", &folder, &folder_size)) {
-        char *base = text_json_unquote(folder, folder_size);
-        const RenderOptions *o = render->options;
-        if (base)
-            code = job_parse(&render->job, render->console, record, scene, scene_size, base, &o->sets, o->threads);
-        else console_error(render->console, "%s: bad \"scene_folder\"", record);
-        free(base);
-    } else {
-        console_error(render->console, "%s is not a record of a run: no \"scene\" and \"scene_folder\"", record);
-    }
-    bytes_free(&bytes);
-    free(record);
-    return code;
-}
-
 static ExitCode find_frames(Render *render) {
     const RenderOptions *o = render->options;
     int first, last, count = folder_frames(&render->folder, &first, &last);
@@ -277,7 +248,7 @@ int command_render(int argc, char **argv) {
         interrupt_shield();
         Console console = console_make(options.quiet);
         Render render = {.console = &console, .options = &options};
-        code = open_scene(&render);
+        code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
             code = find_frames(&render);

@@ -96,6 +96,11 @@ typedef struct PreviewLayers {
 /// As preview_draw, and fills the layers. `rgb` may be NULL.
 SINGE_NODISCARD SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, double time,
                                                 uint8_t *rgb, const PreviewLayers *layers, SingeError *error);
+
+/// Median width in m of the line that glows on the sheets (glow_width.c), from a frame's glow, depth and sheet, drawn
+/// with a sharp lens; NaN where nothing does.
+SINGE_NODISCARD SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width,
+                                               SingeError *error);
 void preview_destroy(Preview *preview);
 
 #endif

@@ -1,0 +1,89 @@
+// How wide the line of embers is in a picture.
+//
+// A pixel glows that sends at least a tenth of what the brightest hundredth of the glowing pixels send. From each such
+// pixel one walks along eight directions both ways to where the glow, or the sheet, ends. The shortest of the eight
+// ways, as long as its ends lie apart in space, is the line's width there; eight directions miss the shortest one by
+// 2 % at most. The frame's width is the median over its pixels.
+
+#include "preview/internal.h"
+
+#include <stdlib.h>
+
+enum { DIRECTIONS = 8, WALK_LIMIT = 96 };
+
+typedef struct GlowPicture {
+    const PreviewLayers *layers;
+    Camera camera;
+    int width, height;
+    float least; ///< luminance of what glows
+} GlowPicture;
+
+static float luminance(const GlowPicture *picture, size_t pixel) {
+    return picture->layers->sheet[pixel] < 0 ? 0 : v3_luminance(v3_load(picture->layers->glow[pixel]));
+}
+
+static V3 place(const GlowPicture *picture, int x, int y) {
+    const Camera *camera = &picture->camera;
+    float u = 2 * ((float)x + 0.5f) / (float)picture->width - 1, v = 1 - 2 * ((float)y + 0.5f) / (float)picture->height;
+    V3 ray = v3_mad(v3_mad(camera->forward, camera->right, u), camera->up, v);
+    return v3_mad(camera->eye, ray, picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x]);
+}
+
+static bool glows(const GlowPicture *picture, int x, int y) {
+    if (x < 0 || y < 0 || x >= picture->width || y >= picture->height) return false;
+    return luminance(picture, (size_t)y * (size_t)picture->width + (size_t)x) >= picture->least;
+}
+
+/// The last pixel that glows on the way from (x, y) along (dx, dy).
+static void walk(const GlowPicture *picture, int x, int y, float dx, float dy, int end[2]) {
+    end[0] = x, end[1] = y;
+    for (int step = 1; step <= WALK_LIMIT; step++) {
+        int to[2] = {x + (int)lroundf((float)step * dx), y + (int)lroundf((float)step * dy)};
+        if (!glows(picture, to[0], to[1])) return;
+        end[0] = to[0], end[1] = to[1];
+    }
+}
+
+/// m
+static float width_at(const GlowPicture *picture, int x, int y) {
+    float least = INFINITY;
+    for (int k = 0; k < DIRECTIONS; k++) {
+        float angle = PI_F * (float)k / DIRECTIONS, dx = cosf(angle), dy = sinf(angle);
+        int a[2], b[2];
+        walk(picture, x, y, dx, dy, a), walk(picture, x, y, -dx, -dy, b);
+        float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
+        // between the middles of the last pixels, and half of each
+        float width = v3_length(v3_sub(place(picture, a[0], a[1]), place(picture, b[0], b[1])));
+        least = minf(least, width + depth * picture->camera.pixel);
+    }
+    return least;
+}
+
+static int ascending(const void *a, const void *b) {
+    const float *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layers, double *width, SingeError *error) {
+    GlowPicture picture = {.layers = layers, .camera = camera_make(def), .width = def->width, .height = def->height};
+    size_t count = (size_t)def->width * (size_t)def->height, lit = 0;
+    *width = (double)NAN;
+    float *values = malloc(count * sizeof *values);
+    if (!values) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
+    for (size_t i = 0; i < count; i++) {
+        float value = luminance(&picture, i);
+        if (value > 1e-3f) values[lit++] = value;
+    }
+    if (lit) {
+        qsort(values, lit, sizeof *values, ascending);
+        picture.least = 0.1f * values[lit - 1 - lit / 100];
+        lit = 0;
+        for (int y = 0; y < def->height; y++)
+            for (int x = 0; x < def->width; x++)
+                if (glows(&picture, x, y)) values[lit++] = width_at(&picture, x, y);
+        qsort(values, lit, sizeof *values, ascending);
+        *width = (double)values[lit / 2];
+    }
+    free(values);
+    return SINGE_OK;
+}

@@ -1,0 +1,81 @@
+// The measure of the ember line, on layers whose line is known.
+
+#include "fixture.h"
+
+
+#include <math.h>
+#include <string.h>
+
+enum { WIDE = 400, HIGH = 300 };
+
+typedef struct Frame {
+    float glow[HIGH * WIDE][3], depth[HIGH * WIDE];
+    int32_t sheet[HIGH * WIDE];
+} Frame;
+
+/// From 1 m above a plane that is 0.4 m wide in the picture: 1 mm a pixel.
+static PreviewDef camera_above(void) {
+    PreviewDef def = preview_default();
+    def.width = WIDE, def.height = HIGH;
+    def.camera = (PreviewCamera){.eye = {0, 0, 1}, .up = {0, 1, 0}, .fov = 2 * atanf(0.15f)};
+    return def;
+}
+
+/// A line of this half width through the middle, that fades over two pixels, on a sheet that leans by `slope`.
+static void draw_line(Frame *frame, float angle, float half, float slope) {
+    for (int y = 0; y < HIGH; y++)
+        for (int x = 0; x < WIDE; x++) {
+            int i = y * WIDE + x;
+            float u = (float)x + 0.5f - WIDE / 2, v = HIGH / 2 - (float)y - 0.5f;
+            frame->depth[i] = 1 / (1 + slope * u * 1e-3f); // the plane z = slope x
+            float d = fabsf(cosf(angle) * v - sinf(angle) * u);
+            float glow = fminf(fmaxf(0.5f * (half - d) + 0.5f, 0), 1);
+            frame->sheet[i] = 0;
+            for (int k = 0; k < 3; k++) frame->glow[i][k] = glow;
+        }
+}
+
+static double measured(Frame *frame) {
+    PreviewDef def = camera_above();
+    PreviewLayers layers = {.glow = frame->glow, .depth = frame->depth, .sheet = frame->sheet};
+    double width;
+    SingeError error;
+    assert_int_equal(preview_glow_width(&def, &layers, &width, &error), SINGE_OK);
+    return width;
+}
+
+static Frame frame;
+
+static void test_widths(void **state) {
+    (void)state;
+    static const float half[] = {2, 4, 10};
+    for (int w = 0; w < 3; w++)
+        for (float angle = 0; angle < 3.2f; angle += 0.13f) {
+            draw_line(&frame, angle, half[w], 0);
+            double expected = 1e-3 * (2 * (double)half[w] + 1.6); // a tenth is reached 0.8 pixels beyond the half
+            assert_true(fabs(measured(&frame) - expected) < 1.3e-3);
+        }
+}
+
+/// What leans away is measured along itself: 10 pixels across are 14 mm at 45 degrees.
+static void test_slope(void **state) {
+    (void)state;
+    draw_line(&frame, 1.5707963f, 5, 1);
+    assert_true(fabs(measured(&frame) - 11.6e-3 * sqrt(2)) < 2e-3);
+}
+
+/// What is no sheet, a hot ball, does not count.
+static void test_nothing(void **state) {
+    (void)state;
+    draw_line(&frame, 0.4f, 5, 0);
+    for (int i = 0; i < WIDE * HIGH; i++) frame.sheet[i] = -1;
+    assert_true(isnan(measured(&frame)));
+    memset(frame.glow, 0, sizeof frame.glow), memset(frame.sheet, 0, sizeof frame.sheet);
+    assert_true(isnan(measured(&frame)));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_widths), cmocka_unit_test(test_slope),
+                                       cmocka_unit_test(test_nothing)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
