@@ -53,16 +53,17 @@ static SingeResult measure(const BenchOptions *options, double springs, BenchTab
     for (int step = 0; step < steps && !result; step++) result = singe_sim_step(sim);
     if (!result) result = time_drawings(sim, &surface, &wall, &cpu);
     if (result) *error = *singe_sim_error(sim);
+    double triangles = surface.triangle_count;
     BenchValue row[COLUMNS] = {
         [SPRINGS] = bench_number(timing_springs(sim)),
         [THREADS] = bench_number(options->threads),
         [DETAIL] = bench_number(1e3 * options->detail),
-        [TRIANGLES] = bench_number(surface.triangle_count),
-        [FINE] = bench_number(100.0 * surface.fine_triangle_count / (surface.triangle_count ? surface.triangle_count : 1)),
+        [TRIANGLES] = bench_number(triangles),
+        [FINE] = bench_number(triangles > 0 ? 100 * surface.fine_triangle_count / triangles : 0),
         [VERTICES] = bench_number(surface.vertex_count),
         [MEDIAN] = bench_number(wall),
         [CPU] = bench_number(cpu),
-        [CACHE] = bench_number(1e-6 * (92.0 * surface.vertex_count + 13.0 * surface.triangle_count)),
+        [CACHE] = bench_number(1e-6 * (92.0 * surface.vertex_count + 13 * triangles)),
     };
     if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     singe_surface_free(&surface);

@@ -4,19 +4,19 @@
 //
 //   L(x) = min { S(x), S(x + r u_1), S(x + r u_2), S(x + r u_3) },   u_i three directions 120 degrees apart
 //
-// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of the
-// directions another noise. What is drawn is L >= 0: about the places farther than r from the edge of S. As S never grows,
-// nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where the fire does,
-// and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the place where L is
-// taken, so that char follows the edge.
+// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of
+// the directions another noise. What is drawn is L >= 0: about the places farther than r from the edge of S. As S
+// never grows, nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where
+// the fire does, and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the
+// place where L is taken, so that char follows the edge.
 //
 // r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
 // sheet and its grid.
 #include "ablate/surface_fine.h"
 #include "base/random.h"
 
-/// The largest features of the noise, m; its mean depth over the reach, the first octave's strength and an octave's over
-/// that of the one before.
+/// The largest features of the noise, m; its mean depth over the reach, the first octave's strength and an octave's
+/// over that of the one before.
 #define NOISE_SIZE 3e-3f
 #define NOISE_MEAN 0.45f
 #define NOISE_STRENGTH 0.7f

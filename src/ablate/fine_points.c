@@ -3,7 +3,7 @@
 // A cell is near the front where the level in it or in the eight cells around it may be negative, by the bounds of its
 // spline, and may be positive in itself. Its sides and triangles get points, k - 1 within a side and within each line
 // from a corner to the centre, (k - 1)(k - 2)/2 within a triangle, and the level is evaluated there; on a side once,
-// for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles are the same.
+// for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles will do.
 #include "ablate/surface_fine.h"
 
 #include <string.h>

@@ -1,15 +1,87 @@
-// The fields of the fine surface's vertices. Positions and what belongs to them lie on the cell's triangle, straight
-// between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level
-// was taken with. Of times to ignition, those of corners that have ignited count, by their weights.
+// The fields of the fine surface's vertices. Velocity, uv and rest position lie on the cell's triangle, straight between
+// its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level was taken
+// with. Of times to ignition, those of corners that have ignited count, by their weights. Normals are those of corners
+// and centres, blended. Fine vertices leave the triangle for a rounder one (Boubekeur and Alexa, Phong tessellation,
+// 2008), with P and N of the triangle's corners and weights w:
+//
+//   x = p - 1/2 sum w_i ((p - P_i) . N_i) N_i,   p = sum w_i P_i
+//
+// which is p at the corners and on flat sheets, and depends on a side's ends alone along the side; 1/2 lays it on a
+// circle through the corners. So do virtual centres, from the cell's four corners.
 #include "ablate/surface_fine.h"
 
-/// A triangle's corners: two particles, and the mean of four for the virtual centre.
+#define BULGE 0.5f
+/// How far a vertex leaves its triangle at most, of the cell's side: where it is crumpled.
+#define BULGE_MOST 0.1f
+
+static Vec centre_of(const uint32_t at[4], const float (*field)[4]) {
+    return vec_scale(vec_add(vec_add(vec_load(field[at[0]]), vec_load(field[at[1]])),
+                             vec_add(vec_load(field[at[2]]), vec_load(field[at[3]]))), 0.25f);
+}
+
+static Vec weigh(const Vec corner[3], const float weight[3]) {
+    return vec_mad(vec_mad(vec_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
+}
+
+/// Of a triangle's corners: two particles, and the mean of four for the virtual centre.
 static Vec blend(const uint32_t at[4], const FinePlace *place, const float (*field)[4]) {
-    int a = place->side, b = (a + 1) & 3;
-    Vec centre = vec_scale(vec_add(vec_add(vec_load(field[at[0]]), vec_load(field[at[1]])),
-                                   vec_add(vec_load(field[at[2]]), vec_load(field[at[3]]))), 0.25f);
-    Vec sum = vec_scale(vec_load(field[at[a]]), place->weight[0]);
-    return vec_mad(vec_mad(sum, vec_load(field[at[b]]), place->weight[1]), centre, place->weight[2]);
+    const Vec corner[3] = {vec_load(field[at[place->side]]), vec_load(field[at[(place->side + 1) & 3]]),
+                           centre_of(at, field)};
+    return weigh(corner, place->weight);
+}
+
+/// Unit normals of corners and virtual centres: of the triangles around them, by their areas.
+static void gather_normals(const Fine *fine) {
+    const Shell *shell = fine->shell;
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        const uint32_t *at = shell->cells[c];
+        Vec centre = centre_of(at, position);
+        for (int i = 0; i < 4; i++) {
+            const uint32_t corner[3] = {at[i], at[(i + 1) & 3], shell_centre(shell, c)};
+            Vec a = vec_sub(vec_load(position[corner[0]]), centre), b = vec_sub(vec_load(position[corner[1]]), centre);
+            Vec doubled = vec_cross(a, b);
+            for (int k = 0; k < 3; k++)
+                vec_store(fine->normal[corner[k]], vec_add(vec_load(fine->normal[corner[k]]), doubled));
+        }
+    }
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        vec_store(fine->normal[i], vec_unit(vec_load(fine->normal[i])));
+}
+
+/// How far a place leaves the straight mean of `count` corners: the sum in the formula above.
+static Vec bulge(Vec flat, int count, const Vec corner[], const Vec normal[], const float weight[], float side) {
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < count; i++)
+        sum = vec_mad(sum, normal[i], -BULGE * weight[i] * vec_dot(vec_sub(flat, corner[i]), normal[i]));
+    float most = BULGE_MOST * side, length = vec_length(sum);
+    return length > most ? vec_scale(sum, most / length) : sum;
+}
+
+static void place_centres(const Fine *fine) {
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float quarters[4] = {0.25f, 0.25f, 0.25f, 0.25f};
+    for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
+        const uint32_t *at = fine->shell->cells[c];
+        Vec corner[4], normal[4], flat = centre_of(at, position);
+        for (int i = 0; i < 4; i++) corner[i] = vec_load(position[at[i]]), normal[i] = vec_load(fine->normal[at[i]]);
+        float side = vec_length(vec_sub(corner[1], corner[0]));
+        vec_store(fine->centre[c], vec_add(flat, bulge(flat, 4, corner, normal, quarters, side)));
+    }
+}
+
+/// Position and normal.
+static void place_vertex(const Fine *fine, const FinePlace *place, const uint32_t particle[3], uint32_t v) {
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const Vec corner[3] = {vec_load(position[particle[0]]), vec_load(position[particle[1]]),
+                           vec_load(fine->centre[place->cell])};
+    Vec normal[3], flat = weigh(corner, place->weight);
+    for (int i = 0; i < 3; i++) normal[i] = vec_load(fine->normal[particle[i]]);
+    float side = vec_length(vec_sub(corner[1], corner[0]));
+    Vec unit = vec_unit(weigh(normal, place->weight));
+    vec_store(fine->surface->position[v], vec_add(flat, bulge(flat, 3, corner, normal, place->weight, side)));
+    vec_store(fine->surface->normal[v], vec_dot(unit, unit) > 0.5f ? unit : vec(0, 0, 1));
 }
 
 static float blend_times(const float *time, const uint32_t particle[3], const float weight[3]) {
@@ -28,7 +100,7 @@ static void fill(const Fine *fine, uint32_t v) {
     SingeSurface *surface = fine->surface;
     uint32_t centre = shell_centre(shell, place->cell);
     const uint32_t particle[3] = {at[place->side], at[(place->side + 1) & 3], centre};
-    vec_store(surface->position[v], blend(at, place, (const float (*)[4])state->dynamics.position));
+    place_vertex(fine, place, particle, v);
     vec_store(surface->velocity[v], blend(at, place, (const float (*)[4])state->dynamics.velocity));
     vec_store(surface->rest_position[v], blend(at, place, (const float (*)[4])shell->rest_position));
     float mass_min = 0, u = 0, w = 0;
@@ -53,6 +125,8 @@ static void fill_range(void *context, int begin, int end) {
 }
 
 void fine_vertices(const Fine *fine) {
+    gather_normals(fine);
+    place_centres(fine);
     pool_for(fine->pool, (int)fine->vertex_count, 256, fill_range, (void *)(uintptr_t)fine);
     fine->surface->vertex_count = fine->vertex_count;
 }

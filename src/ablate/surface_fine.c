@@ -29,7 +29,8 @@ static bool allocate(Fine *fine) {
     for (int f = 0; f < SPLINE_COUNT; f++)
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
-    return good && NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
+    return good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->centre, cells) &&
+            NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
            NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) && NEW(memory, fine->cell_point, cells) &&
            NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
            NEW(memory, fine->side_owner, sides) && NEW(memory, fine->side_cut, sides + 1);
@@ -45,6 +46,8 @@ static void release(Fine *fine) {
         FREE(memory, fine->splines[f].edge, sides);
         FREE(memory, fine->splines[f].corner, shell->vertex_count);
     }
+    FREE(memory, fine->normal, shell->particle_count);
+    FREE(memory, fine->centre, cells);
     FREE(memory, fine->cell_value, cells);
     FREE(memory, fine->low, cells);
     FREE(memory, fine->flags, cells);
@@ -61,7 +64,7 @@ static void release(Fine *fine) {
 }
 
 /// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss;
-/// there the level goes on falling as fast as it fell, so that the edge moves on evenly and does not stick to particles:
+/// there the level goes on falling as fast as it fell, so that the edge moves evenly and does not stick to particles:
 ///
 ///   m' <- min(m', -(1 - m_loss) (t - t_burnt)/(t_burnt - t_ignited)),   to LEVEL_GONE at most
 static void fill_levels(Fine *fine) {
@@ -109,6 +112,5 @@ SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const Stat
     SingeResult result = draw(&fine, detail, error);
     release(&fine);
     if (result) surface_clear(surface);
-    else if (surface->vertex_count) surface_normals(surface);
     return result;
 }

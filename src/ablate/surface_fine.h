@@ -79,6 +79,8 @@ typedef struct Fine {
     uint32_t *side_cut;      ///< [blue springs] first of the side's entries in `cuts`
     uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
+    float (*normal)[3];      ///< [particles] unit, or 0
+    float (*centre)[3];      ///< [cells] m, where the virtual centre is drawn
     FineVertex *vertices;    ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
     SingeSurface *surface;
@@ -136,7 +138,7 @@ SingeResult fine_march(Fine *fine, SingeError *error);
 
 // ---- fine_vertices.c
 
-/// Fills the surface's vertices, all but their normals.
+/// Fills the surface's vertices.
 void fine_vertices(const Fine *fine);
 
 #endif

@@ -176,6 +176,29 @@ static void linear_fields_are_exact(void **unused) {
     }
 }
 
+/// A sheet bent to a cylinder is drawn nearer to it than its cells are.
+static void bent_sheets_are_drawn_round(void **unused) {
+    (void)unused;
+    Drawing *d = drawing(12, 9, 1, 0.1f, 0);
+    const float radius = 3, sagitta = 1 / (8 * radius);
+    set_linear_fields(d, (Linear){0.03, 0.07, -0.4});
+    for (uint32_t i = 0; i < d->sheet->shell.vertex_count; i++) {
+        float *p = d->sheet->state.dynamics.position[i], angle = d->sheet->shell.rest_position[i][0] / radius;
+        p[0] = radius * sinf(angle), p[2] = radius * cosf(angle);
+    }
+    draw(d);
+    const SingeSurface *s = &d->surface;
+    assert_true(s->fine_triangle_count > 1000);
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (s->rest_position[v][0] < 1 || s->rest_position[v][0] > 11) continue; // normals at the border lean
+        float distance = hypotf(s->position[v][0], s->position[v][2]);
+        assert_float_equal(distance, radius, 0.1 * (double)sagitta);
+        float outwards = (s->normal[v][0] * s->position[v][0] + s->normal[v][2] * s->position[v][2]) / distance;
+        assert_true(outwards > 0.99f);
+    }
+    finish(d);
+}
+
 static void whole_sheets_are_drawn_coarsely(void **unused) {
     (void)unused;
     Drawing *d = drawing(4, 3, 0.01f, 1e-4f, 1e-3f);
@@ -266,7 +289,8 @@ static void raster(const SingeSurface *s, int width, int height, float step, uin
     for (uint32_t t = 0; t < s->triangle_count; t++) {
         const float *a = s->position[s->triangles[t][0]], *b = s->position[s->triangles[t][1]];
         const float *c = s->position[s->triangles[t][2]];
-        int x0 = (int)ceilf(fminf(a[0], fminf(b[0], c[0])) / step), y0 = (int)ceilf(fminf(a[1], fminf(b[1], c[1])) / step);
+        int x0 = (int)ceilf(fminf(a[0], fminf(b[0], c[0])) / step);
+        int y0 = (int)ceilf(fminf(a[1], fminf(b[1], c[1])) / step);
         int x1 = (int)floorf(fmaxf(a[0], fmaxf(b[0], c[0])) / step);
         int y1 = (int)floorf(fmaxf(a[1], fmaxf(b[1], c[1])) / step);
         for (int y = y0; y <= y1 && y < height; y++)
@@ -462,6 +486,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_levels_leave_no_cracks),
         cmocka_unit_test(linear_fields_are_exact),
+        cmocka_unit_test(bent_sheets_are_drawn_round),
         cmocka_unit_test(whole_sheets_are_drawn_coarsely),
         cmocka_unit_test(no_direction_is_preferred),
         cmocka_unit_test(what_is_gone_stays_gone),
