@@ -11,8 +11,8 @@ enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
 
 typedef struct Cluster { V3 place, strength; float weight; } Cluster;
 
-/// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held back,
-/// and an eye in the dark sees it better than a camera set for daylight does.
+/// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held
+/// back, and an eye in the dark sees it better than a camera set for daylight does.
 static const float EMBER_CAST = 5;
 
 /// Share of a triangle that the ember's line covers: the overlap of the two ranges of burn.

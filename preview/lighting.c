@@ -12,7 +12,9 @@ static const float occluded_sky = 0.22f; ///< light that still comes from where 
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
 static V3 reflect(const Point *point, V3 l) {
     float cosine = v3_dot(point->normal, l), side = v3_dot(point->geometric, l);
-    if (side <= 0) return v3_scale(point->albedo, point->transmission * maxf(-cosine, 0));
+    // what comes through has been scattered often, and is warmer for it
+    const V3 warm = {1.35f, 1.12f, 0.80f};
+    if (side <= 0) return v3_scale(v3_mul(point->albedo, warm), point->transmission * maxf(-cosine, 0));
     if (cosine <= 0) return v3(0, 0, 0);
     V3 out = v3_scale(point->albedo, cosine);
     if (point->gloss > 0) {
@@ -151,7 +153,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
 V3 light_embers(const Scene *scene, const Point *point, int first, int stride) {
     const EmberLights *l = &scene->lights;
     V3 p = point->position, n = point->normal;
-    float least = 0.3f * point->transmission, weight[LIGHT_LIMIT];
+    float least = 0.5f * point->transmission, weight[LIGHT_LIMIT];
     // by arrays: four lights at a time
     for (int k = 0; k < LIGHT_LIMIT; k++) {
         float x = l->x[k] - p.x, y = l->y[k] - p.y, z = l->z[k] - p.z;
