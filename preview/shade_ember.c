@@ -23,7 +23,7 @@ static float line_life(const Preview *preview, const Bent *bent) {
     float t = seconds(preview);
     V3 drift = v3_add(v3_scale(bent->place, 190), v3(0.5f * t, -0.35f * t, 0.8f * t));
     V3 patch = v3_add(v3_scale(bent->place, 62), v3(-0.12f * t, 0.2f * t, 0.15f * t));
-    return stepf(-0.45f, 0.6f, 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->middle +
+    return stepf(-0.22f, 0.62f, 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->middle +
                                    0.2f * bent->fine);
 }
 
@@ -32,7 +32,7 @@ static V3 line(const Preview *preview, const PaperState *state, const Bent *bent
     if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return v3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
     float distance = (bent->burn - EMBER_BURN) / maxf(state->gradient, 20.0f);
-    float width = EMBER_WIDTH * (0.45f + 0.75f * life), x = fabsf(distance) / width;
+    float width = EMBER_WIDTH * (0.42f + 0.66f * life), x = fabsf(distance) / width;
     float profile = distance > 0 ? 0.72f * expf(-0.5f * x * x) + 0.28f * expf(-0.8f * x) : expf(-x * x);
     float temperature = ember_temperature(state->temperature) + 210 * (life - 0.6f) + 60 * bent->fine;
     if (distance > 0) temperature -= 45 * minf(x, 3);

@@ -88,6 +88,46 @@ static void test_glow(void **state) {
     assert_float_equal(kept.glow[OFF][0], 0, 0);
 }
 
+/// The ember line of a burning sheet seen from straight above: thin, broken, and elsewhere a moment later.
+static void test_ember_line(void **state) {
+    (void)state;
+    enum { SIDE = 400, COUNT = SIDE * SIDE, SECTORS = 90 };
+    static float glow[2][COUNT][3];
+    SingeSurface surface;
+    assert_true(synthetic_make(SYNTHETIC_FLAT, 84, 0.04f, &surface));
+    PreviewDef def = above();
+    def.width = def.height = SIDE;
+    def.camera = (PreviewCamera){
+        .eye = {0.012f, 0.02f, 0.5f}, .target = {0.012f, 0.02f, 0}, .up = {0, 1, 0}, .fov = 0.24f};
+    Preview *preview = NULL;
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
+    for (int k = 0; k < 2; k++) {
+        const PreviewLayers layers = {.glow = glow[k]};
+        assert_int_equal(preview_draw_layers(preview, &surface, 1 + 0.5 * k, NULL, &layers, NULL), SINGE_OK);
+    }
+    preview_destroy(preview);
+    synthetic_free(&surface);
+    const float pixel = 1e3f * 2 * 0.5f * tanf(0.12f) / SIDE; // mm
+    int count[SECTORS] = {0}, lit = 0;
+    float radius[SECTORS] = {0}, change = 0, sum = 0, area = 0, around = 0, widest = 0;
+    for (int i = 0; i < COUNT; i++) {
+        change += fabsf(glow[1][i][0] - glow[0][i][0]), sum += glow[0][i][0];
+        if (glow[0][i][0] < 0.3f) continue;
+        float x = (float)(i % SIDE - SIDE / 2), y = (float)(i / SIDE - SIDE / 2);
+        int sector = (int)((atan2f(y, x) / 6.2832f + 0.5f) * (SECTORS - 0.01f));
+        count[sector]++, radius[sector] += sqrtf(x * x + y * y) * pixel;
+    }
+    for (int k = 0; k < SECTORS; k++) {
+        if (!count[k]) continue;
+        float arc = 6.2832f / SECTORS * radius[k] / (float)count[k], bright = (float)count[k] * pixel * pixel;
+        lit++, area += bright, around += arc, widest = fmaxf(widest, bright / arc);
+    }
+    assert_true(area / around > 0.2f && area / around < 1.6f); // mm wide where it glows
+    assert_true(widest < 3);
+    assert_in_range(lit, SECTORS / 3, SECTORS - 5);
+    assert_true(change > 0.1f * sum);
+}
+
 /// The picture is the same with layers and without, and so are the layers with and without the picture, whoever draws.
 static void test_same(void **state) {
     (void)state;
@@ -108,7 +148,7 @@ static void test_same(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values), cmocka_unit_test(test_normal), cmocka_unit_test(test_glow),
-        cmocka_unit_test(test_same),
+        cmocka_unit_test(test_same), cmocka_unit_test(test_ember_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
