@@ -35,10 +35,10 @@ static SingeMaterialDef standard_material(void) {
         // the front shrinks more in patches of a centimetre: fine wrinkles, and curl towards the front
         .shrink_front = {.value = 0.1f, .to = 0.9f, .field = SINGE_FIELD_NOISE, .noise = {0.008f, 2, 2}},
         .shrink_back = singe_param(0.3f),
-        .fibre_angle = singe_param(0.4363f), // 25 degrees
+        .fibre_angle = singe_param(0.43633231f), // 25 degrees
         .fibre_shrink = singe_param(2),
         .ablate = true,
-        .char_weight = singe_param(0.4f),
+        .char_weight = singe_param(0.8f),
         .drag = singe_param(1.3f),
         .damping = singe_param(0.5f),
     };
@@ -46,7 +46,7 @@ static SingeMaterialDef standard_material(void) {
         def.weight[colour] = singe_param(1);
         def.compliance[colour] = singe_param(0);
     }
-    def.compliance[SINGE_RED] = singe_param(0.4f);
+    def.compliance[SINGE_RED] = singe_param(1);
     def.compliance[SINGE_GREEN] = singe_param(0.1f);
     def.compliance[SINGE_YELLOW] = singe_param(0.02f);
     return def;
