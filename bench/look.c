@@ -17,6 +17,9 @@
 #include "bench/geometry.h"
 #include "bench/sheet.h"
 
+/// Enough for the default firmness at every setting (docs/equations.md, Firmness).
+enum { SUBSTEPS = 16 };
+
 enum { POINTS = 41, LINES = 24, SAMPLES = 128 };
 
 enum { SETTING, SAG, SAG_CHANGE, DROP, DROP_CHANGE, SHAPE, WAVE, WAVE_CHANGE, MEAN_WAVE, MEAN_CHANGE, HEIGHT, COLUMNS };
@@ -177,6 +180,7 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
     for (int i = 0; i < SETTINGS && !result; i++) {
         const Setting *setting = &settings[i];
         BenchSetup setup = sheet_setup(options, BENCH_HANG, 20);
+        if (!options->substeps) setup.solver.substeps = SUBSTEPS;
         setup.cells = (int)(cells.values[0] * setting->cells);
         setup.thickness = (float)thickness.values[0], setup.damping = 3;
         setup.time_step *= (float)setting->step;
