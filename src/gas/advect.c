@@ -10,8 +10,11 @@
 // with q_up of the cell that the flow comes from, b the difference across the face, a that on the flow's side before it
 // and phi the least of |a + b|/2, 2 |a| and 2 |b|, signed, where they agree in sign, else 0 (van Leer 1977): of second
 // order where q is smooth, and no new extremes. The last term keeps what is even even on the way (Weymouth & Yue 2010); after the last axis, q0
-// sum(c_upper - c_lower) is taken off again, of heat, fuel and smoke: so what leaves a cell enters the next to the last
-// bit. Momentum keeps it, as velocities are not densities. D is the mixing of hot air.
+// sum(c_upper - c_lower) is taken off again: so what leaves a cell enters the next to the last bit. Velocities go as
+// momentum, (1 - L) u.
+//
+// D mixes: hot air does by itself, and eddies that the cells do not show do by the shear of those that they show
+// (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
 // The way of a step is cut so that along no axis more than a cell is passed at once.
 #include "gas/sweep.h"
@@ -23,7 +26,8 @@ enum { ADVECT_PARTS_MOST = 8 };
 static const float ADVECT_COURANT = 0.9f;
 static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
 static const float ADVECT_MIXING = 2e-4f; ///< m2/s, of hot air: 1.9e-4 at 1100 K
-static const float ADVECT_MIX_MOST = 0.2f; ///< more would not be stable
+static const float ADVECT_EDDY = 0.2f;    ///< C
+static const float ADVECT_MIX_MOST = 0.1f; ///< twice as much must be stable along one axis
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
@@ -48,7 +52,7 @@ static void advect_frame(const GasGrid *grid, const GasBox *box, const float *fr
 /// Carries one field all the way of a step. Outside of the box it stays as it is.
 static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     GasPlan *plan = pass->plan;
-    const float *start = pass->from->field[f];
+    const float *start = f < GAS_VELOCITY ? pass->from->field[f] : plan->spare[2];
     float *end[2], *between = plan->spare[1];
     end[(parts - 1) % 2] = pass->to->field[f], end[parts % 2] = plan->spare[0];
     memcpy(pass->to->field[f], start, plan->grid.cells * sizeof(float));
@@ -61,7 +65,7 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
         for (int s = 0; s < 3; s++) {
             int axis = part % 2 ? 2 - s : s; // so that no axis is always the first
             Sweep sweep = {.pass = pass, .box = box, .from = from[s], .to = to[s], .start = start, .axis = axis,
-                           .across = axis == 2 ? 1 : 2, .last = s == 2 && f < GAS_VELOCITY,
+                           .across = axis == 2 ? 1 : 2, .last = s == 2,
                            .rows = plan->rows};
             pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
         }
@@ -134,6 +138,57 @@ static void advect_boxes(GasPass *pass, int parts) {
     }
 }
 
+/// Half the share of a difference that a face evens out: D dt/cell^2/2.
+static void advect_mixing(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    const GasPlan *plan = pass->plan;
+    const GasGrid *grid = &plan->grid;
+    const float *const *u = (const float *const *)&pass->from->field[GAS_VELOCITY];
+    float still = 0.5f * ADVECT_MIXING * pass->courant / plan->cell;
+    float eddy = 0.5f * ADVECT_EDDY * ADVECT_EDDY * pass->courant * 0.5f;
+    still = still < ADVECT_MIX_MOST ? still : ADVECT_MIX_MOST;
+    for (int k = begin; k < end; k++)
+        for (int j = 0; j < grid->n[1]; j++) {
+            size_t c = gas_at(grid, 0, j, k);
+            float *restrict mixing = plan->mixing + c;
+            for (int i = 0; i < grid->n[0]; i++) mixing[i] = 0;
+            for (int d = 0; d < 3; d++)
+                for (int e = 0; e < 3; e++) {
+                    const float *restrict a = u[d] + c - grid->stride[e], *restrict b = u[d] + c + grid->stride[e];
+                    for (int i = 0; i < grid->n[0]; i++) mixing[i] += (b[i] - a[i]) * (b[i] - a[i]);
+                }
+            for (int i = 0; i < grid->n[0]; i++) {
+                float mix = still + eddy * sqrtf(mixing[i]);
+                mixing[i] = mix < ADVECT_MIX_MOST ? mix : ADVECT_MIX_MOST;
+            }
+        }
+}
+
+/// (1 - L) u of the field of the pass, of which the velocity is carried.
+static void advect_to_momentum(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    const GasGrid *grid = &pass->plan->grid;
+    for (int k = begin; k < end; k++)
+        for (int j = 0; j < grid->n[1]; j++) {
+            size_t c = gas_at(grid, 0, j, k);
+            const float *restrict L = pass->from->field[GAS_LIGHTNESS] + c, *restrict u = pass->from->field[pass->field] + c;
+            float *restrict momentum = pass->plan->spare[2] + c;
+            for (int i = 0; i < grid->n[0]; i++) momentum[i] = (1 - L[i]) * u[i];
+        }
+}
+
+static void advect_to_velocity(void *context, int begin, int end) {
+    const GasPass *pass = context;
+    const GasGrid *grid = &pass->plan->grid;
+    for (int k = begin; k < end; k++)
+        for (int j = 0; j < grid->n[1]; j++) {
+            size_t c = gas_at(grid, 0, j, k);
+            const float *restrict L = pass->to->field[GAS_LIGHTNESS] + c;
+            float *restrict u = pass->to->field[pass->field] + c;
+            for (int i = 0; i < grid->n[0]; i++) u[i] /= L[i] < GAS_LIGHTEST ? 1 - L[i] : 1 - GAS_LIGHTEST;
+        }
+}
+
 void gas_advect(GasPass *pass) {
     GasPlan *plan = pass->plan;
     double fastest = 0;
@@ -144,8 +199,12 @@ void gas_advect(GasPass *pass) {
     // a wind so strong that it blows everything away in a few steps may do so more slowly
     float slower = way > ADVECT_PARTS_MOST ? ADVECT_PARTS_MOST / way : 1;
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
-    pass->mix = ADVECT_MIXING * pass->dt / (plan->cell * plan->cell * (float)parts);
-    if (pass->mix > ADVECT_MIX_MOST) pass->mix = ADVECT_MIX_MOST;
     advect_boxes(pass, parts);
-    for (int f = 0; f < GAS_CARRIED; f++) advect_field(pass, f, &pass->busy[f < GAS_SMOKE ? 0 : f < GAS_VELOCITY ? 1 : 2], parts);
+    gas_planes(pass, &plan->grid, advect_mixing);
+    for (int f = 0; f < GAS_CARRIED; f++) {
+        pass->field = f;
+        if (f >= GAS_VELOCITY) gas_planes(pass, &plan->grid, advect_to_momentum);
+        advect_field(pass, f, &pass->busy[f < GAS_SMOKE ? 0 : f < GAS_VELOCITY ? 1 : 2], parts);
+        if (f >= GAS_VELOCITY) gas_planes(pass, &plan->grid, advect_to_velocity);
+    }
 }

@@ -39,7 +39,7 @@ static void flame_planes(void *context, int begin, int end) {
                 smoke[i] = (smoke[i] + burnt * sooty) * thin;
                 // what is next to nothing is nothing: numbers near the smallest are slow
                 fuel[i] = fuel[i] > FLAME_FUEL_LEAST ? fuel[i] : 0;
-                L[i] = L[i] > FLAME_LIGHTNESS_LEAST ? L[i] : 0;
+                L[i] = L[i] > FLAME_LIGHTNESS_LEAST ? L[i] < GAS_LIGHTEST ? L[i] : GAS_LIGHTEST : 0;
                 smoke[i] = smoke[i] > FLAME_SMOKE_LEAST ? smoke[i] : 0;
             }
         }

@@ -106,8 +106,9 @@ static size_t plan_turn(const GasPlan *plan, float *base, GasTurn *turn) {
 
 static size_t plan_scratch(GasPlan *plan, float *base) {
     size_t used = 0, cells = plan->grid.cells;
-    for (int f = 0; f < 2; f++) plan->spare[f] = take(base, &used, cells);
+    for (int f = 0; f < 3; f++) plan->spare[f] = take(base, &used, cells);
     for (int d = 0; d < 3; d++) plan->open[d] = take(base, &used, cells);
+    plan->mixing = take(base, &used, cells);
     plan->expansion = take(base, &used, cells);
     plan->solid = (uint8_t *)take(base, &used, cells / sizeof(float) + 1);
     for (int l = 0; l < plan->levels; l++) {

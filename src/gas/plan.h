@@ -5,7 +5,7 @@
 //
 //   L = 1 - Ta/T = 1 - rho/rho_a,   heat per volume = GAS_HEAT L,   GAS_HEAT = 353 cp = 355 kJ/m3
 //
-// which is carried like a density, lifts with g L/(1 - L), and grows by q/GAS_HEAT where q W/m3 are set free, while
+// which is carried like a density, lifts with g L, and grows by q/GAS_HEAT where q W/m3 are set free, while
 // the gas expands by just as much: div u = q/GAS_HEAT (low Mach number, ideal gas).
 #ifndef GAS_PLAN_H
 #define GAS_PLAN_H
@@ -15,6 +15,7 @@
 #define GAS_HEAT (353 * 1005.f) ///< J/m3
 
 #define GAS_HOTTEST 1450.f ///< K, of a flame
+#define GAS_LIGHTEST 0.85f ///< L above which nothing comes
 
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature
@@ -96,11 +97,12 @@ struct GasPlan {
     size_t block_size;   ///< floats
 
     // scratch
-    float *spare[2];
+    float *spare[3];
     float *open[3];      ///< share of a cell's lower face that nothing covers
     uint8_t *solid;      ///< a collider's
     GasLevel level[GAS_LEVELS];
     int levels;
+    float *mixing;       ///< half the share of a difference that a face of the cell evens out
     float *expansion;    ///< L that a step adds
     double *partial;     ///< [planes]
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
@@ -129,7 +131,7 @@ typedef struct GasPass {
     float fire;    ///< s of fire since the last step
     // of one pass
     float courant; ///< dt/cell of a part of the way
-    float mix;     ///< share of a difference that a face evens out in it
+    int field;
     GasBox busy[GAS_BOXES];
     GasLevel *level;
     int colour;

@@ -8,7 +8,8 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
     const size_t beyond = pass->plan->grid.stride[sweep->axis];
     const float *restrict through = pass->from->field[GAS_THROUGH + sweep->axis] + c;
     const float *restrict open = pass->plan->open[sweep->axis] + c;
-    const float wind = pass->wind[sweep->axis], courant = pass->courant, mix = pass->mix;
+    const float wind = pass->wind[sweep->axis], courant = pass->courant;
+    const float *restrict mixing = pass->plan->mixing + c, *restrict below = mixing - beyond;
     const float *restrict q = sweep->from + c, *restrict low = q - beyond, *restrict lowest = low - beyond,
                 *restrict high = q + beyond;
     for (int i = 0; i < count; i++) {
@@ -18,7 +19,7 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
         float up = way > 0 ? q1 : q2, side = way > 0 ? 1.f : -1.f;
         float middle = 0.25f * fabsf(a + b), least = fabsf(a) < fabsf(b) ? fabsf(a) : fabsf(b);
         float slope = a * b > 0 ? middle < least ? middle : least : 0, turn = b > 0 ? side : -side;
-        flux[i] = way * (up + turn * (1 - size) * slope) - mix * open[i] * b;
+        flux[i] = way * (up + turn * (1 - size) * slope) - (mixing[i] + below[i]) * open[i] * b;
     }
 }
 

@@ -127,7 +127,7 @@ static SingeGasDef standard_gas(void) {
     return (SingeGasDef){
         .struct_size = sizeof(SingeGasDef),
         .height = 0.25f,
-        .conductance = 12,
+        .conductance = 10,
         .radiated = 0.3f,
         .soot = 0.01f,
     };

@@ -18,6 +18,7 @@ SingeSimDef scene_def(void) {
     def.time_step = 1.0f / 240;
     def.wind.gust = 0.5f;
     def.wind.velocity[0] = 0.2f;
+    def.gas.enabled = true, def.gas.cell_size = 0.02f;
     return def;
 }
 

@@ -8,7 +8,7 @@
 SingeMaterialDef scene_quick_material(void);
 
 /// A simulation with everything in it: two sheets, one with an unused vertex; sources of all kinds; colliders of
-/// all kinds, moving and hot; pins by points, by vertices and on a path; gusts. Burning from the first steps on.
+/// all kinds, moving and hot; pins by points, by vertices and on a path; gusts; gas. Burning from the first steps on.
 typedef struct Scene {
     SingeSim *sim;
     SingeSheetId sheets[2];
