@@ -56,7 +56,8 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
         &material.shrink_front, &material.shrink_back, &material.char_weight, &material.drag, &material.damping};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
     const SingeParam cold = material.temperature;
     material.temperature = (SingeParam){.value = cold.field ? 0.5f * (cold.value + cold.to) : cold.value, .to = 1100,
                                         .field = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};

@@ -99,9 +99,8 @@ static void report_front(const Scene *scene, const BenchMaterial *material, floa
     if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
     float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
     if (step <= fine) return;
-    if (!front_of(material, step, &rough)) rough.speed = 0;
-    if (rough.speed < 0.9 * front.speed)
-        printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * (1 - rough.speed / front.speed));
+    double slower = front_of(material, step, &rough) ? 1 - rough.speed / front.speed : 1;
+    if (slower > 0.1) printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * slower);
 }
 
 /// The sheets' materials, those of a name and weight once, and how fast their fire is going to be.

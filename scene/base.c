@@ -80,7 +80,8 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
     }
     char seen[80], hint[80], names[160];
     message_add(reader->messages, reader->text, node->place,
-                "there is no material %s; built in are %s, and a file of your own is named with its ending (mine.yaml)%s",
+                "there is no material %s; built in are %s, and a file of your own is named with its ending "
+                "(mine.yaml)%s",
                 node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
                 nearest_hint(&nearest, hint, sizeof hint));
     return NULL;

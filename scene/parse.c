@@ -65,7 +65,8 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
         schema_spell_out(arena, &schema_scene, root);
     if (root && !tree_set(arena, text, root, messages))
         return SINGE_ERROR_MEMORY;
-    Reader reader = {.arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "", .scene = scene};
+    Reader reader = {.arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "",
+                     .scene = scene};
     if (root)
         scene_fill(&reader, root);
     if (arena_failed(arena))

@@ -147,8 +147,8 @@ static const SchemaRow measured_rows[] = {
 static const Schema schema_measured = {
     .title = "what is measured", .size = sizeof(SceneMeasured), ROWS(measured_rows),
     .defaults = default_measured,
-    .doc = "What sources say of the material's fire, for `singe bench front`; nothing is computed from it. 0 and 0 where "
-           "they say nothing."};
+    .doc = "What sources say of the material's fire, for `singe bench front`; nothing is computed from it. 0 and 0 "
+           "where they say nothing."};
 
 static const SchemaRow material_rows[] = {
     {"base", ROW_BASE, DIM_NONE, .offset = 0, .flags = ROW_SHORT,
@@ -176,10 +176,11 @@ static const SchemaRow material_rows[] = {
            "little as the cells need; one number for the whole sheet"),
     PARAM("temperature", temperature, DIM_TEMPERATURE, KELVIN, "at the start"),
     PARAM("ignition_temperature", ignition_temperature, DIM_TEMPERATURE, OVER(0), "above it the sheet burns"),
-    PARAM("heat_of_combustion", heat_of_combustion, DIM_SPECIFIC_ENERGY, FROM(0), "heat that a kilogram gives as it burns"),
+    PARAM("heat_of_combustion", heat_of_combustion, DIM_SPECIFIC_ENERGY, FROM(0),
+          "heat that a kilogram gives as it burns"),
     PARAM("heat_share", heat_share, DIM_FRACTION, WITHIN(0, 1),
-          "share of it that stays in the sheet; the rest goes up in the flame. eta of eq 1, the warming when all of the "
-          "mass burns with no losses, is heat_share heat_of_combustion/specific_heat"),
+          "share of it that stays in the sheet; the rest goes up in the flame. eta of eq 1, the warming when all of "
+          "the mass burns with no losses, is heat_share heat_of_combustion/specific_heat"),
     PARAM("mass_rate", mass_rate, DIM_RATE_PER_KELVIN, FROM(0),
           "mu of eq 4: mass lost per second and kelvin above ignition"),
     PARAM("rate_ceiling", rate_ceiling, DIM_TEMPERATURE_DIFFERENCE, OVER_OR_INF(0),
@@ -216,8 +217,8 @@ const Schema schema_material = {
     .choice = "base",
     .finish = finish_material,
     .doc =
-        "What a sheet is made of and how it burns. `material: newsprint` takes one as it is, `material: {base: newsprint, "
-        "thickness: 2 mm}` changes it; the defaults are those of office-paper, 80 g/m2 at its real pace. Mass is "
+        "What a sheet is made of and how it burns. `material: newsprint` takes one as it is, `material: {base: "
+        "newsprint, thickness: 2 mm}` changes it; the defaults are those of office-paper, 80 g/m2 at its real pace. Mass is "
         "always a fraction of the mass at the start. A value marked *varies* may also follow a picture, an attribute "
         "or a noise (see *Values that vary*)."};
 

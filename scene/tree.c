@@ -187,11 +187,13 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         for (int i = 1; good && i <= more; i++)
             good = (c[i] & 0xc0) == 0x80;
         if (!good) {
-            builder_fail(builder, place_at(builder, line, column), "this byte is not text; a scene is UTF-8 without control characters");
+            builder_fail(builder, place_at(builder, line, column),
+                         "this byte is not text; a scene is UTF-8 without control characters");
             return false;
         }
         if (begins && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
-            builder_fail(builder, place_at(builder, line, column), "a line must not begin with %; directives of YAML are not supported");
+            builder_fail(builder, place_at(builder, line, column),
+                         "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
         bool mark = c == (const unsigned char *)bytes && more == 2 && memcmp(c, "\xef\xbb\xbf", 3) == 0;

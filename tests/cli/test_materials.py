@@ -50,7 +50,7 @@ class Materials(Case):
         self.assertIn("did you mean 'tissue'?", err)
 
     def test_a_run_keeps_its_material(self):
-        """Pictures can be drawn again and runs go on without the material's file; one that has changed is another scene."""
+        """A resolved scene needs the material's file no more; with a file that has changed it is another scene."""
         self.write_mine()
         self.write_scene_of("materials/mine.yaml")
         self.run_scene("o", "--quiet", "--frames", "3")
@@ -72,7 +72,8 @@ class Materials(Case):
 
     def test_bench_front_on_ones_own(self):
         self.write_mine()
-        out, _ = self.singe("bench", "front", "--quick", "--json", "--material", "materials/mine.yaml,tissue", cwd=self.dir)
+        both = ["--quick", "--json", "--material", "materials/mine.yaml,tissue"]
+        out, _ = self.singe("bench", "front", *both, cwd=self.dir)
         mine, tissue = json.loads(out)["rows"]
         self.assertEqual((mine["material"], mine["g_m2"], mine["finding"]), ("mine", 60, "faster"))
         self.assertEqual((tissue["material"], tissue["finding"]), ("tissue", "as sources say"))

@@ -34,7 +34,8 @@ static void front_speed_does_not_depend_on_cells(void **unused) {
     (void)unused;
     SingeMaterialDef material = singe_default_material();
     material.diffusivity = singe_param(2.7e-6f), material.mass_rate = singe_param(8e-3f);
-    material.heat_of_combustion = singe_param(2400 * 1400), material.heat_share = singe_param(1), material.rate_ceiling = singe_param(INFINITY);
+    material.heat_of_combustion = singe_param(2400 * 1400), material.heat_share = singe_param(1);
+    material.rate_ceiling = singe_param(INFINITY);
     material.ash_exponent = singe_param(1), material.mass_loss = singe_param(0.22f);
     compare(&material, 4e-3, 7e-3);
 }
@@ -58,7 +59,8 @@ static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
         float grammage = sheets[k].grammage, ratio = grammage / 0.080f;
         SingeMaterialDef material = singe_default_material();
         material.grammage = singe_param(grammage);
-        StripResult same = burn_strip(0.001f, 0.002f, &material), shorter = burn_strip(0.001f, 0.002f * ratio, &material);
+        StripResult same = burn_strip(0.001f, 0.002f, &material);
+        StripResult shorter = burn_strip(0.001f, 0.002f * ratio, &material);
         print_message("%.0f g/m2: F %.2f, front %.3f mm/s, hottest %.0f C; steps of %.1f ms: %.3f mm/s, %.0f C\n",
                       (double)grammage * 1e3, same.thickening, same.speed * 1e3, same.hottest - 273.15,
                       2 * (double)ratio, shorter.speed * 1e3, shorter.hottest - 273.15);

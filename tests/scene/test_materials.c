@@ -32,8 +32,8 @@ static void folder_remove(const Folder *folder) {
     assert_int_equal(system(command), 0);
 }
 
-static SingeResult folder_parse(const Folder *folder, const char *text, const char *const *sets, int count, Scene **scene,
-                                SceneMessages *messages) {
+static SingeResult folder_parse(const Folder *folder, const char *text, const char *const *sets, int count,
+                                Scene **scene, SceneMessages *messages) {
     return scene_parse("scene.yaml", text, strlen(text), folder ? folder->path : NULL, sets, count, scene, messages);
 }
 
@@ -216,16 +216,19 @@ static void test_mistakes(void **state) {
     assert_int_equal(fclose(file), 0);
 
     expect_mistake(in, "    material: newsprnt\n", "scene.yaml:3:15", "did you mean 'newsprint'?", 1);
-    expect_mistake(in, "    material: silk\n", "scene.yaml:3:15", "built in are cotton, newsprint, office-paper, tissue", 1);
+    expect_mistake(in, "    material: silk\n", "scene.yaml:3:15",
+                   "built in are cotton, newsprint, office-paper, tissue", 1);
     expect_mistake(in, "    material: {base: [1]}\n", "scene.yaml:3:22", "base must be a material (cotton", 1);
-    expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15", "material must be a map (key: value) or a material (", 1);
+    expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15",
+                   "material must be a map (key: value) or a material (", 1);
     expect_mistake(in, "    material: {base: newsprint, base: tissue}\n", "scene.yaml:3:16", "is given twice", 1);
     expect_mistake(in, "    material: gone.yaml\n", "scene.yaml:3:15", "there is no such file", 1);
     expect_mistake(in, "    material: ./\n", "scene.yaml:3:15", "this is a folder", 1);
     expect_mistake(in, "    material: key.yaml\n", "key.yaml:2:1", "did you mean 'thickness'?", 1);
     expect_mistake(in, "    material: value.yaml\n", "value.yaml:1:11", "possible are: kg/m2, g/m2", 1);
     expect_mistake(in, "    material: list.yaml\n", "list.yaml:1:1", "a material must be a map", 1);
-    expect_mistake(in, "    material: word.yaml\n", "word.yaml:1:1", "a material must be a map (key: value), not 'newsprint'", 1);
+    expect_mistake(in, "    material: word.yaml\n", "word.yaml:1:1",
+                   "a material must be a map (key: value), not 'newsprint'", 1);
     expect_mistake(in, "    material: empty.yaml\n", "empty.yaml", "the file is empty", 1);
     expect_mistake(in, "    material: broken.yaml\n", "broken.yaml:2:1", "not valid YAML", 1);
     expect_mistake(in, "    material: self.yaml\n", "self.yaml:2:7", "begins as itself", 1);
@@ -236,7 +239,8 @@ static void test_mistakes(void **state) {
     expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 deep", 1);
     expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "at most 1 MiB", 1);
     // told once however many sheets are made of it, and behind those of the scene
-    expect_mistake(in, "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
+    expect_mistake(in,
+                   "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
                    "scene.yaml:5:1", "did you mean 'pace'?", 2);
     folder_remove(in);
     // without a folder files are not looked for, but what is built in is there
