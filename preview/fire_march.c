@@ -138,7 +138,7 @@ static V3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise 
     body *= 0.16f + 1.25f * sheet * sheet;
     *opaque = FLAME_OPAQUE * body * soot;
     V3 glow = v3_scale(flame_colour(fire, clampf(hot, 0, 1)), FLAME_DENSE * body * soot);
-    return v3_mad(glow, v3(0.6f, 1.3f, 3.6f), body * (1 - soot) * cell->flame);
+    return v3_mad(glow, v3(0.45f, 0.9f, 2.2f), body * (1 - soot) * cell->flame);
 }
 
 static V3 smoke_colour(const Preview *preview, float glow) {
