@@ -115,7 +115,7 @@ typedef struct Gas {
 } Gas;
 
 /// Cells that a Gas may have.
-enum { GAS_CELL_LIMIT = 1 << 24 };
+enum { GAS_CELL_LIMIT = 1 << 23 };
 
 /// What a file keeps of a gas: blocks of 8 x 8 x 8 cells of which none holds smoke, flame or heat worth a look become
 /// still air of the coolest cell's temperature. SINGE_ERROR_ARGUMENT where a value is not finite, SINGE_ERROR_LIMIT

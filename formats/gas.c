@@ -36,6 +36,13 @@ bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest
     return false;
 }
 
+void gas_fill(Gas *gas, float coolest) {
+    size_t count = gas_cells(&gas->view);
+    if (coolest == 0) memset(gas->temperature, 0, count * sizeof *gas->temperature);
+    else
+        for (size_t i = 0; i < count; i++) gas->temperature[i] = coolest;
+}
+
 SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *error) {
     size_t count = gas_cells(&gas->view);
     gas->temperature = store_new(gas->allocator, count, sizeof *gas->temperature);
@@ -43,7 +50,7 @@ SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *erro
     gas->flame = store_new(gas->allocator, count, sizeof *gas->flame);
     gas->velocity = store_new(gas->allocator, count, sizeof *gas->velocity);
     if (!gas->temperature || !gas->smoke || !gas->flame || !gas->velocity) return refuse_memory(error, "gas", name);
-    for (size_t i = 0; i < count; i++) gas->temperature[i] = coolest;
+    gas_fill(gas, coolest);
     memset(gas->smoke, 0, count * sizeof *gas->smoke);
     memset(gas->flame, 0, count * sizeof *gas->flame);
     memset(gas->velocity, 0, count * sizeof *gas->velocity);

@@ -34,6 +34,8 @@ bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest
 float gas_coolest(const SingeGas *gas);
 /// Whether the sizes, the place and the number of cells can be.
 bool gas_shape_is_good(const SingeGas *gas);
+/// Sets every temperature.
+void gas_fill(Gas *gas, float coolest);
 /// Makes the arrays for gas->view.size, filled with still air.
 SINGE_NODISCARD SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *error);
 

@@ -62,6 +62,7 @@ typedef struct Text {
 } Text;
 
 static Text get_string(Reader *r) {
+    if (!has(r, 4)) return (Text){NULL, 0};
     uint32_t size = get_u32(r);
     return (Text){take(r, size), size};
 }
@@ -166,13 +167,15 @@ static SingeResult read_node(Reader *r, Reader *buffers, const uint32_t low[3], 
 }
 
 static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
-    uint32_t width = vdb_fields[field].width, tiles, children;
-    float *values = vdb_field(r->gas, field), background = 0;
-    bool even = get_u32(r) == 1;
-    for (uint32_t k = 0; k < width; k++) background = get_float(r), even = even && isfinite(background);
-    tiles = get_u32(r), children = get_u32(r);
-    if (!even || tiles || children > 1) return bad(r, "the tree's root is not as Singe writes it");
-    for (size_t i = 0, count = width * gas_cells(&r->gas->view); i < count; i++) values[i] = background;
+    bool good = get_u32(r) == 1;
+    float background = 0;
+    for (uint32_t k = 0; k < vdb_fields[field].width; k++) {
+        background = get_float(r);
+        good = good && isfinite(background) && (background == 0 || field == VDB_TEMPERATURE);
+    }
+    uint32_t tiles = get_u32(r), children = get_u32(r);
+    if (!good || tiles || children > 1) return bad(r, "the tree's root is not as Singe writes it");
+    if (field == VDB_TEMPERATURE) gas_fill(r->gas, background);
     if (!children) return SINGE_OK;
     static const uint8_t zero[12];
     const uint8_t *origin = take(r, 12), *nodes = take_node(r, VDB_UPPER_MASK);

@@ -125,6 +125,14 @@ static void bad_bytes_are_refused(void **state) {
         assert_message(&error, "a.vdb");
         assert_null(read.smoke);
     }
+    // more metadata than there are: the file's end ends them
+    uint8_t few = bytes.data[0x39];
+    assert_int_equal(few, 3);
+    memset(bytes.data + 0x39, 0xff, 4);
+    assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL, &error),
+                     SINGE_ERROR_FORMAT);
+    assert_message(&error, "metadata");
+    memset(bytes.data + 0x39, 0, 4), bytes.data[0x39] = few;
     for (size_t at = 0; at < bytes.size; at += at < 1500 ? 1 : 499) {
         uint8_t before = bytes.data[at];
         bytes.data[at] ^= 0x9d;
