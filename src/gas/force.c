@@ -1,20 +1,48 @@
 // Buoyancy, of gas that is lighter than the air about it by (rho_a - rho)/rho = L/(1 - L):
 //
 //   du/dt = -g L/(1 - L)
+//
+// and the unrest that the air of a room has and cells do not show: across the way up a noise, in proportion to the
+// buoyancy, that makes flames lick and plumes sway:
+//
+//   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
 #include "gas/plan.h"
+
+#include "base/random.h"
+
+static const float FORCE_UNREST = 0.6f, FORCE_SIZE = 0.02f, FORCE_TIME = 0.08f; ///< -, m, s
+static const float FORCE_LIGHT = 0.02f;                                         ///< L from which there is any
+
+/// What a row has of it along axis d.
+static void force_unrest(const GasPass *pass, int d, int j, int k, float strength) {
+    const GasPlan *plan = pass->plan;
+    size_t c = gas_at(&plan->grid, 0, j, k);
+    const float *L = pass->to->field[GAS_LIGHTNESS] + c;
+    float *u = pass->to->field[GAS_VELOCITY + d] + c, step = plan->cell / FORCE_SIZE;
+    // time runs along its own diagonal, as that of the wind's gusts
+    float t = (float)(pass->state->time / (double)FORCE_TIME);
+    for (int i = 0; i < plan->grid.n[0]; i++)
+        if (L[i] > FORCE_LIGHT)
+            u[i] += strength * L[i] / (1 - L[i]) *
+                    (2 * random_noise((float)i * step + 0.3f * t, (float)j * step + 0.4f * t, (float)k * step + t,
+                                      (uint32_t)d) - 1);
+}
 
 static void force_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
+    Vec g = vec_load(plan->settings.gravity), up = vec_unit(g);
     for (int d = 0; d < 3; d++) {
-        float lift = -plan->settings.gravity[d] * pass->dt;
-        for (int k = begin; k < end && lift != 0; k++)
+        float lift = -plan->settings.gravity[d] * pass->dt, along = d == 0 ? up.x : d == 1 ? up.y : up.z;
+        float unrest = FORCE_UNREST * vec_length(g) * (1 - fabsf(along)) * pass->dt;
+        for (int k = begin; k < end; k++)
             for (int j = 0; j < grid->n[1]; j++) {
                 size_t c = gas_at(grid, 0, j, k);
                 const float *restrict L = pass->to->field[GAS_LIGHTNESS] + c;
                 float *restrict u = pass->to->field[GAS_VELOCITY + d] + c;
-                for (int i = 0; i < grid->n[0]; i++) u[i] += lift * L[i] / (1 - L[i]);
+                for (int i = 0; lift != 0 && i < grid->n[0]; i++) u[i] += lift * L[i] / (1 - L[i]);
+                if (unrest > 0) force_unrest(pass, d, j, k, unrest);
             }
     }
 }

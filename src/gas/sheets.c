@@ -4,7 +4,7 @@
 //
 //   E = (1 - radiated) dm H_gas/pace
 //
-// half a cell off the sheet on the particle's own side, H_gas J/kg being what of the heat of combustion did not stay in
+// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being what of the heat of combustion did not stay in
 // the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas moves, and its power is that of the real fire.
 //
 // In turn the gas heats, from the place that the flow has come from, so that heat arrives by the flow only and not by
@@ -22,6 +22,7 @@
 static const float SHEET_REACH = 1.25f;     ///< cells
 static const float SHEET_LAYER = 5e-3f;     ///< m, of the gas that flows along a sheet
 static const float SHEET_STILL = 0.05f;     ///< m/s, u_0
+static const float SHEET_LEVEL = 0.5f;      ///< cosine between down and a side that looks down
 static const float SHEET_LEAST = 1;         ///< K above the ambient that are felt
 static const float SHEET_CP = 1005;         ///< J/(kg K)
 
@@ -54,12 +55,22 @@ void gas_normals(GasPass *pass) {
     pool_for(pass->pool, (int)pass->shell->vertex_count, POOL_BLOCK, sheets_corners, pass);
 }
 
-/// The particle's place half a cell off the sheet, on its own side or, where that is a collider's, on the other.
-/// False outside of the grid.
-static bool sheets_place(const GasPass *pass, uint32_t i, Vec *x) {
+/// A particle's own side of the sheet.
+static float sheets_side(const GasPass *pass, uint32_t i) { return shell_is_corner(pass->shell, i) ? -0.5f : 0.5f; }
+
+/// The side on which its gas comes out: its own, unless that looks down. Then the gas goes up through what has burnt.
+static float sheets_vent(const GasPass *pass, uint32_t i) {
+    float side = sheets_side(pass, i);
+    Vec down = vec_unit(vec_load(pass->plan->settings.gravity)), normal = vec_load(pass->plan->normal[i]);
+    return 2 * side * vec_dot(normal, down) > SHEET_LEVEL ? -side : side;
+}
+
+/// The particle's place half a cell off the sheet, on that side or, where it is a collider's, on the other. False
+/// outside of the grid.
+static bool sheets_place(const GasPass *pass, uint32_t i, float side, Vec *x) {
     const GasPlan *plan = pass->plan;
     Vec at = vec_load(pass->state->dynamics.position[i]), normal = vec_load(plan->normal[i]);
-    float side = shell_is_corner(pass->shell, i) ? -0.5f : 0.5f, place[3];
+    float place[3];
     for (int k = 0; k < 2; k++, side = -side) {
         *x = vec_mad(at, normal, side * plan->cell);
         if (!gas_place(plan, *x, place)) continue;
@@ -114,7 +125,7 @@ void gas_feed(GasPass *pass) {
     for (uint32_t i = 0; i < plan->particles; i++) {
         float gone = before[i] - now[i];
         pass->to->mass[i] = now[i];
-        if (gone > 0 && sheets_place(pass, i, &x))
+        if (gone > 0 && sheets_place(pass, i, sheets_vent(pass, i), &x))
             sheets_add(plan, pass->to->field[GAS_FUEL], x, gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
     }
 }
@@ -165,7 +176,7 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!gas_place(plan, x, place)) continue;
         float open = sheets_open(plan, place, plan->normal[i]);
         for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
-        if (!(g0 > 0) || !sheets_place(pass, i, &x) || !gas_place(plan, sheets_upstream(pass, x), place)) continue;
+        if (!(g0 > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x) || !gas_place(plan, sheets_upstream(pass, x), place)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], place));
         if (temperature < ambient + SHEET_LEAST) continue;
         float gone = (pass->from->mass[i] - pass->state->burn.mass[i]) * matter->mass[i] / (matter->area[i] * pass->fire);
@@ -182,7 +193,8 @@ static void sheets_cool(GasPass *pass) {
     Vec x;
     for (uint32_t i = 0; i < plan->particles; i++) {
         float excess = pass->to->temperature[i] - sheet[i];
-        if (!(pass->to->conductance[i] > 0) || !(excess > 0) || !sheets_place(pass, i, &x)) continue;
+        if (!(pass->to->conductance[i] > 0) || !(excess > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x))
+            continue;
         if (!gas_place(plan, sheets_upstream(pass, x), place)) continue;
         size_t c = gas_at(&plan->grid, (int)(place[0] + 0.5f), (int)(place[1] + 0.5f), (int)(place[2] + 0.5f));
         float *L = &pass->to->field[GAS_LIGHTNESS][c];

@@ -152,7 +152,7 @@ static void flow_goes_around(void **unused) {
     assert_int_equal(path_set(&ball->path, &air.rig.memory, 1, &key, "collider", NULL), SINGE_OK);
     air.rig.colliders.count = 1;
     for (int step = 0; step < 40; step++) {
-        air_burn(&air, 1, true); // below the sheet
+        air_burn(&air, 1, true);
         air_step(&air);
     }
     const GasPlan *plan = air.plan;
@@ -173,7 +173,7 @@ static void flow_goes_around(void **unused) {
             }
     print_message("fastest %.3f m/s, divergence off by %.4f m/s at most, %.0f faces closed\n", fastest, worst, covered);
     assert_true(fastest > 0.2 && worst < 0.05 * fastest && covered > 20);
-    // the sheet lies across the way up: what burns below it comes around its edges
+    // the sheet lies across the way up
     size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, (int)(0.01f - plan->origin[2] / plan->cell));
     assert_true(plan->open[2][middle] < 0.2f);
     air_close(&air);
