@@ -23,6 +23,34 @@ class Gas(Case):
         with open(path, "rb") as file:
             return file.read()
 
+    def vdbs(self, out):
+        folder = self.path(out, "gas")
+        return {name: self.read(os.path.join(folder, name)) for name in sorted(os.listdir(folder))}
+
+    def test_run_writes_it(self):
+        """A file a frame, the same for any threads and after a resumption; none without gas."""
+        self.run_scene("o", "--quiet", "--threads", "1")
+        files = self.vdbs("o")
+        self.assertEqual(list(files), ["tiny.%04d.vdb" % i for i in range(1, 7)])
+        self.assertGreater(len(files["tiny.0006.vdb"]), len(files["tiny.0001.vdb"]))
+        self.run_scene("r", "--quiet", "--threads", "2", "--frames", "3")
+        self.run_scene("r", "--quiet", "--resume")
+        self.assertEqual(self.vdbs("r"), files)
+        self.run_scene("o", "--quiet", "--set", "gas=no")
+        self.assertFalse(os.path.exists(self.path("o", "gas")))
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_same_pictures_from_files(self):
+        """What the run drew from memory is what is drawn from its files; without them flames are missing."""
+        self.run_scene("o", "--quiet", preview=True)
+        png = self.path("o", "frames", "tiny.0006.png")
+        drawn = self.read(png)
+        self.singe("render", self.path("o"), "--frames", "6")
+        self.assertEqual(self.read(png), drawn)
+        os.remove(self.vdb(6))
+        self.singe("render", self.path("o"), "--frames", "6")
+        self.assertNotEqual(self.read(png), drawn)
+
     @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_render_reads_it(self):
         self.run_scene("o", "--quiet", preview=True)
