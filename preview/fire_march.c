@@ -20,7 +20,7 @@
 #define FLAME_COOL 1350.0f ///< K
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.4f     ///< radiance of a thick flame at its coolest and its hottest
-#define FLAME_BRIGHT 4.2f
+#define FLAME_BRIGHT 3.7f
 #define FLAME_DENSE 100.0f ///< 1/m: radiance gathered a metre over that of a thick flame
 #define FLAME_OPAQUE 42.0f ///< 1/m, extinction
 #define EDGE_LOW 0.20f     ///< share of burning at which a flame begins, and is whole
