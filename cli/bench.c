@@ -40,7 +40,7 @@ static const struct {
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
-     "The burning front of materials: speed, temperature and residue, beside what sources say."},
+     "The burning front of materials: speed, temperature and residue, beside what sources say; level, down and up."},
     {"spread", "bench spread", bench_spread, BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
      "How fast fire runs level, down and up in the gas that rises from it."},
     {"preview", "bench preview", bench_preview, BENCH_BIT(THREADS) | OUTPUT,

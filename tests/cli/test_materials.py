@@ -74,7 +74,7 @@ class Materials(Case):
         self.write_mine()
         both = ["--quick", "--json", "--material", "materials/mine.yaml,tissue"]
         out, _ = self.singe("bench", "front", *both, cwd=self.dir)
-        mine, tissue = json.loads(out)["rows"]
+        mine, _, _, tissue, _, _ = json.loads(out)["rows"]
         self.assertEqual((mine["material"], mine["g_m2"], mine["finding"]), ("mine", 60, "faster"))
         self.assertEqual((tissue["material"], tissue["finding"]), ("tissue", "as sources say"))
         self.write_mine("base: newsprint\nthikness: 1\n")
