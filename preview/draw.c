@@ -184,13 +184,27 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
     add_light(preview, block, active, sample, stride);
 }
 
+static bool is_blurred(const Preview *preview) { return preview->camera.lens > 0 || preview->def.shutter > 0; }
+
+/// Whether some of the block's samples met a sheet or a shape and some did not.
+static bool is_mixed(const Block *block, const int *active) {
+    int hits = 0, samples = 0;
+    for (int i = 0; i < LANES; i++)
+        if (active[i]) hits += block->layer[i].hits, samples += block->layer[i].samples;
+    return hits > 0 && hits < samples;
+}
+
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
-static int find_restless(const Block *block, const int *active, int *more) {
+static int find_restless(const Preview *preview, const Block *block, const int *active, int *more) {
+    // where a lens or a shutter spreads things thin, some pixels' first samples all miss what their neighbours' meet
+    bool mixed = is_blurred(preview) && is_mixed(block, active);
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
     int count = 0;
     for (int i = 0; i < LANES; i++) {
-        bool calm = block->high[i] - block->low[i] < 0.02f && high - low < 0.15f;
+        const LayerSum *sum = &block->layer[i];
+        bool edge = sum->hits > 0 && sum->hits < sum->samples; // even where only fire lights it, which is not in `high`
+        bool calm = !edge && block->high[i] - block->low[i] < 0.02f && high - low < 0.15f && !mixed;
         more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
     }
     return count;
@@ -218,12 +232,15 @@ static void write_block(Preview *preview, const Block *block, const int *active,
     }
 }
 
-/// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it.
+/// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it; half of them
+/// where a lens or a shutter blurs a sheet or a shape.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
     int more[LANES], samples = preview->def.samples, first = samples, stride = samples % 4 == 0 ? 4 : 1;
-    if (samples > 4) first = (samples / 4 + 3) / 4 * 4;
+    int share = is_blurred(preview) && !bare ? 2 : 4;
+    if (samples > 4) first = (samples / share + 3) / 4 * 4;
+    if (first > samples) first = samples;
     for (int s = 0; s < first; s++) add_sample(preview, block, active, bare, s, stride);
-    bool on = first < samples && find_restless(block, active, more);
+    bool on = first < samples && find_restless(preview, block, active, more);
     for (int s = first; s < samples && on; s++) add_sample(preview, block, more, bare, s, stride);
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
 }
