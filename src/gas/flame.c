@@ -7,7 +7,7 @@
 // grows by what burns, and thins in the time it takes to be spread finer than the grid.
 #include "gas/plan.h"
 
-static const float FLAME_TIME = 0.02f, SMOKE_TIME = 4;
+static const float FLAME_TIME = 0.01f, SMOKE_TIME = 4;
 static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
 static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-4f, FLAME_SMOKE_LEAST = 1e-7f;
 

@@ -20,7 +20,7 @@
 #include "gas/plan.h"
 
 static const float SHEET_REACH = 1.25f;     ///< cells
-static const float SHEET_LAYER = 5e-3f;     ///< m, of the gas that flows along a sheet
+static const float SHEET_LAYER = 7e-3f;     ///< m, of the gas that flows along a sheet
 static const float SHEET_STILL = 0.05f;     ///< m/s, u_0
 static const float SHEET_LEVEL = 0.5f;      ///< cosine between down and a side that looks down
 static const float SHEET_LEAST = 1;         ///< K above the ambient that are felt
