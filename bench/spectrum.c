@@ -6,8 +6,9 @@
 // angle by which the line leaves the sheet's plane, its mean and slope taken out, under a Hann window. Its power is
 // summed over lines, times and seeds of the noise, and given for bands of half an octave in rest wavelength: the mean
 // of k times the power of k waves a line, so that a band does not count by how many waves fit.
-//   peak  mm, the centre of power of the strongest band and its neighbours
-//   mean  mm, the centre of all power, both over the logarithm of the wavelength
+//   peak  mm, the centre of the squares of the bands' power: where the strong ones are, without a jump from one to the
+//         next where two are alike
+//   mean  mm, the centre of power, both over the logarithm of the wavelength
 //   rms   degrees, of the angle
 // The front is thickened as the base's cells need, whatever the cells: with it the width of the char would change.
 #include <math.h>
@@ -223,27 +224,24 @@ static SingeResult observe(const BenchOptions *options, int setting, uint32_t se
 
 // ---- the numbers
 
-/// Centre of power, over the logarithm of the wavelength, of bands [first, last].
-static double centre(const Spectrum *spectrum, int first, int last) {
+/// Centre of a power of the power, over the logarithm of the wavelength.
+static double centre(const Spectrum *spectrum, double exponent) {
     double sum = 0, moment = 0;
-    for (int b = first < 0 ? 0 : first; b <= last && b < BANDS; b++)
-        sum += spectrum->band[b], moment += spectrum->band[b] * log(band_wave(b));
+    for (int b = 0; b < BANDS; b++) {
+        double weight = pow(spectrum->band[b], exponent);
+        sum += weight, moment += weight * log(band_wave(b));
+    }
     return exp(moment / sum);
 }
 
-static double peak(const Spectrum *spectrum) {
-    int best = 0;
-    for (int b = 1; b < BANDS; b++)
-        if (spectrum->band[b] > spectrum->band[best]) best = b;
-    return centre(spectrum, best - 1, best + 1);
-}
+static double peak(const Spectrum *spectrum) { return centre(spectrum, 2); }
 
 static void tell(BenchTable *table, const Spectrum *spectra) {
     const double base = peak(&spectra[0]), degrees = 180 / acos(-1);
     for (int i = 0; i < SETTINGS; i++) {
         table_fact(table, settings[i].peak, 1e3 * peak(&spectra[i]));
         if (settings[i].change) table_fact(table, settings[i].change, 100 * (peak(&spectra[i]) / base - 1));
-        table_fact(table, settings[i].mean, 1e3 * centre(&spectra[i], 0, BANDS));
+        table_fact(table, settings[i].mean, 1e3 * centre(&spectra[i], 1));
         table_fact(table, settings[i].rms, degrees * sqrt(spectra[i].square / spectra[i].lines));
     }
 }
