@@ -11,7 +11,8 @@
 // Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
 // are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
 // sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
-// length step by step till the next measurement, for a length that shortens at once jerks what hangs on it. What has
+// length step by step till the next measurement, for a length that shortens at once jerks what hangs on it; so does
+// what a source that takes over from one that has burnt finds too far. What has
 // come free of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has no
 // attachments.
 #include "dynamics/attach.h"
@@ -87,6 +88,14 @@ static void attach_accept(Attachments *attachments, const Sheet *sheet, const in
     attachments->settled = false;
 }
 
+/// A source that takes over holds nothing nearer than it is: what is too far comes by and by.
+static void attach_start(Attachments *attachments, const Sheet *sheet, const DynamicsState *dynamics, uint32_t source,
+                         int k) {
+    Vec place = vec_load(dynamics->position[source]);
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+        attachments->length[v][k] = vec_length(vec_sub(vec_load(dynamics->position[v]), place));
+}
+
 static void attach_measure(Attachments *attachments, const Shell *shell, const State *state, bool at_once) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
@@ -97,9 +106,10 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
             source[k] = more ? attach_farthest(shell, state, sheet, source, k) : SHELL_NONE;
             more = source[k] != SHELL_NONE;
             if (!more) continue;
-            geodesic_from(&attachments->search, shell, &state->burn, &state->ablate, source[k], sheet->vertex_first,
+            geodesic_from(&attachments->search, shell, state, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            attach_accept(attachments, sheet, state->ablate.piece, source[k], k, at_once || source[k] != before);
+            if (source[k] != before && !at_once) attach_start(attachments, sheet, &state->dynamics, source[k], k);
+            attach_accept(attachments, sheet, state->ablate.piece, source[k], k, at_once);
         }
     }
 }

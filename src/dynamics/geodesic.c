@@ -12,6 +12,8 @@
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
 #include "dynamics/geodesic.h"
 
+#include "base/vec.h"
+
 #include <math.h>
 
 enum { GEODESIC_FAR = UINT32_MAX, GEODESIC_DONE = UINT32_MAX - 1 };
@@ -69,29 +71,33 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     return cross >= 0 && cross <= c ? hypotf(ux - sx, uy - sy) : INFINITY;
 }
 
-/// Length of the side or diagonal between corners i and j of a cell.
-static float cell_length(const CellSprings *springs, const BurnState *burn, int i, int j) {
-    if (((i ^ j) & 1) == 0) return burn->spring_length[SINGE_YELLOW][springs->yellow[i & 1]];
+/// Length of the side or diagonal between corners i and j of a cell. What is held cannot shrink to its target.
+static float cell_length(const Shell *shell, const State *state, uint32_t cell, int i, int j) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const DynamicsState *dynamics = &state->dynamics;
     int side = ((i + 1) & 3) == j ? i : j;
-    return burn->spring_length[SINGE_BLUE][springs->blue[side]];
+    float length = ((i ^ j) & 1) == 0 ? state->burn.spring_length[SINGE_YELLOW][springs->yellow[i & 1]]
+                                      : state->burn.spring_length[SINGE_BLUE][springs->blue[side]];
+    uint32_t a = shell->cells[cell][i], b = shell->cells[cell][j];
+    if (!dynamics->pinned[a] || !dynamics->pinned[b]) return length;
+    return fmaxf(length, vec_length(vec_sub(vec_load(dynamics->position[a]), vec_load(dynamics->position[b]))));
 }
 
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.
-static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const BurnState *burn, uint32_t cell, int i,
+static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const State *state, uint32_t cell, int i,
                                 float *distance) {
-    const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
     for (int turn = 1; turn < 4; turn++) {
         int j = (i + turn) & 3;
         uint32_t u = corner[j];
         if (search->place[u] == GEODESIC_DONE) continue;
-        float vu = cell_length(springs, burn, i, j), d = dv + vu;
+        float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
         for (int other = 1; other < 4; other++) {
             int k = (i + other) & 3;
             if (k == j || search->place[corner[k]] != GEODESIC_DONE) continue;
-            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(springs, burn, i, k), vu,
-                                          cell_length(springs, burn, k, j)));
+            d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, state, cell, i, k), vu,
+                                          cell_length(shell, state, cell, k, j)));
         }
         if (d >= distance[u]) continue;
         distance[u] = d;
@@ -100,8 +106,8 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Burn
     }
 }
 
-void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, const AblateState *ablate,
-                   uint32_t source, uint32_t first, uint32_t last, float *distance) {
+void geodesic_from(Geodesic *search, const Shell *shell, const State *state, uint32_t source, uint32_t first,
+                   uint32_t last, float *distance) {
     for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->place[v] = GEODESIC_FAR;
     distance[source] = 0;
     search->waiting = 1;
@@ -110,10 +116,10 @@ void geodesic_from(Geodesic *search, const Shell *shell, const BurnState *burn, 
         uint32_t v = heap_pop(search, distance);
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
-            if (!(ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
+            if (!(state->ablate.cell_flags[cell] & SINGE_ALIVE)) continue;
             int i = 0;
             while (shell->cells[cell][i] != v) i++;
-            geodesic_cross_cell(search, shell, burn, cell, i, distance);
+            geodesic_cross_cell(search, shell, state, cell, i, distance);
         }
     }
 }

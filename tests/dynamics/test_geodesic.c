@@ -30,9 +30,7 @@ static void distances_close(Distances *d) {
 }
 
 static void distances_from(Distances *d, uint32_t source) {
-    const State *state = &d->bench.state;
-    geodesic_from(&d->search, &d->bench.shell, &state->burn, &state->ablate, source, 0, d->bench.shell.vertex_count,
-                  d->distance);
+    geodesic_from(&d->search, &d->bench.shell, &d->bench.state, source, 0, d->bench.shell.vertex_count, d->distance);
 }
 
 static double apart(const Distances *d, uint32_t a, uint32_t b) {
