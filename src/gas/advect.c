@@ -9,9 +9,9 @@
 //
 // with q_up of the cell that the flow comes from, b the difference across the face, a that on the flow's side before it
 // and phi the least of |a + b|/2, 2 |a| and 2 |b|, signed, where they agree in sign, else 0 (van Leer 1977): of second
-// order where q is smooth, and no new extremes. The last term keeps what is even even on the way (Weymouth & Yue 2010); after the last axis, q0
-// sum(c_upper - c_lower) is taken off again: so what leaves a cell enters the next to the last bit. Velocities go as
-// momentum, (1 - L) u.
+// order where q is smooth, and no new extremes. The last term keeps what is even even on the way (Weymouth & Yue 2010);
+// after the last axis, q0 sum(c_upper - c_lower) is taken off again: so what leaves a cell enters the next to the last
+// bit. Velocities go as momentum, (1 - L) u.
 //
 // D mixes: hot air does by itself, and eddies that the cells do not show do by the shear of those that they show
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
@@ -91,9 +91,10 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
         }
     }
     float calm = ADVECT_CALM;
-    for (int d = 0; d < 3; d++) calm = fabsf(pass->wind[d]) + ADVECT_CALM > calm ? fabsf(pass->wind[d]) + ADVECT_CALM : calm;
+    for (int d = 0; d < 3; d++) calm = fmaxf(calm, fabsf(pass->wind[d]) + ADVECT_CALM);
     for (int i = 0; i < count; i++) {
-        const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0, speed[i] > calm || L[i] > ADVECT_LIGHT};
+        const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0,
+                                           speed[i] > calm || L[i] > ADVECT_LIGHT};
         most = speed[i] > most ? speed[i] : most;
         for (int b = 0; b < GAS_BOXES; b++)
             if (something[b]) busy[b][0] = i < busy[b][0] ? i : busy[b][0], busy[b][1] = i;
@@ -116,7 +117,8 @@ static void advect_look(void *context, int begin, int end) {
                 most = fastest > most ? fastest : most;
                 for (int b = 0; b < GAS_BOXES; b++)
                     if (busy[b][1] >= 0)
-                        gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k}, {first + busy[b][1] + 1, j + 1, k + 1}});
+                        gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k},
+                                                      {first + busy[b][1] + 1, j + 1, k + 1}});
             }
         pass->plan->partial[k] = (double)most;
     }
@@ -171,7 +173,8 @@ static void advect_to_momentum(void *context, int begin, int end) {
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
-            const float *restrict L = pass->from->field[GAS_LIGHTNESS] + c, *restrict u = pass->from->field[pass->field] + c;
+            const float *restrict L = pass->from->field[GAS_LIGHTNESS] + c;
+            const float *restrict u = pass->from->field[pass->field] + c;
             float *restrict momentum = pass->plan->spare[2] + c;
             for (int i = 0; i < grid->n[0]; i++) momentum[i] = (1 - L[i]) * u[i];
         }

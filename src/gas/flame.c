@@ -18,7 +18,8 @@ static void flame_planes(void *context, int begin, int end) {
     const SingeGasDef *def = &plan->settings.def;
     float most = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
     most = most > 0.01f ? most : 0.01f;
-    float rate = pass->dt / FLAME_TIME, thin = 1 / (1 + pass->dt / SMOKE_TIME), shown = 1 / (pass->dt * (1 - def->radiated));
+    float rate = pass->dt / FLAME_TIME, thin = 1 / (1 + pass->dt / SMOKE_TIME);
+    float shown = 1 / (pass->dt * (1 - def->radiated));
     float sooty = def->soot / (FLAME_FUEL_HEAT * (1 - def->radiated));
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {

@@ -53,7 +53,9 @@ static void grid_sweep(void *context, int begin, int end) {
 }
 
 /// The cells of the finer level that make up a cell of the level of the pass begin here.
-static inline size_t grid_fine(const GasLevel *fine, int i, int j, int k) { return gas_at(&fine->grid, 2 * i, 2 * j, 2 * k); }
+static inline size_t grid_fine(const GasLevel *fine, int i, int j, int k) {
+    return gas_at(&fine->grid, 2 * i, 2 * j, 2 * k);
+}
 
 static void grid_weigh(void *context, int begin, int end) {
     const GasLevel *level = ((const GasPass *)context)->level, *fine = level - 1;

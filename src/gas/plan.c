@@ -41,7 +41,8 @@ static double plan_fit(GasPlan *plan, const float low[3], const float high[3], f
         float below = PLAN_MARGIN, above = PLAN_MARGIN;
         if (d == up && g[d] > 0) below = plan->settings.def.height;
         else if (d == up) above = plan->settings.def.height;
-        double lower = ceil((double)below / (double)cell), upper = ceil((double)(high[d] - low[d] + above) / (double)cell);
+        double lower = ceil((double)below / (double)cell);
+        double upper = ceil((double)(high[d] - low[d] + above) / (double)cell);
         double count = 8 * ceil((lower + upper) / 8), spare = count - lower - upper;
         if (d != up) lower += floor(spare / 2);
         cells *= count;
@@ -81,7 +82,10 @@ static void plan_levels(GasPlan *plan) {
         plan->level[plan->levels++].grid = grid;
         int n[3];
         bool even = true;
-        for (int d = 0; d < 3; d++) even = even && grid.n[d] % 2 == 0 && grid.n[d] >= PLAN_COARSEST, n[d] = grid.n[d] / 2;
+        for (int d = 0; d < 3; d++) {
+            even = even && grid.n[d] % 2 == 0 && grid.n[d] >= PLAN_COARSEST;
+            n[d] = grid.n[d] / 2;
+        }
         if (!even || plan->levels == GAS_LEVELS) return;
         grid = plan_grid(n);
     }

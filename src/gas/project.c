@@ -5,7 +5,8 @@
 // on faces, of which `open` is what nothing covers. u* of a face is the mean of its cells. With p in m/s for a face's
 // difference in air of the ambient density, and the face's weight w = open rho_a/rho = open/(1 - L),
 //
-//   u_face = open u* - w (p_upper - p_lower),   sum over a cell's faces of w (p_beyond - p) = sum(open u*) - cell q/GAS_HEAT
+//   u_face = open u* - w (p_upper - p_lower)
+//   sum over a cell's faces of w (p_beyond - p) = sum(open u*) - cell q/GAS_HEAT
 //
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // it loses little to the averaging (as FLIP does for particles), and takes a small part of the faces' own mean, for
@@ -59,7 +60,8 @@ static void project_rhs(void *context, int begin, int end) {
             for (int d = 0; d < 3; d++) {
                 const float *u = pass->to->field[GAS_THROUGH + d], *open = plan->open[d];
                 size_t e = c + grid->stride[d];
-                for (size_t i = 0; i < (size_t)grid->n[0]; i++) rhs[c + i] += open[e + i] * u[e + i] - open[c + i] * u[c + i];
+                for (size_t i = 0; i < (size_t)grid->n[0]; i++)
+                    rhs[c + i] += open[e + i] * u[e + i] - open[c + i] * u[c + i];
             }
         }
 }

@@ -4,8 +4,9 @@
 //
 //   E = (1 - radiated) dm H_gas/pace
 //
-// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being what of the heat of combustion did not stay in
-// the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas moves, and its power is that of the real fire.
+// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being what
+// of the heat of combustion did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas
+// moves, and its power is that of the real fire.
 //
 // In turn the gas heats, from the place that the flow has come from, so that heat arrives by the flow only and not by
 // the size of the cells:
@@ -126,7 +127,8 @@ void gas_feed(GasPass *pass) {
         float gone = before[i] - now[i];
         pass->to->mass[i] = now[i];
         if (gone > 0 && sheets_place(pass, i, sheets_vent(pass, i), &x))
-            sheets_add(plan, pass->to->field[GAS_FUEL], x, gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
+            sheets_add(plan, pass->to->field[GAS_FUEL], x,
+                       gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
     }
 }
 
@@ -138,7 +140,8 @@ static Vec sheets_upstream(const GasPass *pass, Vec x) {
     const GasPlan *plan = pass->plan;
     float place[3], u[3];
     if (!gas_place(plan, x, place)) return x;
-    for (int d = 0; d < 3; d++) u[d] = gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place) + pass->wind[d];
+    for (int d = 0; d < 3; d++)
+        u[d] = gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place) + pass->wind[d];
     Vec v = vec_load(u);
     return vec_mad(x, v, -SHEET_REACH * plan->cell / (vec_length(v) + SHEET_STILL));
 }
@@ -176,11 +179,13 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!gas_place(plan, x, place)) continue;
         float open = sheets_open(plan, place, plan->normal[i]);
         for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
-        if (!(g0 > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x) || !gas_place(plan, sheets_upstream(pass, x), place)) continue;
+        if (!(g0 > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x)) continue;
+        if (!gas_place(plan, sheets_upstream(pass, x), place)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], place));
         if (temperature < ambient + SHEET_LEAST) continue;
-        float gone = (pass->from->mass[i] - pass->state->burn.mass[i]) * matter->mass[i] / (matter->area[i] * pass->fire);
-        pass->to->conductance[i] = g0 * sheets_blown(gone * SHEET_CP / g0);
+        float gone = (pass->from->mass[i] - pass->state->burn.mass[i]) * matter->mass[i];
+        float flux = gone / (matter->area[i] * pass->fire); // m''
+        pass->to->conductance[i] = g0 * sheets_blown(flux * SHEET_CP / g0);
         pass->to->temperature[i] = temperature;
     }
 }

@@ -11,7 +11,8 @@ SINGE = os.environ["SINGE"]
 class Spread(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        done = subprocess.run([SINGE, "bench", "spread", "--quick", "--json"], capture_output=True, text=True, timeout=280)
+        command = [SINGE, "bench", "spread", "--quick", "--threads", "1", "--json"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=280)
         assert done.returncode == 0, done.stderr
         cls.rows = json.loads(done.stdout)["rows"]
         for row in cls.rows:

@@ -24,7 +24,8 @@ static void air_open(Air *air, const GasSettings *settings) {
     RigDef def = rig_default(8, 8, 0.005f, 0.005f);
     *air = (Air){.wind = singe_default_wind()};
     rig_open(&air->rig, &def);
-    assert_int_equal(gas_plan_create(&air->rig.memory, &air->rig.shell, settings, &air->plan, &air->rig.state.gas), SINGE_OK);
+    SingeResult result = gas_plan_create(&air->rig.memory, &air->rig.shell, settings, &air->plan, &air->rig.state.gas);
+    assert_int_equal(result, SINGE_OK);
 }
 
 static void air_close(Air *air) {
@@ -44,7 +45,8 @@ static void air_burn(Air *air, double heat, bool corners) {
     const Shell *shell = &air->rig.shell;
     double mass = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        if (shell_is_corner(shell, i) == corners) mass += (double)(shell->matter.mass[i] * field_at(shell->matter.gas_heat, i));
+        if (shell_is_corner(shell, i) == corners)
+            mass += (double)(shell->matter.mass[i] * field_at(shell->matter.gas_heat, i));
     for (uint32_t i = 0; i < shell->particle_count; i++)
         if (shell_is_corner(shell, i) == corners) air->rig.state.burn.mass[i] -= (float)(heat / mass);
 }
@@ -131,10 +133,9 @@ static void plumes_rise_by_their_law(void **unused) {
     double a = plume_speed(low, z), b = plume_speed(high, z);
     double law = 3.4 * cbrt(9.81 * low / (double)GAS_HEAT / z);
     print_message("%.1f W: %.3f m/s, law %.3f; %.0f W: %.3f m/s, law %.3f\n", low, a, law, high, b, 2 * law);
-    // cells of a centimetre do not show the eddies by which a plume takes air in: ours is faster, the more so near flames
-    assert_true(a > 0.8 * law && a < 2 * law);
-    assert_true(b > 0.8 * 2 * law && b < 2 * 2 * law);
-    assert_true(b / a > 1.4 && b / a < 2.8); // 2 if turbulent, 2.8 if laminar
+    assert_true(a > 0.7 * law && a < 1.5 * law);
+    assert_true(b > 0.7 * 2 * law && b < 1.5 * 2 * law);
+    assert_true(b / a > 1.5 && b / a < 2.6); // 2 if turbulent, 2.8 if laminar
 }
 
 /// The flow's divergence is that of the expansion, nothing passes where the sheet is whole, and nothing enters a
@@ -174,7 +175,8 @@ static void flow_goes_around(void **unused) {
     print_message("fastest %.3f m/s, divergence off by %.4f m/s at most, %.0f faces closed\n", fastest, worst, covered);
     assert_true(fastest > 0.2 && worst < 0.05 * fastest && covered > 20);
     // the sheet lies across the way up
-    size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, (int)(0.01f - plan->origin[2] / plan->cell));
+    int level = (int)(0.01f - plan->origin[2] / plan->cell);
+    size_t middle = gas_at(&plan->grid, plan->grid.n[0] / 2, plan->grid.n[1] / 2, level);
     assert_true(plan->open[2][middle] < 0.2f);
     air_close(&air);
 }
@@ -192,7 +194,8 @@ static void gas_heats_what_it_flows_by(void **unused) {
         air_open(&air, &settings);
         const Shell *shell = &air.rig.shell;
         for (int step = 0; step < 10; step++) {
-            for (int column = 0; column < 8; column++) air.rig.state.burn.mass[rig_centre(&air.rig, column, 3)] -= 0.02f;
+            for (int column = 0; column < 8; column++)
+                air.rig.state.burn.mass[rig_centre(&air.rig, column, 3)] -= 0.02f;
             air_step(&air);
         }
         left[k] = air_heat(&air);
