@@ -49,7 +49,7 @@ check:
 	ctest --preset release -j2
 
 pictures:
-	scripts/draw_pictures.sh
+	scripts/draw_gallery.sh
 
 clean:
 	rm -rf build build-asan build-tsan build-fuzz build-shared

@@ -3,10 +3,13 @@
 # what `singe measure` says. Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-declare -A best=([letter]=0105 [letter-hanging]=0100 [hot-sphere]=0070 [page-hot]=0040 [newspaper]=0090
+declare -A best=([letter]=0090 [letter-hanging]=0100 [hot-sphere]=0085 [page-hot]=0055 [newspaper]=0075
     [curtain-flame]=0150 [stack-edge]=0080)
+declare -A measured=([letter]=80-99 [letter-hanging]=100-119 [hot-sphere]=50-69 [page-hot]=40-49 [newspaper]=80-99
+    [curtain-flame]=100-119 [stack-edge]=60-79)
 order=(letter letter-hanging hot-sphere page-hot newspaper curtain-flame stack-edge)
 [ $# -gt 0 ] && order=("$@")
+mkdir -p docs/gallery
 jpeg() { ffmpeg -loglevel error -y -i "$1" -qscale:v 3 -update 1 "$2"; }
 for name in "${order[@]}"; do
     frame=${best[$name]} out=out/gallery/$name
@@ -18,7 +21,7 @@ for name in "${order[@]}"; do
     build/cli/singe render "$out" --sheet 4x2 --only-sheet --quiet
     jpeg "$out/frames/$name.$frame.png" "docs/gallery/$name.jpg"
     jpeg "$out/sheet.png" "docs/gallery/$name-sheet.jpg"
-    build/cli/singe measure "$out" > "docs/gallery/$name.txt"
+    build/cli/singe measure "$out" --frames "${measured[$name]}" > "docs/gallery/$name.txt"
     awk -v name="$name" -v a="$begun" -v b="$burnt" -v c="$drawn" -v frames="$(ls "$out/ply" | wc -l)" -v n="$(nproc)" \
         'BEGIN { printf "%-15s %3d frames in %5.1f s, a picture in %.2f s, on %d threads\n", name, frames, b - a, c - b, n }'
 done
