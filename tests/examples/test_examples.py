@@ -81,7 +81,8 @@ class Example(Case):
             rows = list(csv.DictReader(file))
 
         def median(name):
-            return statistics.median(float(row[name]) for row in rows if row[name])
+            values = [float(row[name]) for row in rows if row[name]]
+            return statistics.median(values) if values else math.nan
 
         bias = median("crease_axis_over_diagonal")
         ratio = median("burnt_over_unburnt_power")
