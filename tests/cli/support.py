@@ -31,6 +31,7 @@ sources:
     radius: 1 cm
     falloff: 1 cm
 preview: {{size: [64, 48], samples: 1}}
+gas: {gas}
 """
 
 COLUMNS = (
@@ -49,10 +50,10 @@ class Case(unittest.TestCase):
     def path(self, *parts):
         return os.path.join(self.dir, *parts)
 
-    def write_scene(self, name="tiny.yaml", frames=6, steps=2, cells=12, extra=""):
+    def write_scene(self, name="tiny.yaml", frames=6, steps=2, cells=12, gas="{cell_size: 8 mm}", extra=""):
         path = self.path(name)
         with open(path, "w") as file:
-            file.write(SCENE.format(frames=frames, steps=steps, cells=cells) + extra)
+            file.write(SCENE.format(frames=frames, steps=steps, cells=cells, gas=gas) + extra)
         return path
 
     def singe(self, *args, expect=0, **options):

@@ -63,7 +63,7 @@ class Failure(Case):
 
     def test_no_space_for_a_line(self):
         """Frames fit, the growing stats.csv does not: its last line is whole."""
-        self.scene = self.write_scene(frames=200, steps=1, cells=2, extra="gas: no\n")
+        self.scene = self.write_scene(frames=200, steps=1, cells=2, gas="no")
         self.run_scene("whole", "--quiet")
         largest = max(os.path.getsize(self.path("whole", "ply", n)) for n in self.plys("whole"))
         limit = max(largest, os.path.getsize(self.path("whole", "checkpoint.singe")),
