@@ -12,9 +12,8 @@
 // are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
 // sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
 // length step by step till the next measurement, for a length that shortens at once jerks what hangs on it; so does
-// what a source that takes over from one that has burnt finds too far. What has
-// come free of a source is let go at the end of the step. A sheet whose mesh may stretch by its compliance has no
-// attachments.
+// what a source that takes over from one that has burnt finds too far. What has come free of a source is let go at the
+// end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
 #include "dynamics/attach.h"
 
 #include "base/vec.h"
