@@ -164,6 +164,22 @@ static void test_follows_targets(void **unused) {
     distances_close(&d);
 }
 
+/// What is held stays where it is, whatever its targets: the way through it is no shorter than it lies.
+static void test_held_does_not_shrink(void **unused) {
+    (void)unused;
+    Distances d;
+    distances_open(&d, quads_grid(SIDE, SIDE, 0.01f, 0.01f, false));
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t k = 0; k < d.bench.shell.springs[colour].count; k++)
+            d.bench.state.burn.spring_length[colour][k] *= 0.5f;
+    for (uint32_t j = 0; j <= SIDE; j++)
+        for (uint32_t i = 0; i <= 10; i++) d.bench.state.dynamics.pinned[vertex(i, j)] = 1;
+    distances_from(&d, vertex(0, 20));
+    assert_way(&d, vertex(10, 20), 0.10);
+    assert_way(&d, vertex(30, 20), 0.10 + 0.5 * 0.20);
+    distances_close(&d);
+}
+
 static void test_symmetric(void **unused) {
     (void)unused;
     Distances d;
@@ -190,6 +206,7 @@ int main(void) {
         cmocka_unit_test(test_straight_lines), cmocka_unit_test(test_cylinder),
         cmocka_unit_test(test_around_a_slit),  cmocka_unit_test(test_around_a_hole),
         cmocka_unit_test(test_no_way_across), cmocka_unit_test(test_follows_targets),  cmocka_unit_test(test_symmetric),
+        cmocka_unit_test(test_held_does_not_shrink),
     };
     return cmocka_run_group_tests_name("geodesic", tests, NULL, NULL);
 }
