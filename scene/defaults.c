@@ -39,6 +39,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->sim = singe_default_sim();
     scene->sim.surface_detail = 0.4e-3f;
     scene->sim.gas.enabled = true;
+    scene->sim.contact.enabled = true;
     default_preview(&scene->preview);
     return true;
 }

@@ -408,6 +408,20 @@ static const Schema schema_gas = {.title = "the gas",
                                   .doc = "What burns sends hot gas up. It heats what is above, lifts ash and flakes, "
                                          "and carries flame and smoke. `gas: no` is without."};
 
+static const SchemaRow contact_rows[] = {
+    {"enabled", ROW_BOOL, DIM_NONE, AT(SingeContactDef, enabled), .doc = "no: sheets pass through themselves"},
+    {"thickness", ROW_FLOAT, DIM_LENGTH, AT(SingeContactDef, thickness), WITHIN(1e-6, 1),
+     .doc = "distance that is kept between surfaces, and 2/5 of the smallest cell at most; not the material's "
+            "thickness, which is that of the model"},
+    {"friction", ROW_FLOAT, DIM_NONE, AT(SingeContactDef, friction), WITHIN(0, 1000), .doc = "Coulomb's coefficient"},
+};
+static const Schema schema_contact = {.title = "contact of sheets",
+                                      .size = sizeof(SingeContactDef),
+                                      ROWS(contact_rows),
+                                      .choice = "enabled",
+                                      .doc = "Sheets do not pass through themselves nor each other. `contact: no` is "
+                                             "the paper, where they do. Colliders have a friction of their own."};
+
 static const SchemaRow camera_rows[] = {
     {"eye", ROW_VECTOR, DIM_LENGTH, AT(PreviewCamera, eye), .length = 3, WITHIN(-1e4, 1e4),
      .doc = "where it stands; with neither eye nor target it is placed so that the sheets fill the picture"},
@@ -522,6 +536,8 @@ static const SchemaRow scene_rows[] = {
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},
     {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
+    {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
+     .doc = "contact of sheets with themselves and each other"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
 };
 const Schema schema_scene = {

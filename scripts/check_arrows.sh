@@ -5,6 +5,7 @@
 #   src/shell     base, shell
 #   src/world     base, shell, world
 #   src/<stage>   base, shell, world and its own folder: heat, burn, ablate, dynamics and gas never meet
+#   src/contact   base, shell; dynamics includes it too
 #   src/step      everything in src
 #   formats       formats
 #   preview       preview, formats
@@ -31,7 +32,7 @@ check() {
         fi
     done < <(grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$folder" --include='*.[ch]' || true)
     # the library's own parts are never reached by angle brackets either
-    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|heat|burn|ablate|dynamics|gas|step)/' \
+    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|contact|heat|burn|ablate|dynamics|gas|step)/' \
         "$folder" --include='*.[ch]'; then bad=1; fi
 }
 
@@ -39,10 +40,12 @@ check include 'singe/.*'
 check src/base 'singe/.*|base/.*'
 check src/shell 'singe/.*|base/.*|shell/.*'
 check src/world 'singe/.*|base/.*|shell/.*|world/.*'
-for stage in heat burn ablate dynamics gas; do
+check src/contact 'singe/.*|base/.*|shell/.*|contact/.*'
+for stage in heat burn ablate gas; do
     check src/$stage "singe/.*|base/.*|shell/.*|world/.*|$stage/.*"
 done
-check src/step 'singe/.*|(base|shell|world|heat|burn|ablate|dynamics|gas|step)/.*'
+check src/dynamics 'singe/.*|(base|shell|world|contact|dynamics)/.*'
+check src/step 'singe/.*|(base|shell|world|contact|heat|burn|ablate|dynamics|gas|step)/.*'
 check formats 'singe/.*|formats/.*'
 check preview 'singe/.*|formats/.*|preview/.*'
 check scene 'singe/.*|formats/.*|preview/preview\.h|scene/.*'

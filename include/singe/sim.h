@@ -129,6 +129,13 @@ typedef struct SingeTimers {
     uint64_t projection_iterations; ///< of the conjugate gradients
     double projection_flops;    ///< floating-point operations, counted from the source: a division or root is one
     double projection_bytes;    ///< bytes read and written, counted from the source: what a cold cache would move
+    // of the stage dynamics, contact of sheets with themselves and each other
+    double contact_seconds;
+    uint64_t contact_searches;  ///< for cells that are near each other
+    uint64_t contact_pushes;    ///< pairs of points that a substep pushed apart
+    uint64_t contact_stops;     ///< pairs of cells whose ways in a step were cut short, as they would have crossed
+    uint64_t contact_unresolved; ///< pairs that could not be kept apart: pins that cross hold both
+    uint64_t contact_dropped;   ///< pairs that there was no room to look at
 } SingeTimers;
 
 SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);
@@ -150,6 +157,7 @@ typedef struct SingeStats {
     /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre has crossed to the other side of its corners
+    uint32_t tangled_cells;        ///< that crossed others as the simulation started, and are left alone until they part
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.

@@ -350,6 +350,24 @@ static inline SingeGasDef singe_default_gas(void) {
     return def;
 }
 
+/// Contact of sheets with themselves and each other (docs/equations.md). Colliders have a friction of their own.
+typedef struct SingeContactDef {
+    size_t struct_size;
+    bool enabled;    ///< no: they pass through themselves, as in the paper
+    /// m, distance that is kept between surfaces, > 0 to 1, and 2/5 of the smallest cell at most. It is not the material's
+    /// `thickness`, which lies between the two layers of the model
+    float thickness;
+    float friction;  ///< Coulomb's coefficient, >= 0
+} SingeContactDef;
+
+SINGE_API void singe_init_contact(SingeContactDef *def, size_t struct_size);
+
+static inline SingeContactDef singe_default_contact(void) {
+    SingeContactDef def;
+    singe_init_contact(&def, sizeof def);
+    return def;
+}
+
 /// A simulation.
 typedef struct SingeSimDef {
     size_t struct_size;
@@ -373,6 +391,7 @@ typedef struct SingeSimDef {
     SingeWindDef wind;
     SingeSolverDef solver;
     SingeGasDef gas; ///< not enabled: sheets burn as in still air
+    SingeContactDef contact; ///< not enabled: sheets pass through themselves and each other
 } SingeSimDef;
 
 SINGE_API void singe_init_sim(SingeSimDef *def, size_t struct_size);
@@ -382,6 +401,7 @@ static inline SingeSimDef singe_default_sim(void) {
     def.wind.struct_size = sizeof def.wind;
     def.solver.struct_size = sizeof def.solver;
     def.gas.struct_size = sizeof def.gas;
+    def.contact.struct_size = sizeof def.contact;
     singe_init_sim(&def, sizeof def);
     return def;
 }

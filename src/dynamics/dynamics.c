@@ -40,6 +40,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
         !attach_create(memory, shell, &plan->attachments) ||
+        (settings->contact.enabled &&
+         touch_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->touch)) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
@@ -53,6 +55,7 @@ int dynamics_plan_substeps(const DynamicsPlan *plan) { return plan->settings.sol
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;
     paper_free(memory, plan->paper);
+    touch_plan_free(memory, plan->touch);
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->drag, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
@@ -74,6 +77,16 @@ void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *sta
 
 void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
+    if (plan->touch) touch_plan_stream(plan->touch, shell, stream);
+}
+
+TouchCounters dynamics_plan_touches(const DynamicsPlan *plan) {
+    return plan->touch ? touch_counters(plan->touch) : (TouchCounters){0};
+}
+
+void dynamics_plan_mark_near(const DynamicsPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
+    memset(near, 0, shell->vertex_count);
+    if (plan->touch) touch_mark_near(plan->touch, shell, state, near);
 }
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {
@@ -136,6 +149,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
+    if (plan->touch) touch_open(plan->touch, shell, state, pool, dynamics);
     Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
@@ -155,11 +169,13 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         for (int projection = 0; projection < solver->projections; projection++)
             dynamics_project(plan, shell, pool, h_sub, projection == 0, dynamics, counters);
         height_project(plan, shell, &state->ablate, pool, dynamics);
+        if (plan->touch) touch_push(plan->touch, (const float(*)[4])plan->predicted, h_sub, dynamics);
         between.closes = true;
         between.collider_count = collider_count;
     }
-    dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     TRY(dynamics_check(plan, pool, dynamics, error));
+    if (plan->touch) touch_guard(plan->touch, shell, state, pool, h, dynamics);
+    dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     plan->strands_written = true;
     if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
     return SINGE_OK;

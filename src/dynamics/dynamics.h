@@ -4,6 +4,7 @@
 
 #include "base/bytes.h"
 #include "base/pool.h"
+#include "contact/touch.h"
 #include "shell/shell.h"
 #include "world/collider.h"
 #include "world/pin.h"
@@ -13,6 +14,7 @@ typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
     SingeSolverDef solver;   ///< substeps 0: as many as the sheets' firmness needs
+    SingeContactDef contact;
     float time_step;         ///< s
     SingeInstructions instructions;
     int thread_count; ///< that may work at once
@@ -38,6 +40,12 @@ void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *sta
 
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
+
+/// What contact of sheets has done so far; zero without.
+TouchCounters dynamics_plan_touches(const DynamicsPlan *plan);
+
+/// Marks vertices that have another part of a sheet near ([vertices], 1 or 0).
+void dynamics_plan_mark_near(const DynamicsPlan *plan, const Shell *shell, const State *state, uint8_t *near);
 
 typedef struct DynamicsCounters {
     uint64_t strands, contacts, springs, iterations;

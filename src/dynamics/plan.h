@@ -57,6 +57,7 @@ struct DynamicsPlan {
     Strands strands;
     bool strands_written; ///< their weights and targets, in a step that was done
     Attachments attachments;
+    TouchPlan *touch;        ///< NULL where sheets pass through each other
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;

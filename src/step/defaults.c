@@ -133,6 +133,10 @@ static SingeGasDef standard_gas(void) {
     };
 }
 
+static SingeContactDef standard_contact(void) {
+    return (SingeContactDef){.struct_size = sizeof(SingeContactDef), .thickness = 0.5e-3f, .friction = 0.3f};
+}
+
 static SingeSimDef standard_sim(void) {
     return (SingeSimDef){
         .struct_size = sizeof(SingeSimDef),
@@ -149,6 +153,7 @@ static SingeSimDef standard_sim(void) {
         .surface_detail = 0,
         .surface_raggedness = 2e-3f,
         .gas = standard_gas(),
+        .contact = standard_contact(),
     };
 }
 
@@ -205,6 +210,11 @@ void singe_init_gas(SingeGasDef *def, size_t struct_size) {
     fill_def(def, struct_size, &standard, sizeof standard);
 }
 
+void singe_init_contact(SingeContactDef *def, size_t struct_size) {
+    const SingeContactDef standard = standard_contact();
+    fill_def(def, struct_size, &standard, sizeof standard);
+}
+
 void singe_init_solver_method(SingeSolverDef *def, size_t struct_size, SingeSolverMethod method) {
     const SingeSolverDef standard = method_solver(method);
     fill_def(def, struct_size, &standard, sizeof standard);
@@ -244,5 +254,8 @@ void singe_init_sim(SingeSimDef *def, size_t struct_size) {
     fill_def(bytes + head, wind, &standard.wind, sizeof standard.wind);
     fill_def(bytes + head + wind, solver, &standard.solver, sizeof standard.solver);
     fill_def(bytes + head + wind + solver, gas, &standard.gas, sizeof standard.gas);
-    memset(bytes + head + wind + solver + gas, 0, left - solver - gas);
+    left -= solver + gas, bytes += head + wind + solver + gas;
+    size_t contact = inner_size(bytes, left);
+    fill_def(bytes, contact, &standard.contact, sizeof standard.contact);
+    memset(bytes + contact, 0, left - contact);
 }

@@ -75,3 +75,23 @@ void sim_log_unconverged(SingeSim *sim) {
         "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller time_step or pace, or a "
         "larger tolerance, helps (said once)");
 }
+
+void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
+    if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
+        sim->tangle_warned = true;
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: %u cells cross others as the simulation starts; they are left alone until they have parted",
+                touches->tangled);
+    }
+    if (touches->unresolved && !sim->crossing_warned) {
+        sim->crossing_warned = true;
+        sim_log(sim, SINGE_LOG_WARNING, "contact: at %.4g s pins pull sheets through each other (said once)",
+                sim->state.time);
+    }
+    if (touches->dropped && !sim->crowd_warned) {
+        sim->crowd_warned = true;
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: at %.4g s sheets lie too thick on each other for the lists; some may cross (said once)",
+                sim->state.time);
+    }
+}

@@ -53,6 +53,7 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
     TRY(gas_check(&def->gas, error));
+    TRY(touch_check(&def->contact, error));
     return wind_check(&def->wind, error);
 }
 
@@ -66,14 +67,14 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) 
     return true;
 }
 
-/// Reads a simulation's Def of any version. Wind, solver and gas lie inside and grow by themselves, so that
+/// Reads a simulation's Def of any version. Wind, solver, gas and contact lie inside and grow by themselves, so that
 /// what comes after each is found by the size that the caller's header gave it.
 static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     const size_t head = offsetof(SingeSimDef, wind);
     const char *bytes = (const char *)given;
     *def = singe_default_sim();
     if (!given || given->struct_size < sizeof(size_t)) return false;
-    size_t rest = given->struct_size, wind, solver;
+    size_t rest = given->struct_size, wind, solver, gas;
     memcpy(def, bytes, rest < head ? rest : head);
     def->struct_size = sizeof *def;
     if (rest <= head) return true;
@@ -85,7 +86,11 @@ static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
     if (!sim_read_def(&def->solver, sizeof def->solver, bytes, rest)) return false;
     memcpy(&solver, bytes, sizeof solver);
     bytes += solver, rest -= solver;
-    return rest == 0 || sim_read_def(&def->gas, sizeof def->gas, bytes, rest);
+    if (rest == 0) return true;
+    if (!sim_read_def(&def->gas, sizeof def->gas, bytes, rest)) return false;
+    memcpy(&gas, bytes, sizeof gas);
+    bytes += gas, rest -= gas;
+    return rest == 0 || sim_read_def(&def->contact, sizeof def->contact, bytes, rest);
 }
 
 SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeError *error) {
@@ -204,6 +209,7 @@ SingeResult sim_build(SingeSim *sim) {
     DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                                  .air_density = def->air_density,
                                  .solver = def->solver,
+                                 .contact = def->contact,
                                  .time_step = def->time_step,
                                  .instructions = def->instructions,
                                  .thread_count = def->tasks.enqueue ? 64 : def->thread_count};

@@ -4,6 +4,7 @@
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"
+#include "contact/touch.h"
 #include "dynamics/dynamics.h"
 #include "gas/gas.h"
 #include "heat/heat.h"
@@ -33,6 +34,7 @@ struct SingeSim {
     void *backup;      ///< the state's basic part before the step
     EventList events;
     SingeTimers timers;
+    bool tangle_warned, crossing_warned, crowd_warned; ///< of contact, once each
     bool heat_warned;  ///< that the diffusion ran out of iterations
 
     // plans and scratch of the stages
@@ -61,6 +63,9 @@ SingeResult sim_build(SingeSim *sim);
 void sim_log_commit(const SingeSim *sim);
 /// Tells it once that conduction is less exact than was asked for.
 void sim_log_unconverged(SingeSim *sim);
+
+/// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
+void sim_log_touches(SingeSim *sim, const TouchCounters *touches);
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);

@@ -45,6 +45,13 @@ static void def_gas(Stream *stream, SingeGasDef *gas) {
     STREAM(stream, gas->soot);
 }
 
+static void def_contact(Stream *stream, SingeContactDef *contact) {
+    contact->struct_size = sizeof *contact;
+    def_bool(stream, &contact->enabled);
+    STREAM(stream, contact->thickness);
+    STREAM(stream, contact->friction);
+}
+
 void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     STREAM(stream, def->seed);
     STREAM(stream, def->time_step);
@@ -58,6 +65,7 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     STREAM(stream, def->surface_detail);
     STREAM(stream, def->surface_raggedness);
     def_gas(stream, &def->gas);
+    def_contact(stream, &def->contact);
 }
 
 /// A parameter's numbers; its values at the particles are the sheet's params.

@@ -12,6 +12,18 @@ static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
     *start = now;
 }
 
+static void step_note_touches(SingeSim *sim) {
+    TouchCounters touches = dynamics_plan_touches(sim->dynamics);
+    SingeTimers *timers = &sim->timers;
+    timers->contact_seconds = touches.seconds;
+    timers->contact_searches = touches.searches;
+    timers->contact_pushes = touches.pushes;
+    timers->contact_stops = touches.stops;
+    timers->contact_unresolved = touches.unresolved;
+    timers->contact_dropped = touches.dropped;
+    sim_log_touches(sim, &touches);
+}
+
 static SingeResult step_stages(SingeSim *sim) {
     const Shell *shell = &sim->shell;
     const SingeSimDef *def = &sim->def;
@@ -57,6 +69,7 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->timers.projection_iterations += counters.iterations;
     sim->timers.projection_flops += counters.flops;
     sim->timers.projection_bytes += counters.bytes;
+    step_note_touches(sim);
     return SINGE_OK;
 }
 

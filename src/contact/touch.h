@@ -1,0 +1,63 @@
+// Sheets do not pass through themselves nor through each other.
+//
+// What must not cross is the drawn mesh: a cell's four triangles around its virtual centre, the mean of its corners
+// (sections 6 and 7 of the paper let layers pass through each other). Twice in a step this part of the dynamics acts:
+//
+//   in every substep   points of two cells that are nearer than the contact thickness are pushed apart, with friction
+//                      (touch_push.c)
+//   at the step's end  no way from the last step's places to the present ones may lead through another cell: where it
+//                      does, what meets goes only as far as is free (touch_guard.c). That is a guarantee, not a force
+//
+// Both look at pairs of cells that are near, which are found anew when cells have used up the motion that the last
+// search allowed for (touch_find.c). All lists have a fixed order: the same bytes for any number of threads.
+#ifndef CONTACT_TOUCH_H
+#define CONTACT_TOUCH_H
+
+#include "base/bytes.h"
+#include "base/pool.h"
+#include "shell/shell.h"
+
+typedef struct TouchPlan TouchPlan;
+
+SingeResult touch_check(const SingeContactDef *def, SingeError *error);
+
+/// Scratch for the shell; `time_step` in s. SINGE_ERROR_MEMORY.
+SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                              TouchPlan **plan);
+void touch_plan_free(Memory *memory, TouchPlan *plan);
+
+/// What the plan remembers of the last search, as part of a snapshot.
+void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream);
+
+/// To be called when cells have other corners than before.
+void touch_plan_forget(TouchPlan *plan);
+
+/// Opens a step whose particles are at `dynamics`, the inverse masses in place.
+void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
+
+/// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
+void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
+
+/// Closes the step: no cell of the drawn mesh has passed through another since touch_open.
+void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                 DynamicsState *dynamics);
+
+/// What has been done since the plan was made.
+typedef struct TouchCounters {
+    uint64_t searches;   ///< for pairs that are near
+    uint64_t touches;    ///< pairs of points looked at, summed over steps
+    uint64_t pushes;     ///< of them, those that a substep had to push, summed over substeps
+    uint64_t stops;      ///< pairs of cells whose way was cut short
+    uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
+    uint64_t dropped;    ///< pairs for which there was no room
+    uint32_t tangled;    ///< cells that crossed others as the simulation started and have not parted since
+    double seconds;
+} TouchCounters;
+
+TouchCounters touch_counters(const TouchPlan *plan);
+
+/// 1 at vertices whose cells have another near, in the present state, else 0: there the drawn surface leaves its flat
+/// triangles by nothing. `near` is [vertices].
+void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near);
+
+#endif

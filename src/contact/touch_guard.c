@@ -1,0 +1,345 @@
+// No way through: continuous detection at the end of a step, and what is done where ways meet.
+//
+// Every corner has gone from x0, where the step began, to x1. A pair of cells that were d apart at the last search and
+// have moved since by less, relative to each other, cannot have met:
+//
+//   |mean way of a - mean way of b| + deviation of a + deviation of b < d
+//
+// Cells that share a corner are taken for free while their triangles' normals lie within TOUCH_CONE of each other: then
+// they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision detection, 1994). What is
+// left is swept, feature by feature. Where it meets, the corners of both cells form a zone, with all zones that they
+// touch, and go
+//
+//   x0 + u + a (x1 - x0 - u),   u the mean way of the zone by mass,
+//
+// with a the share of the way that was free: the zone keeps its momentum and loses what would have closed it. As other
+// cells may now be in the way, this is repeated with what has changed; a zone that meets again halves its share, and has 0
+// from round ZONE_PATIENCE on, when it moves as one piece (the impact zones of Provot, 1997). Both steps only ever join
+// zones or lessen shares, so the rounds end. Held corners go their own way.
+//
+// A corner that has left the box that the search gave its cell may have met what the search did not list: then the search is
+// repeated for this step's own ways.
+#include "base/clock.h"
+#include "contact/touch_near.h"
+#include "contact/touch_plan.h"
+
+#include <string.h>
+
+enum { ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
+
+/// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
+/// next step begins with a search.
+enum { STRAY_MOST = 512, STRAY_PART = 64 };
+
+typedef struct Guard {
+    TouchPlan *plan;
+    const Shell *shell;
+    DynamicsState *dynamics;
+    const uint8_t *cell_flags;
+    float time;   ///< s since the search
+    bool changed; ///< look at cells that have changed only
+    bool astray;  ///< a corner has left its cell's box since the search
+} Guard;
+
+// ---- how cells have moved
+
+static bool is_alive(const Guard *guard, uint32_t c) { return guard->cell_flags[c] & SINGE_ALIVE; }
+
+static void measure_cell(const Guard *guard, uint32_t c) {
+    TouchPlan *plan = guard->plan;
+    const uint32_t *corner = guard->shell->cells[c];
+    const float(*x)[4] = (const float(*)[4])guard->dynamics->position;
+    Quad way[4], node[5], foreseen = guard->time * quad_load(plan->speed[c]);
+    float astray = 0;
+    touch_ways(plan, corner, x, way);
+    for (int i = 0; i < 4; i++) {
+        Quad stray = way[i] - foreseen;
+        astray = fmaxf(astray, quad_dot(stray, stray));
+    }
+    touch_nodes(corner, x, quad_load(x[corner[0]]), node);
+    plan->motion[c].way = touch_mean(way);
+    plan->motion[c].normal = touch_normals(node);
+    plan->strayed[c] = !(astray < 0.25f * plan->slack * plan->slack);
+}
+
+static void measure_range(void *task, int begin, int end) {
+    const Guard *guard = task;
+    for (int c = begin; c < end; c++) {
+        if (guard->changed && !guard->plan->changed[c]) continue;
+        if (is_alive(guard, (uint32_t)c)) measure_cell(guard, (uint32_t)c);
+        else guard->plan->strayed[c] = 0;
+    }
+}
+
+// ---- sweeping a pair
+
+typedef struct Swept {
+    Quad place[5], way[5], low[5], high[5]; ///< of nodes
+    uint32_t id[5];
+} Swept;
+
+static void sweep_nodes(const Guard *guard, uint32_t c, Quad origin, Quad mean, Swept *out) {
+    const uint32_t *corner = guard->shell->cells[c];
+    Quad end[5];
+    touch_nodes(corner, (const float(*)[4])guard->plan->start, origin, out->place);
+    touch_nodes(corner, (const float(*)[4])guard->dynamics->position, origin + mean, end);
+    for (int i = 0; i < 5; i++) {
+        out->way[i] = end[i] - out->place[i];
+        out->low[i] = quad_min(out->place[i], end[i]);
+        out->high[i] = quad_max(out->place[i], end[i]);
+        out->id[i] = touch_id(guard->shell, c, i);
+    }
+}
+
+static inline bool apart(Quad low_a, Quad high_a, Quad low_b, Quad high_b, float wide) {
+    QuadMask out = (low_a > high_b + wide) | (low_b > high_a + wide);
+    return (out[0] | out[1] | out[2]) != 0;
+}
+
+static float sweep_node(const Guard *guard, const Swept *p, int i, const Swept *q, int j) {
+    const uint8_t *k = touch_triangle[j];
+    for (int n = 0; n < 3; n++)
+        if (q->id[k[n]] == p->id[i]) return 2;
+    Quad low = quad_min(quad_min(q->low[k[0]], q->low[k[1]]), q->low[k[2]]);
+    Quad high = quad_max(quad_max(q->high[k[0]], q->high[k[1]]), q->high[k[2]]);
+    if (apart(p->low[i], p->high[i], low, high, guard->plan->gap)) return 2;
+    TouchSweep sweep = {{p->place[i], q->place[k[0]], q->place[k[1]], q->place[k[2]]},
+                        {p->way[i], q->way[k[0]], q->way[k[1]], q->way[k[2]]}, false};
+    return touch_sweep(&sweep, guard->plan->gap, guard->plan->noise);
+}
+
+static float sweep_edge(const Guard *guard, const Swept *p, int i, const Swept *q, int j) {
+    const uint8_t *k = touch_edge[i], *l = touch_edge[j];
+    for (int n = 0; n < 4; n++)
+        if (p->id[k[n >> 1]] == q->id[l[n & 1]]) return 2;
+    if (apart(quad_min(p->low[k[0]], p->low[k[1]]), quad_max(p->high[k[0]], p->high[k[1]]),
+              quad_min(q->low[l[0]], q->low[l[1]]), quad_max(q->high[l[0]], q->high[l[1]]), guard->plan->gap))
+        return 2;
+    TouchSweep sweep = {{p->place[k[0]], p->place[k[1]], q->place[l[0]], q->place[l[1]]},
+                        {p->way[k[0]], p->way[k[1]], q->way[l[0]], q->way[l[1]]}, true};
+    return touch_sweep(&sweep, guard->plan->gap, guard->plan->noise);
+}
+
+/// The share of the step's way that two cells can go before they meet, or 2.
+static float sweep_pair(const Guard *guard, const TouchPair *pair) {
+    const TouchPlan *plan = guard->plan;
+    uint32_t a = pair->a, b = pair->b, first = guard->shell->cells[a][0];
+    Swept p, q;
+    Quad origin = quad_load(plan->start[first]), mean = quad_load(guard->dynamics->position[first]) - origin;
+    sweep_nodes(guard, a, origin, mean, &p);
+    sweep_nodes(guard, b, origin, mean, &q);
+    float hit = 2;
+    for (int i = 0; i < 5; i++)
+        for (int j = 0; j < 4; j++) {
+            if (touch_owns_node(plan, a, i)) hit = fminf(hit, sweep_node(guard, &p, i, &q, j));
+            if (a != b && touch_owns_node(plan, b, i)) hit = fminf(hit, sweep_node(guard, &q, i, &p, j));
+        }
+    for (int i = 0; i < 8; i++) {
+        if (!touch_owns_edge(plan, a, i)) continue;
+        for (int j = a == b ? i + 1 : 0; j < 8; j++)
+            if (touch_owns_edge(plan, b, j)) hit = fminf(hit, sweep_edge(guard, &p, i, &q, j));
+    }
+    return hit;
+}
+
+static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
+    const TouchPlan *plan = guard->plan;
+    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
+    if (pair->ring && touch_is_unfolded(a->normal, b->normal, pair->a == pair->b)) return true;
+    return touch_differ(a->way, b->way) + plan->gap < pair->distance;
+}
+
+static double sweep_range(void *task, int begin, int end) {
+    const Guard *guard = task;
+    TouchPlan *plan = guard->plan;
+    double hits = 0;
+    for (int k = begin; k < end; k++) {
+        TouchPair *pair = &plan->pairs[k];
+        pair->hit = 2;
+        if (guard->changed && !plan->changed[pair->a] && !plan->changed[pair->b]) continue;
+        if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(plan, pair)) continue;
+        if (!pair_is_free(guard, pair)) pair->hit = sweep_pair(guard, pair);
+        hits += pair->hit < 2;
+    }
+    return hits;
+}
+
+// ---- zones
+
+static uint32_t zone_root(TouchPlan *plan, uint32_t v) {
+    uint32_t *zone = plan->zone;
+    while (zone[v] != v) v = zone[v] = zone[zone[v]];
+    return v;
+}
+
+/// Puts a vertex into a zone of its own, with all of its way, unless it is in one.
+static void zone_enter(const Guard *guard, uint32_t v) {
+    TouchPlan *plan = guard->plan;
+    if (plan->zone[v] != SHELL_NONE) return;
+    plan->zone[v] = v;
+    plan->share[v] = 1;
+    plan->stopped[plan->stopped_count++] = v;
+    memcpy(plan->goal[v], guard->dynamics->position[v], sizeof *plan->goal);
+}
+
+/// Joins the corners of a pair that meets, and lessens their share of the way.
+static void zone_join(const Guard *guard, const TouchPair *pair, int round) {
+    TouchPlan *plan = guard->plan;
+    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
+    uint32_t root = SHELL_NONE;
+    float share = 1;
+    for (int i = 0; i < 8; i++) {
+        uint32_t v = i < 4 ? a[i] : b[i - 4];
+        zone_enter(guard, v);
+        uint32_t other = zone_root(plan, v);
+        share = fminf(share, plan->share[other]);
+        if (root == SHELL_NONE) root = other;
+        if (other < root) plan->zone[root] = other, root = other;
+        else plan->zone[other] = root;
+    }
+    // in the first round the share is what was free; later the zone's own ways have changed
+    float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
+    plan->share[root] = fminf(share, less);
+}
+
+/// Mean ways by mass; those of held corners count alone where there are any.
+static void zone_drift(const Guard *guard) {
+    TouchPlan *plan = guard->plan;
+    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Quad){0};
+    for (uint32_t k = 0; k < plan->stopped_count; k++) {
+        uint32_t v = plan->stopped[k];
+        float inverse = plan->start[v][3], mass = inverse > 0 ? 1 / inverse : 1e6f;
+        Quad way = quad_load(plan->goal[v]) - quad_load(plan->start[v]);
+        way[3] = 1;
+        plan->drift[zone_root(plan, v)] += mass * way;
+    }
+}
+
+/// Moves what is in zones, and marks the cells around.
+static void zone_move(const Guard *guard) {
+    TouchPlan *plan = guard->plan;
+    const Shell *shell = guard->shell;
+    zone_drift(guard);
+    for (uint32_t k = 0; k < plan->stopped_count; k++) {
+        uint32_t v = plan->stopped[k], root = zone_root(plan, v);
+        if (plan->start[v][3] == 0) continue;
+        Quad drift = plan->drift[root] / plan->drift[root][3], start = quad_load(plan->start[v]);
+        Quad way = quad_load(plan->goal[v]) - start;
+        Quad end = start + drift + plan->share[root] * (way - drift);
+        end[3] = start[3];
+        quad_store(guard->dynamics->position[v], end);
+    }
+    memset(plan->changed, 0, plan->cell_count);
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        for (int i = 0; i < 4; i++) plan->changed[c] |= plan->zone[shell->cells[c][i]] != SHELL_NONE;
+}
+
+/// Velocities and centres follow what zones have changed; the zones are emptied.
+static void zone_close(const Guard *guard, float h) {
+    TouchPlan *plan = guard->plan;
+    DynamicsState *dynamics = guard->dynamics;
+    if (plan->stopped_count == 0) return;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (!plan->changed[c]) continue;
+        uint32_t centre = shell_centre(guard->shell, c);
+        Quad shift = {0}, place = quad_load(dynamics->position[centre]);
+        if (place[3] == 0) continue;
+        for (int i = 0; i < 4; i++) {
+            uint32_t v = guard->shell->cells[c][i];
+            if (plan->zone[v] != SHELL_NONE)
+                shift += 0.25f * (quad_load(dynamics->position[v]) - quad_load(plan->goal[v]));
+        }
+        shift[3] = 0;
+        quad_store(dynamics->position[centre], place + shift);
+        quad_store(dynamics->velocity[centre], quad_load(dynamics->velocity[centre]) + shift / h);
+    }
+    for (uint32_t k = 0; k < plan->stopped_count; k++) {
+        uint32_t v = plan->stopped[k];
+        Quad shift = quad_load(dynamics->position[v]) - quad_load(plan->goal[v]);
+        shift[3] = 0;
+        if (plan->start[v][3] > 0)
+            quad_store(dynamics->velocity[v], quad_load(dynamics->velocity[v]) + shift / h);
+        plan->zone[v] = SHELL_NONE;
+    }
+    plan->stopped_count = 0;
+}
+
+// ---- the step's end
+
+/// Searches for the ways of this step.
+static void search_again(Guard *guard, const State *state, Pool *pool, float h) {
+    TouchPlan *plan = guard->plan;
+    memcpy(plan->place, plan->start, plan->vertex_count * sizeof *plan->place);
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        const uint32_t *at = guard->shell->cells[c];
+        Quad sum = {0};
+        for (int i = 0; i < 4; i++)
+            sum += quad_load(guard->dynamics->position[at[i]]) - quad_load(plan->start[at[i]]);
+        quad_store(plan->speed[c], 0.25f / h * sum);
+        plan->alive[c] = guard->cell_flags[c] & SINGE_ALIVE;
+    }
+    plan->step = state->step;
+    guard->time = h;
+    touch_search(plan, guard->shell, pool);
+}
+
+static void measure(Guard *guard, Pool *pool) {
+    pool_for(pool, (int)guard->plan->cell_count, 512, measure_range, guard);
+}
+
+static uint32_t sweep(Guard *guard, Pool *pool) {
+    return (uint32_t)pool_sum(pool, (int)guard->plan->pair_count, sweep_range, guard, guard->plan->partial);
+}
+
+/// Lists what cells that have left their boxes may have met; all anew where these are many. False where there are none.
+static bool follow_strayed(Guard *guard, const State *state, Pool *pool, float h) {
+    TouchPlan *plan = guard->plan;
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        if (plan->strayed[c]) plan->stray[count++] = c;
+    if (count == 0) return false;
+    if (count > STRAY_MOST || plan->edge <= 0) {
+        search_again(guard, state, pool, h);
+        guard->changed = false;
+        measure(guard, pool);
+        // what has been bent by more than half the slack in this one step
+        for (uint32_t c = count = 0; c < plan->cell_count; c++)
+            if (plan->strayed[c]) plan->stray[count++] = c;
+    }
+    if (count > STRAY_MOST) count = STRAY_MOST;
+    touch_search_strayed(plan, guard->shell, count, (const float(*)[4])guard->dynamics->position);
+    plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
+    return true;
+}
+
+/// One look at all that may have met, or at what the last round has changed. Returns the number of pairs that have.
+static uint32_t look(Guard *guard, const State *state, Pool *pool, float h) {
+    measure(guard, pool);
+    uint32_t hits = sweep(guard, pool);
+    if (hits > 0 || !follow_strayed(guard, state, pool, h)) return hits;
+    guard->changed = false;
+    return sweep(guard, pool);
+}
+
+void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                 DynamicsState *dynamics) {
+    double start = clock_seconds();
+    Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
+                   h * (float)(state->step - plan->step + 1), false};
+    for (int round = 0;; round++) {
+        uint32_t hits = look(&guard, state, pool, h);
+        if (hits == 0) break;
+        if (round == ZONE_ROUNDS) {
+            plan->counters.unresolved += hits;
+            break;
+        }
+        plan->counters.stops += hits;
+        for (uint32_t k = 0; k < plan->pair_count; k++)
+            if (plan->pairs[k].hit < 2) zone_join(&guard, &plan->pairs[k], round);
+        zone_move(&guard);
+        guard.changed = true;
+    }
+    plan->pair_count = plan->listed_count;
+    zone_close(&guard, h);
+    plan->counters.seconds += clock_seconds() - start;
+}

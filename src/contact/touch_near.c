@@ -1,0 +1,124 @@
+#include "contact/touch_near.h"
+#include "contact/touch_plan.h"
+
+/// Chord between unit normals: about 70 degrees.
+#define TOUCH_CONE 1.15f
+
+static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
+
+/// Weights of the triangle's point nearest to p.
+static void triangle_weights(Quad p, Quad a, Quad b, Quad c, float w[3]) {
+    Quad ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    float d1 = quad_dot(ab, ap), d2 = quad_dot(ac, ap), d3 = quad_dot(ab, bp), d4 = quad_dot(ac, bp);
+    float d5 = quad_dot(ab, cp), d6 = quad_dot(ac, cp);
+    w[0] = w[1] = w[2] = 0;
+    if (d1 <= 0 && d2 <= 0) { w[0] = 1; return; }
+    if (d3 >= 0 && d4 <= d3) { w[1] = 1; return; }
+    if (d6 >= 0 && d5 <= d6) { w[2] = 1; return; }
+    float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        w[1] = d1 / (d1 - d3), w[0] = 1 - w[1];
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        w[2] = d2 / (d2 - d6), w[0] = 1 - w[2];
+    } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
+        w[2] = (d4 - d3) / ((d4 - d3) + (d5 - d6)), w[1] = 1 - w[2];
+    } else {
+        float sum = va + vb + vc;
+        w[1] = vb / sum, w[2] = vc / sum, w[0] = 1 - w[1] - w[2];
+    }
+}
+
+Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
+    triangle_weights(p, a, b, c, weight);
+    // a triangle without area has no weights in its middle: then its first corner stands for it
+    if (!(weight[0] + weight[1] + weight[2] > 0.5f)) weight[0] = 1, weight[1] = weight[2] = 0;
+    return p - mix3(a, b, c, weight);
+}
+
+/// Mean normal of a cell's triangles, with the largest deviation as fourth; 4 where one has no normal.
+Quad touch_normals(const Quad node[5]) {
+    Quad normal[4], sum = {0};
+    float spread = 0;
+    for (int t = 0; t < 4; t++) {
+        const uint8_t *k = touch_triangle[t];
+        Quad cross = quad_cross(node[k[1]] - node[k[0]], node[k[2]] - node[k[0]]);
+        float length = sqrtf(quad_dot(cross, cross));
+        if (!(length > 0)) return (Quad){0, 0, 0, 4};
+        normal[t] = cross / length;
+        sum += normal[t];
+    }
+    float length = sqrtf(quad_dot(sum, sum));
+    if (!(length > 0)) return (Quad){0, 0, 0, 4};
+    sum = sum / length;
+    for (int t = 0; t < 4; t++) {
+        Quad off = normal[t] - sum;
+        spread = fmaxf(spread, quad_dot(off, off));
+    }
+    sum[3] = sqrtf(spread);
+    return sum;
+}
+
+bool touch_is_unfolded(Quad a, Quad b, bool same) {
+    Quad off = a - b;
+    return sqrtf(quad_dot(off, off)) + (same ? a[3] : a[3] + b[3]) < TOUCH_CONE;
+}
+
+static float clamp01(float a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
+
+Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t) {
+    Quad u = b - a, v = d - c, r = a - c;
+    float uu = quad_dot(u, u), vv = quad_dot(v, v), vr = quad_dot(v, r), ur = quad_dot(u, r), uv = quad_dot(u, v);
+    float determinant = uu * vv - uv * uv;
+    *s = determinant > 4e-7f * uu * vv ? clamp01((uv * vr - ur * vv) / determinant) : 0;
+    *t = vv > 0 ? (uv * *s + vr) / vv : 0;
+    if (!(*t >= 0 && *t <= 1)) {
+        *t = clamp01(*t);
+        *s = uu > 0 ? clamp01((*t * uv - ur) / uu) : 0;
+    }
+    return (a + *s * u) - (c + *t * v);
+}
+
+static float sweep_distance(const TouchSweep *sweep, float time) {
+    Quad x[4];
+    float weight[3], s, t;
+    for (int i = 0; i < 4; i++) x[i] = sweep->place[i] + time * sweep->way[i];
+    Quad apart = sweep->edges ? touch_from_segment(x[0], x[1], x[2], x[3], &s, &t)
+                              : touch_from_triangle(x[0], x[1], x[2], x[3], weight);
+    return sqrtf(quad_dot(apart, apart));
+}
+
+/// The fastest that the two can come nearer in: their longest ways, without what is common to all.
+static float sweep_approach(const TouchSweep *sweep) {
+    Quad mean = 0.25f * ((sweep->way[0] + sweep->way[1]) + (sweep->way[2] + sweep->way[3]));
+    float length[4];
+    for (int i = 0; i < 4; i++) length[i] = sqrtf(quad_dot(sweep->way[i] - mean, sweep->way[i] - mean));
+    float late = fmaxf(length[2], length[3]);
+    return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
+}
+
+float touch_sweep(const TouchSweep *sweep, float gap, float noise) {
+    enum { ROUNDS = 64 };
+    float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
+    bool close = distance <= 2 * gap; // then it may only part
+    if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
+    float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * (distance - keep);
+    if (approach < distance - keep) return 2;
+    for (int round = 0; round < ROUNDS; round++) {
+        float next = time + 0.9f * (distance - keep) / approach;
+        if (next > 1) return 2;
+        distance = sweep_distance(sweep, next);
+        if (!(distance > stop)) return time;
+        time = next;
+    }
+    return time;
+}
+
+bool touch_pierces(Quad p, Quad q, Quad a, Quad b, Quad c) {
+    Quad normal = quad_cross(b - a, c - a);
+    float above = quad_dot(p - a, normal), below = quad_dot(q - a, normal);
+    if ((above > 0) == (below > 0) || above == below) return false;
+    Quad x = p + above / (above - below) * (q - p);
+    float ab = quad_dot(quad_cross(b - a, x - a), normal), bc = quad_dot(quad_cross(c - b, x - b), normal);
+    float ca = quad_dot(quad_cross(a - c, x - c), normal);
+    return ab >= 0 && bc >= 0 && ca >= 0;
+}

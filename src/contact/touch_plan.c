@@ -1,0 +1,152 @@
+// The plan: what it is made of, how long it is remembered.
+#include "contact/touch_near.h"
+#include "contact/touch_plan.h"
+
+#include <string.h>
+
+SingeResult touch_check(const SingeContactDef *def, SingeError *error) {
+    const char *what = NULL;
+    if (!(def->thickness > 0 && def->thickness <= 1)) what = "thickness must be above 0, at most 1 m";
+    if (!(def->friction >= 0 && def->friction <= 1e3f)) what = "friction must be between 0 and 1000";
+    return what ? error_set(error, SINGE_ERROR_ARGUMENT, "contact", -1, "%s", what) : SINGE_OK;
+}
+
+static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
+
+/// Finds the sizes of lists and lengths that follow from the shell.
+static void size_plan(TouchPlan *plan, const Shell *shell) {
+    uint64_t cells = shell->cell_count;
+    plan->vertex_count = shell->vertex_count, plan->cell_count = shell->cell_count;
+    plan->entry_capacity = capped(TOUCH_ENTRIES * cells + 64);
+    plan->pair_capacity = capped(TOUCH_PAIRS * cells + 64);
+    plan->feature_capacity = capped(TOUCH_FEATURES * cells + 64);
+    plan->push_capacity = capped(TOUCH_PUSHES * cells + 64);
+    for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
+    plan->block_capacity = (plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity) / 256 + 2;
+    plan->cell_size = INFINITY;
+    float far = 0;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
+    for (uint32_t v = 0; v < shell->vertex_count; v++)
+        for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
+    plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
+    plan->slack_most = fmaxf(0.3f * plan->cell_size, plan->thickness);
+    plan->noise = 4e-7f * far;
+    plan->gap = 1e-3f * plan->cell_size + 4 * plan->noise;
+}
+
+static bool allocate(Memory *memory, TouchPlan *plan) {
+    size_t cells = plan->cell_count, vertices = plan->vertex_count;
+    return NEW(memory, plan->place, vertices) && NEW(memory, plan->speed, cells) && NEW(memory, plan->alive, cells) &&
+           NEW(memory, plan->tangled, cells) && NEW(memory, plan->boxes, cells) && NEW(memory, plan->owned, cells) &&
+           NEW(memory, plan->owner, vertices) && NEW(memory, plan->entries, plan->entry_capacity) &&
+           NEW(memory, plan->bucket_first, (size_t)plan->bucket_count + 2) &&
+           NEW(memory, plan->block_count, plan->block_capacity) && NEW(memory, plan->pairs, plan->pair_capacity) &&
+           NEW(memory, plan->features, plan->feature_capacity) && NEW(memory, plan->pushes, plan->push_capacity) &&
+           NEW(memory, plan->pushing, plan->push_capacity) && NEW(memory, plan->start, vertices) &&
+           NEW(memory, plan->goal, vertices) && NEW(memory, plan->motion, cells) && NEW(memory, plan->zone, vertices) &&
+           NEW(memory, plan->share, vertices) && NEW(memory, plan->drift, vertices) &&
+           NEW(memory, plan->stopped, vertices) && NEW(memory, plan->changed, cells) && NEW(memory, plan->strayed, cells) &&
+           NEW(memory, plan->stray, cells) &&
+           NEW(memory, plan->partial, pool_blocks((int)plan->pair_capacity));
+}
+
+void touch_plan_free(Memory *memory, TouchPlan *plan) {
+    if (!plan) return;
+    size_t cells = plan->cell_count, vertices = plan->vertex_count;
+    FREE(memory, plan->place, vertices);
+    FREE(memory, plan->speed, cells);
+    FREE(memory, plan->alive, cells);
+    FREE(memory, plan->tangled, cells);
+    FREE(memory, plan->boxes, cells);
+    FREE(memory, plan->owned, cells);
+    FREE(memory, plan->owner, vertices);
+    FREE(memory, plan->entries, plan->entry_capacity);
+    FREE(memory, plan->bucket_first, (size_t)plan->bucket_count + 2);
+    FREE(memory, plan->block_count, plan->block_capacity);
+    FREE(memory, plan->pairs, plan->pair_capacity);
+    FREE(memory, plan->features, plan->feature_capacity);
+    FREE(memory, plan->pushes, plan->push_capacity);
+    FREE(memory, plan->pushing, plan->push_capacity);
+    FREE(memory, plan->start, vertices);
+    FREE(memory, plan->goal, vertices);
+    FREE(memory, plan->motion, cells);
+    FREE(memory, plan->zone, vertices);
+    FREE(memory, plan->share, vertices);
+    FREE(memory, plan->drift, vertices);
+    FREE(memory, plan->stopped, vertices);
+    FREE(memory, plan->changed, cells);
+    FREE(memory, plan->strayed, cells);
+    FREE(memory, plan->stray, cells);
+    FREE(memory, plan->partial, pool_blocks((int)plan->pair_capacity));
+    FREE(memory, plan, 1);
+}
+
+SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                              TouchPlan **out) {
+    TouchPlan *plan;
+    *out = NULL;
+    if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+    plan->def = *def;
+    plan->time_step = time_step;
+    size_plan(plan, shell);
+    if (!allocate(memory, plan)) {
+        touch_plan_free(memory, plan);
+        return SINGE_ERROR_MEMORY;
+    }
+    for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
+    *out = plan;
+    return SINGE_OK;
+}
+
+void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
+    STREAM(stream, plan->searched);
+    STREAM(stream, plan->restless);
+    STREAM(stream, plan->step);
+    stream_data(stream, plan->place, plan->vertex_count * sizeof *plan->place);
+    stream_data(stream, plan->speed, plan->cell_count * sizeof *plan->speed);
+    stream_data(stream, plan->alive, plan->cell_count);
+    stream_data(stream, plan->tangled, plan->cell_count);
+    if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return;
+    plan->counters.tangled = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;
+    touch_search(plan, shell, NULL);
+}
+
+// a search from a later step than the present one counts as none
+void touch_plan_forget(TouchPlan *plan) { plan->step = UINT64_MAX; }
+
+TouchCounters touch_counters(const TouchPlan *plan) { return plan->counters; }
+
+/// Distance of a feature's cells now, as far as its own points go.
+static float near_now(const TouchPlan *plan, const Shell *shell, const float (*x)[4], const TouchFeature *feature) {
+    const TouchPair *pair = &plan->pairs[feature->pair];
+    Quad origin = quad_load(x[shell->cells[pair->a][0]]), p[5], q[5], apart;
+    touch_nodes(shell->cells[pair->a], x, origin, p);
+    touch_nodes(shell->cells[pair->b], x, origin, q);
+    float weight[3], s, t;
+    if (feature->edges) {
+        const uint8_t *k = touch_edge[feature->bit >> 3], *l = touch_edge[feature->bit & 7];
+        apart = touch_from_segment(p[k[0]], p[k[1]], q[l[0]], q[l[1]], &s, &t);
+    } else {
+        bool turned = feature->bit >= 20;
+        int bit = feature->bit - (turned ? 20 : 0);
+        const uint8_t *k = touch_triangle[bit & 3];
+        const Quad *from = turned ? q : p, *to = turned ? p : q;
+        apart = touch_from_triangle(from[bit >> 2], to[k[0]], to[k[1]], to[k[2]], weight);
+    }
+    return sqrtf(quad_dot(apart, apart));
+}
+
+static void mark_cells(const TouchPair *pair, const Shell *shell, uint8_t *near) {
+    for (int i = 0; i < 4; i++) near[shell->cells[pair->a][i]] = near[shell->cells[pair->b][i]] = 1;
+}
+
+void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
+    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
+    float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
+    for (uint32_t k = 0; plan->searched && k < plan->feature_count; k++) {
+        const TouchPair *pair = &plan->pairs[plan->features[k].pair];
+        if (!(state->ablate.cell_flags[pair->a] & state->ablate.cell_flags[pair->b] & SINGE_ALIVE)) continue;
+        if (near_now(plan, shell, x, &plan->features[k]) < bulges) mark_cells(pair, shell, near);
+    }
+}

@@ -1,0 +1,175 @@
+// What the files of this folder share.
+#ifndef CONTACT_TOUCH_PLAN_H
+#define CONTACT_TOUCH_PLAN_H
+
+#include "base/quad.h"
+#include "contact/touch.h"
+
+/// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
+enum { TOUCH_STEPS = 6 };
+/// Room for a cell, of each list.
+enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_FEATURES = 40, TOUCH_PUSHES = 12 };
+
+/// A cell's box at the search and the way it was on, over plan->steps. The fourth numbers are 0.
+typedef struct TouchBox {
+    Quad low, high, way;
+} TouchBox;
+
+/// An entry of the grid: a cell in one of the cubes that its swept box overlaps.
+typedef struct TouchEntry {
+    uint32_t cell, key; ///< key: hash of the cube
+} TouchEntry;
+
+/// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.
+typedef struct TouchPair {
+    uint32_t a, b;
+    float distance;  ///< m, at least that at the search
+    float hit;       ///< of the step's way, the share after which they meet; 2: never
+    uint64_t nodes;  ///< bit 4 i + j: node i of a and triangle j of b, bit 20 + 4 i + j: the other way round
+    uint64_t edges;  ///< bit 8 i + j
+    uint32_t ring;   ///< they share a corner, or are one
+} TouchPair;
+
+/// A feature of a pair that may come within plan->reach before the next search.
+typedef struct TouchFeature {
+    uint32_t pair;
+    uint8_t bit;   ///< of `nodes` or of `edges`
+    uint8_t edges; ///< which
+    uint8_t pushes; ///< it may have to be pushed apart in this step
+    float distance; ///< m, at the search
+} TouchFeature;
+
+/// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.
+typedef struct TouchPush {
+    Quad normal;
+    uint32_t node[8];
+    float weight[8];
+    float target; ///< m
+    uint32_t count; ///< 0: at rest
+} TouchPush;
+
+/// How a cell has moved since the search: mean of its corners' ways, with the largest deviation as fourth; and the mean
+/// normal of its triangles, with their largest deviation as fourth.
+typedef struct TouchMotion {
+    Quad way, normal;
+    Quad speed; ///< m/s as the step opened: of the corners, with the largest deviation as fourth
+} TouchMotion;
+
+struct TouchPlan {
+    SingeContactDef def;
+    uint32_t cell_count, vertex_count;
+    float time_step;  ///< s
+    float cell_size;  ///< m, of the smallest
+    float thickness;  ///< m, of contact; at most 2/5 of the smallest cell
+    float slack_most; ///< m, that cells may move otherwise than foreseen before the search is repeated
+    float gap;        ///< m, that ways keep free in front of what they would meet
+    float noise;      ///< m, that rounding moves places by
+
+    // the last search: part of a snapshot
+    uint32_t searched;       ///< 0: never
+    uint32_t restless;       ///< many cells have left their boxes since: search as the next step opens
+    uint64_t step;           ///< it was for the way from this step's start
+    float (*place)[4];       ///< [vertices] m
+    float (*speed)[4];       ///< [cells] m/s
+    uint8_t *alive;          ///< [cells]
+    uint8_t *tangled;        ///< [cells] crossed another at the start, and has not parted since
+
+    // what was found
+    uint32_t steps;          ///< that the search is for
+    float slack, reach;      ///< m; reach is thickness + slack
+    float edge;              ///< m, of the grid's cubes
+    uint32_t entry_count, bucket_count, feature_count, push_count;
+    uint32_t listed_count;   ///< pairs of the search
+    uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
+    uint32_t entry_capacity, pair_capacity, feature_capacity, push_capacity;
+    TouchBox *boxes;         ///< [cells]
+    uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
+    uint32_t *owner;         ///< [vertices]
+    TouchEntry *entries;     ///< [entry_capacity] by bucket
+    uint32_t *bucket_first;  ///< [bucket_count + 2]
+    uint32_t *block_count;   ///< [blocks] found in each block of buckets or pairs
+    uint32_t block_capacity;
+    TouchPair *pairs;        ///< [pair_capacity]
+    TouchFeature *features;  ///< [feature_capacity]
+    TouchPush *pushes;       ///< [push_count]
+    uint32_t *pushing;       ///< [push_count] their features
+
+    // the step
+    float (*start)[4];       ///< [vertices] m
+    float (*goal)[4];        ///< [vertices] m, where they were going
+    TouchMotion *motion;     ///< [cells]
+    uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
+    float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
+    Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
+    uint32_t *stopped;       ///< [stopped_count] vertices in zones
+    uint32_t stopped_count;
+    uint8_t *changed;        ///< [cells] that zones have moved in this round
+    uint8_t *strayed;        ///< [cells] that have left their boxes
+    uint32_t *stray;         ///< [cells] a list of them
+    double *partial;         ///< [pool_blocks(pair_capacity)]
+    TouchCounters counters;
+};
+
+/// Finds the pairs and features for plan->place, speed, alive.
+void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
+
+/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from
+/// plan->start to `x`.
+void touch_search_strayed(TouchPlan *plan, const Shell *shell, uint32_t stray_count, const float (*x)[4]);
+
+/// Mean of four vectors; fourth: the largest deviation from it.
+static inline Quad touch_mean(const Quad vector[4]) {
+    Quad mean = 0.25f * ((vector[0] + vector[1]) + (vector[2] + vector[3]));
+    float deviation = 0;
+    for (int i = 0; i < 4; i++) {
+        Quad off = vector[i] - mean;
+        float square = quad_dot(off, off);
+        deviation = square > deviation ? square : deviation;
+    }
+    mean[3] = sqrtf(deviation);
+    return mean;
+}
+
+/// Ways of a cell's corners since the search.
+static inline void touch_ways(const TouchPlan *plan, const uint32_t corner[4], const float (*x)[4], Quad way[4]) {
+    for (int i = 0; i < 4; i++) way[i] = quad_load(x[corner[i]]) - quad_load(plan->place[corner[i]]);
+}
+
+/// The most that any points of two cells differ in, given their means with deviations.
+static inline float touch_differ(Quad a, Quad b) {
+    Quad off = a - b;
+    return sqrtf(quad_dot(off, off)) + a[3] + b[3];
+}
+
+/// A cell's nodes about an origin: corners, then the virtual centre. Fourth numbers are 0.
+static inline void touch_nodes(const uint32_t corner[4], const float (*x)[4], Quad origin, Quad node[5]) {
+    for (int i = 0; i < 4; i++) {
+        node[i] = quad_load(x[corner[i]]) - origin;
+        node[i][3] = 0;
+    }
+    node[4] = 0.25f * ((node[0] + node[1]) + (node[2] + node[3]));
+}
+
+/// Nodes of a cell's edges 0 to 7: sides, then the lines from the corners to the centre; and of its triangles.
+static const uint8_t touch_edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
+static const uint8_t touch_triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+
+/// Number of a node, the same in all cells that have it.
+static inline uint32_t touch_id(const Shell *shell, uint32_t cell, int node) {
+    return node < 4 ? shell->cells[cell][node] : shell_centre(shell, cell);
+}
+
+/// Whether a cell counts node or edge i as its own: what several share is looked at once.
+static inline bool touch_owns_node(const TouchPlan *plan, uint32_t cell, int i) {
+    return i == 4 || (plan->owned[cell] >> i & 1);
+}
+static inline bool touch_owns_edge(const TouchPlan *plan, uint32_t cell, int i) {
+    return i >= 4 || (plan->owned[cell] >> (4 + i) & 1);
+}
+
+/// Two cells that crossed at the start and have not parted.
+static inline bool touch_is_tangled(const TouchPlan *plan, const TouchPair *pair) {
+    return plan->tangled[pair->a] && plan->tangled[pair->b];
+}
+
+#endif

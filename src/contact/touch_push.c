@@ -1,0 +1,229 @@
+// Contact of sheets with themselves and each other, as positions.
+//
+// A touch is a point of one cell, P = sum w_i x_i over its corners, and one of another, Q, both taken where the two
+// features are nearest as the step opens, and the normal n from Q to P then. In every substep
+//
+//   C = n . (P - Q) - g < 0   is projected:   x_i += m_i^-1 w_i n lambda,   lambda = -C / sum w_i^2 m_i^-1
+//
+// one after another. g is the thickness, or, of what is nearer already, so much more than it has that the two part by
+// TOUCH_PART m/s. Slip across n since the substep began is taken back by at most mu |C| (Coulomb), as contact with
+// colliders does. A virtual centre stands for its four corners by quarters. What lies
+// nearer at rest than twice the thickness (the lips of a tear), is not pushed.
+#include "base/clock.h"
+#include "contact/touch_near.h"
+#include "contact/touch_plan.h"
+
+#include <string.h>
+
+/// m/s with which is mended what is too near.
+#define TOUCH_PART 0.1f
+
+// ---- touches as the step opens
+
+/// Adds a node's weight to the corners of its cell.
+static void add_node(float corner[4], int node, float weight) {
+    if (node < 4) {
+        corner[node] += weight;
+        return;
+    }
+    for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
+}
+
+/// Points of a feature: weights of the corners of a and of b, and from the second to the first.
+static Quad feature_points(const Shell *shell, const float (*x)[4], const TouchPair *pair, const TouchFeature *feature,
+                           float wa[4], float wb[4]) {
+    Quad origin = quad_load(x[shell->cells[pair->a][0]]), p[5], q[5];
+    touch_nodes(shell->cells[pair->a], x, origin, p);
+    touch_nodes(shell->cells[pair->b], x, origin, q);
+    memset(wa, 0, 4 * sizeof *wa);
+    memset(wb, 0, 4 * sizeof *wb);
+    if (feature->edges) {
+        const uint8_t *k = touch_edge[feature->bit >> 3], *l = touch_edge[feature->bit & 7];
+        float s, t;
+        Quad apart = touch_from_segment(p[k[0]], p[k[1]], q[l[0]], q[l[1]], &s, &t);
+        add_node(wa, k[0], 1 - s), add_node(wa, k[1], s);
+        add_node(wb, l[0], 1 - t), add_node(wb, l[1], t);
+        return apart;
+    }
+    bool turned = feature->bit >= 20;
+    int bit = feature->bit - (turned ? 20 : 0), node = bit >> 2;
+    const uint8_t *k = touch_triangle[bit & 3];
+    const Quad *from = turned ? q : p, *to = turned ? p : q;
+    float weight[3], *wn = turned ? wb : wa, *wt = turned ? wa : wb;
+    Quad apart = touch_from_triangle(from[node], to[k[0]], to[k[1]], to[k[2]], weight);
+    add_node(wn, node, 1);
+    for (int i = 0; i < 3; i++) add_node(wt, k[i], weight[i]);
+    return turned ? -apart : apart;
+}
+
+/// Distance at rest of the two points, within one sheet.
+static float rest_distance(const Shell *shell, const TouchPair *pair, const float wa[4], const float wb[4]) {
+    uint32_t first = shell_centre(shell, pair->a), second = shell_centre(shell, pair->b);
+    if (shell->matter.sheet[first] != shell->matter.sheet[second]) return INFINITY;
+    Quad apart = {0};
+    for (int i = 0; i < 4; i++)
+        apart += wa[i] * quad_load(shell->rest_position[shell->cells[pair->a][i]]) -
+                 wb[i] * quad_load(shell->rest_position[shell->cells[pair->b][i]]);
+    return sqrtf(quad_dot(apart, apart));
+}
+
+static void gather(TouchPush *push, const uint32_t corner[4], const float weight[4], float sign) {
+    for (int i = 0; i < 4; i++) {
+        if (weight[i] == 0) continue;
+        uint32_t k = 0;
+        while (k < push->count && push->node[k] != corner[i]) k++;
+        if (k == push->count) {
+            push->node[push->count] = corner[i];
+            push->weight[push->count++] = 0;
+        }
+        push->weight[k] += sign * weight[i];
+    }
+}
+
+typedef struct Opening {
+    TouchPlan *plan;
+    const Shell *shell;
+    const DynamicsState *dynamics;
+    const uint8_t *cell_flags;
+} Opening;
+
+/// What a feature's points need to be pushed in this step; count 0 for nothing.
+static TouchPush open_feature(const Opening *job, const TouchFeature *feature) {
+    const TouchPlan *plan = job->plan;
+    const TouchPair *pair = &plan->pairs[feature->pair];
+    const uint32_t *a = job->shell->cells[pair->a], *b = job->shell->cells[pair->b];
+    TouchPush push = {.count = 0};
+    if (!(job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) || touch_is_tangled(plan, pair))
+        return push;
+    const TouchMotion *p = &plan->motion[pair->a], *q = &plan->motion[pair->b];
+    float thickness = plan->thickness, nearing = touch_differ(p->way, q->way);
+    if (feature->distance - nearing > 1.25f * thickness + 1.5f * plan->time_step * touch_differ(p->speed, q->speed))
+        return push;
+    float wa[4], wb[4];
+    Quad apart = feature_points(job->shell, (const float(*)[4])job->dynamics->position, pair, feature, wa, wb);
+    float distance = sqrtf(quad_dot(apart, apart));
+    if (!(distance > 0)) return push;
+    push.normal = apart / distance;
+    Quad speed = {0};
+    for (int i = 0; i < 4; i++)
+        speed += wa[i] * quad_load(job->dynamics->velocity[a[i]]) - wb[i] * quad_load(job->dynamics->velocity[b[i]]);
+    float toward = -quad_dot(speed, push.normal) * plan->time_step;
+    if (distance > 1.25f * thickness + 1.5f * (toward > 0 ? toward : 0)) return push;
+    if (rest_distance(job->shell, pair, wa, wb) < 2 * thickness) return push;
+    float parted = distance + TOUCH_PART * plan->time_step;
+    push.target = parted < thickness ? parted : thickness;
+    gather(&push, a, wa, 1);
+    gather(&push, b, wb, -1);
+    return push;
+}
+
+static void way_range(void *task, int begin, int end) {
+    const Opening *job = task;
+    for (int c = begin; c < end; c++) {
+        const uint32_t *corner = job->shell->cells[c];
+        Quad vector[4]; // fourths: of places inverse masses, which count for nothing
+        touch_ways(job->plan, corner, (const float(*)[4])job->dynamics->position, vector);
+        job->plan->motion[c].way = touch_mean(vector);
+        for (int i = 0; i < 4; i++) vector[i] = quad_load(job->dynamics->velocity[corner[i]]);
+        job->plan->motion[c].speed = touch_mean(vector);
+    }
+}
+
+static void look_range(void *task, int begin, int end) {
+    const Opening *job = task;
+    for (int k = begin; k < end; k++) {
+        TouchFeature *feature = &job->plan->features[k];
+        feature->pushes = open_feature(job, feature).count > 0;
+    }
+}
+
+static void open_range(void *task, int begin, int end) {
+    const Opening *job = task;
+    TouchPlan *plan = job->plan;
+    for (int k = begin; k < end; k++) plan->pushes[k] = open_feature(job, &plan->features[plan->pushing[k]]);
+}
+
+/// Features to be pushed, in their order.
+static void open_pushes(const Opening *job, Pool *pool) {
+    TouchPlan *plan = job->plan;
+    pool_for(pool, (int)plan->feature_count, 256, look_range, (void *)job);
+    plan->push_count = 0;
+    for (uint32_t k = 0; k < plan->feature_count; k++) {
+        if (!plan->features[k].pushes) continue;
+        if (plan->push_count < plan->push_capacity) plan->pushing[plan->push_count++] = k;
+        else plan->counters.dropped++;
+    }
+    pool_for(pool, (int)plan->push_count, 64, open_range, (void *)job);
+}
+
+static void note_search(TouchPlan *plan, const Shell *shell, const State *state, const DynamicsState *dynamics) {
+    memcpy(plan->place, dynamics->position, plan->vertex_count * sizeof *plan->place);
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        Quad sum = {0};
+        for (int i = 0; i < 4; i++) sum += quad_load(dynamics->velocity[at[i]]);
+        quad_store(plan->speed[c], 0.25f * sum);
+        plan->alive[c] = state->ablate.cell_flags[c] & SINGE_ALIVE;
+    }
+    plan->step = state->step;
+}
+
+void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics) {
+    double start = clock_seconds();
+    memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
+    if (!plan->searched || plan->restless || state->step < plan->step || state->step - plan->step >= plan->steps) {
+        note_search(plan, shell, state, dynamics);
+        touch_search(plan, shell, pool);
+    }
+    Opening job = {plan, shell, dynamics, state->ablate.cell_flags};
+    pool_for(pool, (int)plan->cell_count, 512, way_range, &job);
+    open_pushes(&job, pool);
+    plan->counters.touches += plan->feature_count;
+    plan->counters.seconds += clock_seconds() - start;
+}
+
+// ---- in a substep
+
+/// Takes back slip across the normal, at most `most`.
+static void rub(const TouchPush *push, const float (*predicted)[4], float h, float most, float weight,
+                DynamicsState *dynamics) {
+    float(*x)[4] = dynamics->position;
+    Quad slip = {0};
+    for (uint32_t i = 0; i < push->count; i++) {
+        uint32_t at = push->node[i];
+        Quad before = quad_load(predicted[at]) - h * quad_load(dynamics->velocity[at]);
+        slip += push->weight[i] * (quad_load(x[at]) - before);
+    }
+    slip[3] = 0;
+    slip -= quad_dot(slip, push->normal) * push->normal;
+    float length = sqrtf(quad_dot(slip, slip));
+    if (!(length > 0)) return;
+    Quad back = (length <= most ? 1 : most / length) / weight * slip;
+    for (uint32_t i = 0; i < push->count; i++) {
+        Quad place = quad_load(x[push->node[i]]);
+        quad_store(x[push->node[i]], place - place[3] * push->weight[i] * back);
+    }
+}
+
+void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
+    double start = clock_seconds();
+    float(*x)[4] = dynamics->position;
+    for (uint32_t k = 0; k < plan->push_count; k++) {
+        const TouchPush *push = &plan->pushes[k];
+        float height = -push->target, weight = 0;
+        for (uint32_t i = 0; i < push->count; i++) {
+            const float *at = x[push->node[i]];
+            height += push->weight[i] * quad_dot(quad_load(at), push->normal);
+            weight += push->weight[i] * push->weight[i] * at[3];
+        }
+        if (height >= 0 || weight <= 0) continue;
+        Quad away = -height / weight * push->normal;
+        for (uint32_t i = 0; i < push->count; i++) {
+            Quad place = quad_load(x[push->node[i]]);
+            quad_store(x[push->node[i]], place + place[3] * push->weight[i] * away);
+        }
+        if (plan->def.friction > 0) rub(push, predicted, h, -plan->def.friction * height, weight, dynamics);
+        plan->counters.pushes++;
+    }
+    plan->counters.seconds += clock_seconds() - start;
+}
