@@ -7,7 +7,8 @@
 //   x = p - 1/2 sum w_i ((p - P_i) . N_i) N_i,   p = sum w_i P_i
 //
 // which is p at the corners and on flat sheets, and depends on a side's ends alone along the side; 1/2 lays it on a
-// circle through the corners. So do virtual centres, from the cell's four corners.
+// circle through the corners. So do virtual centres, from the cell's four corners. Corners that have another surface near
+// leave their terms out: what does not cross as it is must not cross as it is drawn.
 #include "ablate/surface_fine.h"
 
 #define BULGE 0.5f
@@ -50,11 +51,14 @@ static void gather_normals(const Fine *fine) {
         vec_store(fine->normal[i], vec_unit(vec_load(fine->normal[i])));
 }
 
+static bool flat_at(const Fine *fine, uint32_t vertex) { return fine->flat && fine->flat[vertex]; }
+
 /// How far a place leaves the straight mean of `count` corners: the sum in the formula above.
-static Vec bulge(Vec flat, int count, const Vec corner[], const Vec normal[], const float weight[], float side) {
+static Vec bulge(Vec flat, int count, const Vec corner[], const Vec normal[], const float weight[],
+                 const bool is_flat[], float side) {
     Vec sum = {0, 0, 0};
     for (int i = 0; i < count; i++)
-        sum = vec_mad(sum, normal[i], -BULGE * weight[i] * vec_dot(vec_sub(flat, corner[i]), normal[i]));
+        if (!is_flat[i]) sum = vec_mad(sum, normal[i], -BULGE * weight[i] * vec_dot(vec_sub(flat, corner[i]), normal[i]));
     float most = BULGE_MOST * side, length = vec_length(sum);
     return length > most ? vec_scale(sum, most / length) : sum;
 }
@@ -65,9 +69,10 @@ static void place_centres(const Fine *fine) {
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         const uint32_t *at = fine->shell->cells[c];
         Vec corner[4], normal[4], flat = centre_of(at, position);
+        const bool is_flat[4] = {flat_at(fine, at[0]), flat_at(fine, at[1]), flat_at(fine, at[2]), flat_at(fine, at[3])};
         for (int i = 0; i < 4; i++) corner[i] = vec_load(position[at[i]]), normal[i] = vec_load(fine->normal[at[i]]);
         float side = vec_length(vec_sub(corner[1], corner[0]));
-        vec_store(fine->centre[c], vec_add(flat, bulge(flat, 4, corner, normal, quarters, side)));
+        vec_store(fine->centre[c], vec_add(flat, bulge(flat, 4, corner, normal, quarters, is_flat, side)));
     }
 }
 
@@ -76,11 +81,14 @@ static void place_vertex(const Fine *fine, const FinePlace *place, const uint32_
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
     const Vec corner[3] = {vec_load(position[particle[0]]), vec_load(position[particle[1]]),
                            vec_load(fine->centre[place->cell])};
+    const uint32_t *at = fine->shell->cells[place->cell];
+    const bool centre = flat_at(fine, at[0]) || flat_at(fine, at[1]) || flat_at(fine, at[2]) || flat_at(fine, at[3]);
+    const bool is_flat[3] = {flat_at(fine, particle[0]), flat_at(fine, particle[1]), centre};
     Vec normal[3], flat = weigh(corner, place->weight);
     for (int i = 0; i < 3; i++) normal[i] = vec_load(fine->normal[particle[i]]);
     float side = vec_length(vec_sub(corner[1], corner[0]));
     Vec unit = vec_unit(weigh(normal, place->weight));
-    vec_store(fine->surface->position[v], vec_add(flat, bulge(flat, 3, corner, normal, place->weight, side)));
+    vec_store(fine->surface->position[v], vec_add(flat, bulge(flat, 3, corner, normal, place->weight, is_flat, side)));
     vec_store(fine->surface->normal[v], vec_dot(unit, unit) > 0.5f ? unit : vec(0, 0, 1));
 }
 

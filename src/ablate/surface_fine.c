@@ -107,6 +107,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
+    fine.flat = detail->flat;
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = draw(&fine, detail, error);

@@ -62,6 +62,7 @@ typedef struct Fine {
     const State *state;
     Memory *memory;
     Pool *pool;
+    const uint8_t *flat;     ///< [vertices] of SurfaceDetail
     FineSheet *sheets;       ///< [sheets]
     Spline splines[SPLINE_COUNT];
     float *raw_level;        ///< [particles] m'; below 0 for what is gone

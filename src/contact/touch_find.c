@@ -13,8 +13,6 @@
 
 #include <string.h>
 
-enum { FIND_BLOCK = 256 };
-
 typedef struct Find {
     TouchPlan *plan;
     const Shell *shell;
@@ -204,7 +202,7 @@ static void pair_blocks(void *task, int begin, int end) {
     const Find *find = task;
     TouchPlan *plan = find->plan;
     for (int block = begin; block < end; block++) {
-        uint32_t first = (uint32_t)block * FIND_BLOCK, last = first + FIND_BLOCK, count = 0;
+        uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK, count = 0;
         if (last > plan->bucket_count) last = plan->bucket_count;
         uint32_t at = find->writing ? plan->block_count[block] : 0;
         uint32_t room = at < plan->pair_capacity ? plan->pair_capacity - at : 0;
@@ -216,17 +214,6 @@ static void pair_blocks(void *task, int begin, int end) {
     }
 }
 
-/// Counts become starts; returns their sum.
-static uint64_t sum_blocks(uint32_t *count, uint32_t blocks) {
-    uint64_t sum = 0;
-    for (uint32_t b = 0; b < blocks; b++) {
-        uint32_t here = count[b];
-        count[b] = (uint32_t)sum;
-        sum += here;
-    }
-    return sum;
-}
-
 /// Also a cell with itself: it may fold upon itself.
 static void add_cells(TouchPlan *plan) {
     for (uint32_t c = 0; c < plan->cell_count && plan->pair_count < plan->pair_capacity; c++)
@@ -236,7 +223,7 @@ static void add_cells(TouchPlan *plan) {
 
 static void find_pairs(Find *find, Pool *pool) {
     TouchPlan *plan = find->plan;
-    uint32_t blocks = (plan->bucket_count + FIND_BLOCK - 1) / FIND_BLOCK;
+    uint32_t blocks = (plan->bucket_count + TOUCH_BLOCK - 1) / TOUCH_BLOCK;
     plan->slack = plan->slack_most;
     for (int trial = 0;; trial++) {
         plan->reach = plan->thickness + plan->slack;
@@ -245,7 +232,7 @@ static void find_pairs(Find *find, Pool *pool) {
         if (plan->entry_count == 0) return;
         find->writing = false;
         pool_for(pool, (int)blocks, 1, pair_blocks, find);
-        uint64_t count = sum_blocks(plan->block_count, blocks) + plan->cell_count;
+        uint64_t count = touch_sum_blocks(plan->block_count, blocks) + plan->cell_count;
         if (count <= plan->pair_capacity || trial == 4) {
             find->writing = true;
             pool_for(pool, (int)blocks, 1, pair_blocks, find);
@@ -415,54 +402,12 @@ static void measure_pair(const Find *find, TouchPair *pair) {
     pair->distance = nearest;
 }
 
-static uint32_t bit_count(uint64_t bits) {
-    uint32_t count = 0;
-    for (; bits; bits &= bits - 1) count++;
-    return count;
-}
-
-static uint32_t list_features(TouchPlan *plan, uint32_t index, uint32_t at) {
-    const TouchPair *pair = &plan->pairs[index];
-    for (int kind = 0; kind < 2; kind++) {
-        uint64_t bits = kind ? pair->edges : pair->nodes;
-        for (uint8_t bit = 0; bits; bit++, bits >>= 1)
-            if (bits & 1 && at < plan->feature_capacity)
-                plan->features[at++] = (TouchFeature){index, bit, (uint8_t)kind, pair->distance};
-    }
-    return at;
-}
-
-/// Blocks of pairs.
-static void feature_blocks(void *task, int begin, int end) {
+static void measure_range(void *task, int begin, int end) {
     const Find *find = task;
-    TouchPlan *plan = find->plan;
-    for (int block = begin; block < end; block++) {
-        uint32_t first = (uint32_t)block * FIND_BLOCK, last = first + FIND_BLOCK, count = 0;
-        if (last > plan->pair_count) last = plan->pair_count;
-        uint32_t at = find->writing ? plan->block_count[block] : 0;
-        for (uint32_t k = first; k < last; k++) {
-            TouchPair *pair = &plan->pairs[k];
-            if (find->writing) {
-                at = list_features(plan, k, at);
-            } else if (pair->a != pair->b) {
-                measure_pair(find, pair);
-                count += bit_count(pair->nodes) + bit_count(pair->edges);
-            }
-        }
-        if (!find->writing) plan->block_count[block] = count;
+    for (int k = begin; k < end; k++) {
+        TouchPair *pair = &find->plan->pairs[k];
+        if (pair->a != pair->b) measure_pair(find, pair);
     }
-}
-
-static void find_features(Find *find, Pool *pool) {
-    TouchPlan *plan = find->plan;
-    uint32_t blocks = (plan->pair_count + FIND_BLOCK - 1) / FIND_BLOCK;
-    find->writing = false;
-    pool_for(pool, (int)blocks, 1, feature_blocks, find);
-    uint64_t count = sum_blocks(plan->block_count, blocks);
-    plan->feature_count = (uint32_t)(count < plan->feature_capacity ? count : plan->feature_capacity);
-    plan->counters.dropped += count - plan->feature_count;
-    find->writing = true;
-    pool_for(pool, (int)blocks, 1, feature_blocks, find);
 }
 
 // ---- what crosses from the start
@@ -531,7 +476,7 @@ void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool) {
     find_owners(plan, shell);
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
     find_pairs(&find, pool);
-    find_features(&find, pool);
+    pool_for(pool, (int)plan->pair_count, TOUCH_BLOCK, measure_range, &find);
     find_tangled(plan, shell, plan->searched == 0);
     plan->searched = 1;
     plan->counters.searches++;

@@ -38,7 +38,6 @@ typedef struct Guard {
     const uint8_t *cell_flags;
     float time;   ///< s since the search
     bool changed; ///< look at cells that have changed only
-    bool astray;  ///< a corner has left its cell's box since the search
 } Guard;
 
 // ---- how cells have moved

@@ -19,10 +19,9 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->vertex_count = shell->vertex_count, plan->cell_count = shell->cell_count;
     plan->entry_capacity = capped(TOUCH_ENTRIES * cells + 64);
     plan->pair_capacity = capped(TOUCH_PAIRS * cells + 64);
-    plan->feature_capacity = capped(TOUCH_FEATURES * cells + 64);
     plan->push_capacity = capped(TOUCH_PUSHES * cells + 64);
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
-    plan->block_capacity = (plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity) / 256 + 2;
+    plan->block_capacity = (plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity) / TOUCH_BLOCK + 2;
     plan->cell_size = INFINITY;
     float far = 0;
     for (uint32_t s = 0; s < shell->sheet_count; s++) plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
@@ -41,8 +40,7 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
            NEW(memory, plan->owner, vertices) && NEW(memory, plan->entries, plan->entry_capacity) &&
            NEW(memory, plan->bucket_first, (size_t)plan->bucket_count + 2) &&
            NEW(memory, plan->block_count, plan->block_capacity) && NEW(memory, plan->pairs, plan->pair_capacity) &&
-           NEW(memory, plan->features, plan->feature_capacity) && NEW(memory, plan->pushes, plan->push_capacity) &&
-           NEW(memory, plan->pushing, plan->push_capacity) && NEW(memory, plan->start, vertices) &&
+           NEW(memory, plan->pushes, plan->push_capacity) && NEW(memory, plan->start, vertices) &&
            NEW(memory, plan->goal, vertices) && NEW(memory, plan->motion, cells) && NEW(memory, plan->zone, vertices) &&
            NEW(memory, plan->share, vertices) && NEW(memory, plan->drift, vertices) &&
            NEW(memory, plan->stopped, vertices) && NEW(memory, plan->changed, cells) && NEW(memory, plan->strayed, cells) &&
@@ -64,9 +62,7 @@ void touch_plan_free(Memory *memory, TouchPlan *plan) {
     FREE(memory, plan->bucket_first, (size_t)plan->bucket_count + 2);
     FREE(memory, plan->block_count, plan->block_capacity);
     FREE(memory, plan->pairs, plan->pair_capacity);
-    FREE(memory, plan->features, plan->feature_capacity);
     FREE(memory, plan->pushes, plan->push_capacity);
-    FREE(memory, plan->pushing, plan->push_capacity);
     FREE(memory, plan->start, vertices);
     FREE(memory, plan->goal, vertices);
     FREE(memory, plan->motion, cells);
@@ -116,37 +112,3 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
 void touch_plan_forget(TouchPlan *plan) { plan->step = UINT64_MAX; }
 
 TouchCounters touch_counters(const TouchPlan *plan) { return plan->counters; }
-
-/// Distance of a feature's cells now, as far as its own points go.
-static float near_now(const TouchPlan *plan, const Shell *shell, const float (*x)[4], const TouchFeature *feature) {
-    const TouchPair *pair = &plan->pairs[feature->pair];
-    Quad origin = quad_load(x[shell->cells[pair->a][0]]), p[5], q[5], apart;
-    touch_nodes(shell->cells[pair->a], x, origin, p);
-    touch_nodes(shell->cells[pair->b], x, origin, q);
-    float weight[3], s, t;
-    if (feature->edges) {
-        const uint8_t *k = touch_edge[feature->bit >> 3], *l = touch_edge[feature->bit & 7];
-        apart = touch_from_segment(p[k[0]], p[k[1]], q[l[0]], q[l[1]], &s, &t);
-    } else {
-        bool turned = feature->bit >= 20;
-        int bit = feature->bit - (turned ? 20 : 0);
-        const uint8_t *k = touch_triangle[bit & 3];
-        const Quad *from = turned ? q : p, *to = turned ? p : q;
-        apart = touch_from_triangle(from[bit >> 2], to[k[0]], to[k[1]], to[k[2]], weight);
-    }
-    return sqrtf(quad_dot(apart, apart));
-}
-
-static void mark_cells(const TouchPair *pair, const Shell *shell, uint8_t *near) {
-    for (int i = 0; i < 4; i++) near[shell->cells[pair->a][i]] = near[shell->cells[pair->b][i]] = 1;
-}
-
-void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
-    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
-    float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
-    for (uint32_t k = 0; plan->searched && k < plan->feature_count; k++) {
-        const TouchPair *pair = &plan->pairs[plan->features[k].pair];
-        if (!(state->ablate.cell_flags[pair->a] & state->ablate.cell_flags[pair->b] & SINGE_ALIVE)) continue;
-        if (near_now(plan, shell, x, &plan->features[k]) < bulges) mark_cells(pair, shell, near);
-    }
-}

@@ -7,8 +7,10 @@
 
 /// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
 enum { TOUCH_STEPS = 6 };
+/// Buckets or pairs that are worked on together.
+enum { TOUCH_BLOCK = 256 };
 /// Room for a cell, of each list.
-enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_FEATURES = 40, TOUCH_PUSHES = 12 };
+enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_PUSHES = 16 };
 
 /// A cell's box at the search and the way it was on, over plan->steps. The fourth numbers are 0.
 typedef struct TouchBox {
@@ -26,18 +28,10 @@ typedef struct TouchPair {
     float distance;  ///< m, at least that at the search
     float hit;       ///< of the step's way, the share after which they meet; 2: never
     uint64_t nodes;  ///< bit 4 i + j: node i of a and triangle j of b, bit 20 + 4 i + j: the other way round
-    uint64_t edges;  ///< bit 8 i + j
+    uint64_t edges;  ///< bit 8 i + j; of both those that may come within plan->reach before the next search
+    uint64_t push_nodes, push_edges; ///< of them, those that this step may have to push
     uint32_t ring;   ///< they share a corner, or are one
 } TouchPair;
-
-/// A feature of a pair that may come within plan->reach before the next search.
-typedef struct TouchFeature {
-    uint32_t pair;
-    uint8_t bit;   ///< of `nodes` or of `edges`
-    uint8_t edges; ///< which
-    uint8_t pushes; ///< it may have to be pushed apart in this step
-    float distance; ///< m, at the search
-} TouchFeature;
 
 /// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.
 typedef struct TouchPush {
@@ -78,10 +72,10 @@ struct TouchPlan {
     uint32_t steps;          ///< that the search is for
     float slack, reach;      ///< m; reach is thickness + slack
     float edge;              ///< m, of the grid's cubes
-    uint32_t entry_count, bucket_count, feature_count, push_count;
+    uint32_t entry_count, bucket_count, push_count;
     uint32_t listed_count;   ///< pairs of the search
     uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
-    uint32_t entry_capacity, pair_capacity, feature_capacity, push_capacity;
+    uint32_t entry_capacity, pair_capacity, push_capacity;
     TouchBox *boxes;         ///< [cells]
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
@@ -90,9 +84,7 @@ struct TouchPlan {
     uint32_t *block_count;   ///< [blocks] found in each block of buckets or pairs
     uint32_t block_capacity;
     TouchPair *pairs;        ///< [pair_capacity]
-    TouchFeature *features;  ///< [feature_capacity]
     TouchPush *pushes;       ///< [push_count]
-    uint32_t *pushing;       ///< [push_count] their features
 
     // the step
     float (*start)[4];       ///< [vertices] m
@@ -110,7 +102,18 @@ struct TouchPlan {
     TouchCounters counters;
 };
 
-/// Finds the pairs and features for plan->place, speed, alive.
+/// Counts become starts; returns their sum.
+static inline uint64_t touch_sum_blocks(uint32_t *count, uint32_t blocks) {
+    uint64_t sum = 0;
+    for (uint32_t b = 0; b < blocks; b++) {
+        uint32_t here = count[b];
+        count[b] = (uint32_t)(sum < UINT32_MAX ? sum : UINT32_MAX);
+        sum += here;
+    }
+    return sum;
+}
+
+/// Finds the pairs and their features for plan->place, speed, alive.
 void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
 
 /// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from

@@ -29,26 +29,33 @@ static void add_node(float corner[4], int node, float weight) {
     for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
 }
 
-/// Points of a feature: weights of the corners of a and of b, and from the second to the first.
-static Quad feature_points(const Shell *shell, const float (*x)[4], const TouchPair *pair, const TouchFeature *feature,
-                           float wa[4], float wb[4]) {
-    Quad origin = quad_load(x[shell->cells[pair->a][0]]), p[5], q[5];
-    touch_nodes(shell->cells[pair->a], x, origin, p);
-    touch_nodes(shell->cells[pair->b], x, origin, q);
-    memset(wa, 0, 4 * sizeof *wa);
-    memset(wb, 0, 4 * sizeof *wb);
-    if (feature->edges) {
-        const uint8_t *k = touch_edge[feature->bit >> 3], *l = touch_edge[feature->bit & 7];
-        float s, t;
-        Quad apart = touch_from_segment(p[k[0]], p[k[1]], q[l[0]], q[l[1]], &s, &t);
-        add_node(wa, k[0], 1 - s), add_node(wa, k[1], s);
-        add_node(wb, l[0], 1 - t), add_node(wb, l[1], t);
-        return apart;
-    }
-    bool turned = feature->bit >= 20;
-    int bit = feature->bit - (turned ? 20 : 0), node = bit >> 2;
-    const uint8_t *k = touch_triangle[bit & 3];
-    const Quad *from = turned ? q : p, *to = turned ? p : q;
+/// Two cells' nodes about the first corner of a.
+typedef struct PairNodes {
+    Quad a[5], b[5];
+} PairNodes;
+
+static void pair_nodes(const Shell *shell, const float (*x)[4], const TouchPair *pair, PairNodes *nodes) {
+    Quad origin = quad_load(x[shell->cells[pair->a][0]]);
+    touch_nodes(shell->cells[pair->a], x, origin, nodes->a);
+    touch_nodes(shell->cells[pair->b], x, origin, nodes->b);
+}
+
+/// Points of edges `bit`: weights of the corners of a and of b, and from the second point to the first.
+static Quad edge_points(const PairNodes *nodes, int bit, float wa[4], float wb[4]) {
+    const uint8_t *k = touch_edge[bit >> 3], *l = touch_edge[bit & 7];
+    float s, t;
+    Quad apart = touch_from_segment(nodes->a[k[0]], nodes->a[k[1]], nodes->b[l[0]], nodes->b[l[1]], &s, &t);
+    add_node(wa, k[0], 1 - s), add_node(wa, k[1], s);
+    add_node(wb, l[0], 1 - t), add_node(wb, l[1], t);
+    return apart;
+}
+
+/// The same of a node and a triangle.
+static Quad node_points(const PairNodes *nodes, int bit, float wa[4], float wb[4]) {
+    bool turned = bit >= 20;
+    int own = bit - (turned ? 20 : 0), node = own >> 2;
+    const uint8_t *k = touch_triangle[own & 3];
+    const Quad *from = turned ? nodes->b : nodes->a, *to = turned ? nodes->a : nodes->b;
     float weight[3], *wn = turned ? wb : wa, *wt = turned ? wa : wb;
     Quad apart = touch_from_triangle(from[node], to[k[0]], to[k[1]], to[k[2]], weight);
     add_node(wn, node, 1);
@@ -87,22 +94,28 @@ typedef struct Opening {
     const uint8_t *cell_flags;
 } Opening;
 
-/// What a feature's points need to be pushed in this step; count 0 for nothing.
-static TouchPush open_feature(const Opening *job, const TouchFeature *feature) {
+/// Whether any points of a pair may have to be pushed in this step.
+static bool pair_is_due(const Opening *job, const TouchPair *pair) {
     const TouchPlan *plan = job->plan;
-    const TouchPair *pair = &plan->pairs[feature->pair];
+    if (!(pair->nodes | pair->edges)) return false;
+    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
+    float due = 1.25f * plan->thickness + 1.5f * plan->time_step * touch_differ(a->speed, b->speed);
+    if (pair->distance - touch_differ(a->way, b->way) > due) return false;
+    return (job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) && !touch_is_tangled(plan, pair);
+}
+
+/// What a feature's points need in this step; count 0 for nothing.
+static TouchPush open_feature(const Opening *job, const TouchPair *pair, const PairNodes *nodes, bool edges, int bit) {
+    const TouchPlan *plan = job->plan;
     const uint32_t *a = job->shell->cells[pair->a], *b = job->shell->cells[pair->b];
     TouchPush push = {.count = 0};
-    if (!(job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) || touch_is_tangled(plan, pair))
-        return push;
-    const TouchMotion *p = &plan->motion[pair->a], *q = &plan->motion[pair->b];
-    float thickness = plan->thickness, nearing = touch_differ(p->way, q->way);
-    if (feature->distance - nearing > 1.25f * thickness + 1.5f * plan->time_step * touch_differ(p->speed, q->speed))
-        return push;
-    float wa[4], wb[4];
-    Quad apart = feature_points(job->shell, (const float(*)[4])job->dynamics->position, pair, feature, wa, wb);
+    float wa[4] = {0}, wb[4] = {0}, thickness = plan->thickness;
+    Quad apart = edges ? edge_points(nodes, bit, wa, wb) : node_points(nodes, bit, wa, wb);
     float distance = sqrtf(quad_dot(apart, apart));
-    if (!(distance > 0)) return push;
+    const TouchMotion *p = &plan->motion[pair->a], *q = &plan->motion[pair->b];
+    if (!(distance > 0) ||
+        distance > 1.25f * thickness + 1.5f * plan->time_step * touch_differ(p->speed, q->speed))
+        return push;
     push.normal = apart / distance;
     Quad speed = {0};
     for (int i = 0; i < 4; i++)
@@ -117,6 +130,71 @@ static TouchPush open_feature(const Opening *job, const TouchFeature *feature) {
     return push;
 }
 
+/// Finds which features of a pair are to be pushed. Returns how many.
+static uint32_t look_at_pair(const Opening *job, TouchPair *pair) {
+    pair->push_nodes = pair->push_edges = 0;
+    if (!pair_is_due(job, pair)) return 0;
+    PairNodes nodes;
+    uint32_t count = 0;
+    pair_nodes(job->shell, (const float(*)[4])job->dynamics->position, pair, &nodes);
+    for (int kind = 0; kind < 2; kind++) {
+        uint64_t bits = kind ? pair->edges : pair->nodes, found = 0;
+        for (int bit = 0; bit < 64 && bits >> bit; bit++) {
+            if (!(bits >> bit & 1) || open_feature(job, pair, &nodes, kind, bit).count == 0) continue;
+            found |= UINT64_C(1) << bit;
+            count++;
+        }
+        if (kind) pair->push_edges = found;
+        else pair->push_nodes = found;
+    }
+    return count;
+}
+
+static uint32_t open_pair(const Opening *job, const TouchPair *pair, uint32_t at) {
+    TouchPlan *plan = job->plan;
+    PairNodes nodes;
+    if (!(pair->push_nodes | pair->push_edges)) return at;
+    pair_nodes(job->shell, (const float(*)[4])job->dynamics->position, pair, &nodes);
+    for (int kind = 0; kind < 2; kind++) {
+        uint64_t bits = kind ? pair->push_edges : pair->push_nodes;
+        for (int bit = 0; bit < 64 && bits >> bit && at < plan->push_capacity; bit++)
+            if (bits >> bit & 1) plan->pushes[at++] = open_feature(job, pair, &nodes, kind, bit);
+    }
+    return at;
+}
+
+/// Blocks of pairs: counts what each is to push, and then writes it from the block's start on.
+static void look_blocks(void *task, int begin, int end) {
+    const Opening *job = task;
+    TouchPlan *plan = job->plan;
+    for (int block = begin; block < end; block++) {
+        uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK, count = 0;
+        if (last > plan->listed_count) last = plan->listed_count;
+        for (uint32_t k = first; k < last; k++) count += look_at_pair(job, &plan->pairs[k]);
+        plan->block_count[block] = count;
+    }
+}
+
+static void open_blocks(void *task, int begin, int end) {
+    const Opening *job = task;
+    TouchPlan *plan = job->plan;
+    for (int block = begin; block < end; block++) {
+        uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK, at = plan->block_count[block];
+        if (last > plan->listed_count) last = plan->listed_count;
+        for (uint32_t k = first; k < last; k++) at = open_pair(job, &plan->pairs[k], at);
+    }
+}
+
+static void open_pushes(Opening *job, Pool *pool) {
+    TouchPlan *plan = job->plan;
+    uint32_t blocks = (plan->listed_count + TOUCH_BLOCK - 1) / TOUCH_BLOCK;
+    pool_for(pool, (int)blocks, 1, look_blocks, job);
+    uint64_t count = touch_sum_blocks(plan->block_count, blocks);
+    plan->push_count = (uint32_t)(count < plan->push_capacity ? count : plan->push_capacity);
+    plan->counters.dropped += count - plan->push_count;
+    pool_for(pool, (int)blocks, 1, open_blocks, job);
+}
+
 static void way_range(void *task, int begin, int end) {
     const Opening *job = task;
     for (int c = begin; c < end; c++) {
@@ -127,33 +205,6 @@ static void way_range(void *task, int begin, int end) {
         for (int i = 0; i < 4; i++) vector[i] = quad_load(job->dynamics->velocity[corner[i]]);
         job->plan->motion[c].speed = touch_mean(vector);
     }
-}
-
-static void look_range(void *task, int begin, int end) {
-    const Opening *job = task;
-    for (int k = begin; k < end; k++) {
-        TouchFeature *feature = &job->plan->features[k];
-        feature->pushes = open_feature(job, feature).count > 0;
-    }
-}
-
-static void open_range(void *task, int begin, int end) {
-    const Opening *job = task;
-    TouchPlan *plan = job->plan;
-    for (int k = begin; k < end; k++) plan->pushes[k] = open_feature(job, &plan->features[plan->pushing[k]]);
-}
-
-/// Features to be pushed, in their order.
-static void open_pushes(const Opening *job, Pool *pool) {
-    TouchPlan *plan = job->plan;
-    pool_for(pool, (int)plan->feature_count, 256, look_range, (void *)job);
-    plan->push_count = 0;
-    for (uint32_t k = 0; k < plan->feature_count; k++) {
-        if (!plan->features[k].pushes) continue;
-        if (plan->push_count < plan->push_capacity) plan->pushing[plan->push_count++] = k;
-        else plan->counters.dropped++;
-    }
-    pool_for(pool, (int)plan->push_count, 64, open_range, (void *)job);
 }
 
 static void note_search(TouchPlan *plan, const Shell *shell, const State *state, const DynamicsState *dynamics) {
@@ -178,7 +229,7 @@ void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *p
     Opening job = {plan, shell, dynamics, state->ablate.cell_flags};
     pool_for(pool, (int)plan->cell_count, 512, way_range, &job);
     open_pushes(&job, pool);
-    plan->counters.touches += plan->feature_count;
+    plan->counters.touches += plan->push_count;
     plan->counters.seconds += clock_seconds() - start;
 }
 
@@ -226,4 +277,35 @@ void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsS
         plan->counters.pushes++;
     }
     plan->counters.seconds += clock_seconds() - start;
+}
+
+// ---- what is near, for drawing
+
+static bool pair_is_near(const Shell *shell, const float (*x)[4], const TouchPair *pair, float far) {
+    PairNodes nodes;
+    pair_nodes(shell, x, pair, &nodes);
+    for (int kind = 0; kind < 2; kind++) {
+        uint64_t bits = kind ? pair->edges : pair->nodes;
+        for (int bit = 0; bit < 64 && bits >> bit; bit++) {
+            if (!(bits >> bit & 1)) continue;
+            float wa[4] = {0}, wb[4] = {0};
+            Quad apart = kind ? edge_points(&nodes, bit, wa, wb) : node_points(&nodes, bit, wa, wb);
+            if (quad_dot(apart, apart) < far * far) return true;
+        }
+    }
+    return false;
+}
+
+void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
+    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
+    float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
+    for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        if (!(pair->nodes | pair->edges) || pair->distance > 4 * plan->reach ||
+            !(state->ablate.cell_flags[pair->a] & state->ablate.cell_flags[pair->b] & SINGE_ALIVE))
+            continue;
+        const uint32_t *a = shell->cells[pair->a], *b = shell->cells[pair->b];
+        if (pair_is_near(shell, x, pair, bulges))
+            for (int i = 0; i < 4; i++) near[a[i]] = near[b[i]] = 1;
+    }
 }

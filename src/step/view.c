@@ -69,8 +69,15 @@ SingeCensus singe_sim_census(const SingeSim *sim) {
 SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
-    const SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed};
+    SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL};
     if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
-    return ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool, surface,
-                               &sim->error);
+    uint8_t *near;
+    if (!NEW(&sim->memory, near, sim->shell.vertex_count))
+        return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
+    dynamics_plan_mark_near(sim->dynamics, &sim->shell, &sim->state, near);
+    detail.flat = near;
+    SingeResult result = ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
+                                             surface, &sim->error);
+    FREE(&sim->memory, near, sim->shell.vertex_count);
+    return result;
 }
