@@ -353,6 +353,13 @@ static uint64_t near_nodes(const TouchPlan *plan, uint32_t a, const NodeBoxes *p
     return found;
 }
 
+/// Whether two directions are more than 10 degrees apart.
+static bool edges_cross(Quad a, Quad b, Quad c, Quad d) {
+    Quad u = b - a, v = d - c;
+    float uv = quad_dot(u, v);
+    return uv * uv < 0.97f * quad_dot(u, u) * quad_dot(v, v);
+}
+
 static uint64_t near_edges(const TouchPlan *plan, const TouchPair *pair, const NodeBoxes *p, const NodeBoxes *q,
                            float far, float *nearest) {
     uint64_t found = 0;
@@ -370,8 +377,11 @@ static uint64_t near_edges(const TouchPlan *plan, const TouchPair *pair, const N
             Quad apart = touch_from_segment(p->node[k[0]], p->node[k[1]], q->node[l[0]], q->node[l[1]], &s, &t);
             float distance = sqrtf(quad_dot(apart, apart));
             *nearest = fminf(*nearest, distance);
-            // where an end is the nearest point, that node's triangles see it too
-            if (distance < far && s > 0 && s < 1 && t > 0 && t < 1) found |= UINT64_C(1) << (8 * i + j);
+            // where an end is the nearest point, that node's triangles see it too; and edges side by side would make
+            // ridges of a flat sheet
+            if (distance < far && s > 0 && s < 1 && t > 0 && t < 1 &&
+                edges_cross(p->node[k[0]], p->node[k[1]], q->node[l[0]], q->node[l[1]]))
+                found |= UINT64_C(1) << (8 * i + j);
         }
     }
     return found;

@@ -50,14 +50,15 @@ static Quad edge_points(const PairNodes *nodes, int bit, float wa[4], float wb[4
     return apart;
 }
 
-/// The same of a node and a triangle.
-static Quad node_points(const PairNodes *nodes, int bit, float wa[4], float wb[4]) {
+/// The same of a node and a triangle. *inside is whether the node lies over the triangle, not beside it.
+static Quad node_points(const PairNodes *nodes, int bit, float wa[4], float wb[4], bool *inside) {
     bool turned = bit >= 20;
     int own = bit - (turned ? 20 : 0), node = own >> 2;
     const uint8_t *k = touch_triangle[own & 3];
     const Quad *from = turned ? nodes->b : nodes->a, *to = turned ? nodes->a : nodes->b;
     float weight[3], *wn = turned ? wb : wa, *wt = turned ? wa : wb;
     Quad apart = touch_from_triangle(from[node], to[k[0]], to[k[1]], to[k[2]], weight);
+    *inside = weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
     add_node(wn, node, 1);
     for (int i = 0; i < 3; i++) add_node(wt, k[i], weight[i]);
     return turned ? -apart : apart;
@@ -110,8 +111,11 @@ static TouchPush open_feature(const Opening *job, const TouchPair *pair, const P
     const uint32_t *a = job->shell->cells[pair->a], *b = job->shell->cells[pair->b];
     TouchPush push = {.count = 0};
     float wa[4] = {0}, wb[4] = {0}, thickness = plan->thickness;
-    Quad apart = edges ? edge_points(nodes, bit, wa, wb) : node_points(nodes, bit, wa, wb);
+    bool inside = true;
+    Quad apart = edges ? edge_points(nodes, bit, wa, wb) : node_points(nodes, bit, wa, wb, &inside);
     float distance = sqrtf(quad_dot(apart, apart));
+    // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
+    if (!inside && distance > thickness) return push;
     const TouchMotion *p = &plan->motion[pair->a], *q = &plan->motion[pair->b];
     if (!(distance > 0) ||
         distance > 1.25f * thickness + 1.5f * plan->time_step * touch_differ(p->speed, q->speed))
@@ -289,7 +293,8 @@ static bool pair_is_near(const Shell *shell, const float (*x)[4], const TouchPai
         for (int bit = 0; bit < 64 && bits >> bit; bit++) {
             if (!(bits >> bit & 1)) continue;
             float wa[4] = {0}, wb[4] = {0};
-            Quad apart = kind ? edge_points(&nodes, bit, wa, wb) : node_points(&nodes, bit, wa, wb);
+            bool inside;
+            Quad apart = kind ? edge_points(&nodes, bit, wa, wb) : node_points(&nodes, bit, wa, wb, &inside);
             if (quad_dot(apart, apart) < far * far) return true;
         }
     }

@@ -20,7 +20,7 @@ static Drawing *drawing(uint32_t nx, uint32_t ny, float cell, float detail, floa
     SingeMaterialDef material = plain_material();
     Drawing *d = calloc(1, sizeof *d);
     d->sheet = burning_sheet(nx, ny, cell, &material);
-    d->detail = (SurfaceDetail){detail, raggedness, 1};
+    d->detail = (SurfaceDetail){.size = detail, .raggedness = raggedness, .seed = 1};
     assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
     return d;
 }
