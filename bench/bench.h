@@ -22,6 +22,8 @@ BenchFn bench_heat;
 BenchFn bench_ablate;
 /// The drawn surface of a burning sheet by detail: triangles and cost.
 BenchFn bench_surface;
+/// A cloth that falls over a sphere in folds: cost of contact, strain.
+BenchFn bench_heap;
 /// Bytes a spring.
 BenchFn bench_memory;
 

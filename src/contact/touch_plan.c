@@ -105,7 +105,9 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return;
     plan->counters.tangled = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;
+    uint32_t restless = plan->restless;
     touch_search(plan, shell, NULL);
+    plan->restless = restless;
 }
 
 // a search from a later step than the present one counts as none

@@ -1,0 +1,155 @@
+// A cloth on edge that falls over a sphere and onto the ground in folds: what contact of a sheet with itself costs,
+// while it falls, while it crashes and while it lies there.
+#include <math.h>
+#include <stdlib.h>
+
+#include "bench/bench.h"
+#include "bench/machine.h"
+
+enum { STEPS = 20, ROOM = 4096 };
+static const float side = 1;                   // m
+static const float sphere = 0.12f, lift = 0.3f; // m
+static const double seconds = 3;
+
+enum {
+    CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MOST, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
+    SEARCHES, PUSHES, STOPS, UNRESOLVED, STRAIN, INVERTED, SPEED, COLUMNS
+};
+
+static const BenchColumn columns[COLUMNS] = {
+    [CELLS] = {"cells", "%.0f", 5, NULL},
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},
+    [THREADS] = {"threads", "%.0f", 7, NULL},
+    [FRAME_MEDIAN] = {"frame_ms", "%.4g", 8, NULL},
+    [FRAME_MOST] = {"most_ms", "%.4g", 8, NULL},
+    [STEP_MEAN] = {"step_ms", "%.4g", 8, NULL},
+    [HEAT] = {"heat_ms", "%.3g", 8, NULL},
+    [BURN] = {"burn_ms", "%.3g", 8, NULL},
+    [ABLATE] = {"ablate_ms", "%.3g", 9, NULL},
+    [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
+    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
+    [CONTACT] = {"contact_ms", "%.4g", 10, NULL},
+    [SEARCHES] = {"searches_step", "%.2f", 13, NULL},
+    [PUSHES] = {"pushes_substep", "%.0f", 14, NULL},
+    [STOPS] = {"stops_step", "%.1f", 10, NULL},
+    [UNRESOLVED] = {"crossing", "%.0f", 8, NULL},
+    [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
+    [INVERTED] = {"inverted", "%.0f", 8, NULL},
+    [SPEED] = {"speed", "%.3f", 8, NULL},
+};
+
+/// A cloth in the x-z plane in slight waves, so that it folds and does not stand.
+static SingeResult add_cloth(SingeSim *sim, int n) {
+    uint32_t row = (uint32_t)n + 1;
+    float *x = malloc(3 * (size_t)row * row * sizeof *x), cell = side / (float)n;
+    uint32_t *cells = malloc(4 * (size_t)n * (size_t)n * sizeof *cells);
+    SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
+    for (uint32_t v = 0; v < row * row && !result; v++) {
+        float i = (float)(v % row) / (float)n, j = (float)(v / row) / (float)n;
+        x[3 * v] = side * (i - 0.5f);
+        x[3 * v + 1] = 0.02f * sinf(19 * j) + 0.01f * sinf(13 * i);
+        x[3 * v + 2] = lift + side * j;
+    }
+    for (uint32_t c = 0; c < (uint32_t)(n * n) && !result; c++) {
+        uint32_t v = c / (uint32_t)n * row + c % (uint32_t)n;
+        cells[4 * c] = v, cells[4 * c + 1] = v + 1, cells[4 * c + 2] = v + row + 1, cells[4 * c + 3] = v + row;
+    }
+    if (!result) {
+        SingeSheetDef def = singe_default_sheet();
+        SingeSheetId id;
+        def.vertex_count = row * row, def.positions = x;
+        def.cell_count = (uint32_t)(n * n), def.cells = cells;
+        def.material.thickness = singe_param(0.8f * cell);
+        result = singe_sim_add_sheet(sim, &def, &id);
+    }
+    free(x), free(cells);
+    return result;
+}
+
+static SingeResult add_solids(SingeSim *sim) {
+    SingeColliderDef def = singe_default_collider();
+    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
+    SingeColliderId id;
+    def.path_count = 1, def.path = &key, def.friction = 0.4f, def.offset = 1e-3f;
+    SingeResult result = singe_sim_add_collider(sim, &def, &id);
+    def.kind = SINGE_COLLIDER_SPHERE, def.radius = sphere, key.position[2] = sphere;
+    return result ? result : singe_sim_add_collider(sim, &def, &id);
+}
+
+static SingeResult build(const BenchOptions *options, int cells, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = options->threads;
+    def.contact.enabled = true;
+    if (options->substeps) def.solver.substeps = options->substeps;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = add_cloth(*sim, cells);
+    if (!result) result = singe_sim_commit(*sim);
+    if (!result) result = add_solids(*sim);
+    if (!result) return SINGE_OK;
+    *error = *singe_sim_error(*sim);
+    singe_sim_destroy(*sim);
+    return result;
+}
+
+static int ascending(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
+                 int frames) {
+    SingeTimers t = singe_sim_timers(sim);
+    SingeCensus census = singe_sim_census(sim);
+    SingeStats stats = singe_sim_stats(sim);
+    double springs = 0, sum = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c];
+    for (int f = 0; f < frames; f++) sum += frame_ms[f];
+    qsort(frame_ms, (size_t)frames, sizeof *frame_ms, ascending);
+    row[CELLS] = bench_number(cells);
+    row[SPRINGS] = bench_number(springs);
+    row[THREADS] = bench_number(options->threads);
+    row[FRAME_MEDIAN] = bench_number(frame_ms[frames / 2]);
+    row[FRAME_MOST] = bench_number(frame_ms[frames - 1]);
+    row[STEP_MEAN] = bench_number(sum / steps);
+    row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
+    row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
+    row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);
+    row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
+    row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
+    row[CONTACT] = bench_number(a_frame * t.contact_seconds);
+    row[SEARCHES] = bench_number((double)t.contact_searches / steps);
+    row[PUSHES] = bench_number((double)t.contact_pushes / steps / (options->substeps ? options->substeps : 3));
+    row[STOPS] = bench_number((double)t.contact_stops / steps);
+    row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
+    row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};
+    row[INVERTED] = bench_number(stats.inverted_cells);
+    row[SPEED] = bench_number(stats.speed_rms_unburnt);
+}
+
+static SingeResult measure(const BenchOptions *options, int cells, BenchTable *table, SingeError *error) {
+    SingeSim *sim;
+    double frame_ms[ROOM];
+    int frames = (int)fmin(ROOM, fmax(1, 24 * (options->time > 0 ? options->time : seconds)));
+    if (build(options, cells, &sim, error)) return error->code;
+    SingeResult result = SINGE_OK;
+    for (int f = 0; f < frames && !result; f++) {
+        double begun = machine_clock();
+        for (int step = 0; step < STEPS && !result; step++) result = singe_sim_step(sim);
+        frame_ms[f] = 1e3 * (machine_clock() - begun);
+    }
+    BenchValue row[COLUMNS] = {0};
+    if (result) *error = *singe_sim_error(sim);
+    else fill(row, options, sim, cells, frame_ms, frames);
+    if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
+    singe_sim_destroy(sim);
+    return result;
+}
+
+SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 2, (const double[]){100, 200});
+    SingeResult result = SINGE_OK;
+    *table = table_begin("heap", columns, COLUMNS, table->text);
+    for (int i = 0; i < cells.count && !result; i++) result = measure(options, (int)cells.values[i], table, error);
+    return result;
+}
