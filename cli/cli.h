@@ -14,6 +14,7 @@ int command_run(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_measure(int argc, char **argv);
+int command_verify(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_paper(int argc, char **argv);
 int command_scene_doc(int argc, char **argv);

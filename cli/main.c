@@ -15,6 +15,7 @@ static const struct {
     {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
     {"render", command_render, "draws a cache's pictures and video again"},
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
+    {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "computes the paper's tables and figures about its solver"},
     {"scene-doc", command_scene_doc, NULL},
@@ -42,7 +43,8 @@ static int finish(int code) {
 
 int main(int argc, char **argv) {
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render, measure, bench or paper\nsee: singe --help\n", stderr);
+        fputs("singe: error: needs a command: run, check, render, measure, verify, bench or paper\nsee: singe --help\n",
+              stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

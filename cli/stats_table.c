@@ -1,0 +1,83 @@
+#include "cli/stats_table.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "formats/formats.h"
+#include "formats/number.h"
+#include "formats/text.h"
+
+enum { FRAME, TIME, TRIANGLES, INVERTED, COLUMNS };
+static const char *const names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};
+
+/// The cell at the cursor, which goes to the next one of the line.
+static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
+    *begin = text->at;
+    while (!text_at_line_end(text) && *text->at != ',') text->at++;
+    *end = text->at;
+    if (!text_at_line_end(text)) text->at++;
+}
+
+static bool read_header(Text *text, int place[COLUMNS]) {
+    int found = 0;
+    for (int i = 0; !text_at_line_end(text); i++) {
+        const uint8_t *begin, *end;
+        next_cell(text, &begin, &end);
+        for (int c = 0; c < COLUMNS; c++)
+            if (text_word_is(begin, end, names[c])) place[c] = i, found++;
+    }
+    text_next_line(text);
+    return found == COLUMNS;
+}
+
+static bool read_row(Text *text, const int place[COLUMNS], StatsRow *row) {
+    double *const values[COLUMNS] = {&row->frame, &row->time, &row->triangles, &row->inverted_cells};
+    int found = 0;
+    for (int i = 0; !text_at_line_end(text); i++) {
+        const uint8_t *begin, *end;
+        next_cell(text, &begin, &end);
+        for (int c = 0; c < COLUMNS; c++)
+            if (place[c] == i && number_double(&begin, end, values[c]) == NUMBER_OK && begin == end) found++;
+    }
+    text_next_line(text);
+    return found == COLUMNS && row->inverted_cells >= 0 && row->triangles >= 0;
+}
+
+ExitCode stats_table_read(StatsTable *table, const char *path, Console *console) {
+    Bytes bytes = {0};
+    SingeError error = {0};
+    int place[COLUMNS];
+    if (access(path, F_OK) != 0 && errno == ENOENT) {
+        console_warn(console, "no %s: inverted cells are not known", path);
+        return EXIT_GOOD;
+    }
+    if (file_read(path, (SingeAllocator){0}, &bytes, &error)) {
+        console_result(console, &error);
+        return EXIT_INPUT;
+    }
+    Text text = {bytes.data, bytes.data + bytes.size, 1};
+    bool good = read_header(&text, place);
+    size_t lines = 1;
+    for (size_t i = 0; i < bytes.size; i++) lines += bytes.data[i] == '\n';
+    table->rows = calloc(lines, sizeof *table->rows);
+    while (good && table->rows && text.at < text.end) good = read_row(&text, place, &table->rows[table->count++]);
+    if (!good || !table->rows)
+        console_error(console, "%s:%lld: not a line of such numbers, or no memory for it", path,
+                      (long long)text.line - 1);
+    bytes_free(&bytes);
+    return good && table->rows ? EXIT_GOOD : EXIT_INPUT;
+}
+
+void stats_table_free(StatsTable *table) {
+    free(table->rows);
+    *table = (StatsTable){0};
+}
+
+const StatsRow *stats_table_row(const StatsTable *table, int frame) {
+    for (int i = 0; i < table->count; i++)
+        if (table->rows[i].frame == frame) return &table->rows[i];
+    return NULL;
+}

@@ -1,0 +1,14 @@
+// Whether two triangles go through each other, decided exactly.
+#ifndef CLI_TRIANGLE_PAIR_H
+#define CLI_TRIANGLE_PAIR_H
+
+#include <stdbool.h>
+
+typedef const float *Corners[3]; ///< three points of three finite coordinates, not on a line
+
+/// Whether the insides of the two, which are the triangles without their edges and corners, have a point in common. So
+/// what only touches does not count, be it at a corner or along an edge, shared or not; what lies in one plane counts
+/// where it overlaps with an area.
+bool triangles_cross(const Corners a, const Corners b);
+
+#endif

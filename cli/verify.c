@@ -1,0 +1,278 @@
+// singe verify: reads a cache again and counts what a good one has none of, frame by frame.
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/args.h"
+#include "cli/cli.h"
+#include "cli/findings.h"
+#include "cli/folder.h"
+#include "cli/interrupt.h"
+#include "cli/stats_table.h"
+#include "cli/text.h"
+
+enum { OPT_FRAMES, OPT_STRETCH, OPT_CSV, OPT_COUNT };
+
+static const ArgOption verify_options[OPT_COUNT] = {
+    [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},
+    [OPT_STRETCH] = {"stretch", 0, "X", "edges X times as long as at rest are stretched [2]"},
+    [OPT_CSV] = {"csv", 0, "FILE", "writes the counts of every frame to FILE, too"},
+};
+
+static const ArgCommand verify_command = {
+    "verify", "DIR", "Reads a cache again and counts crossings, inverted cells and other faults.", verify_options,
+    OPT_COUNT, "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 what cannot be read."};
+
+static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
+    [FAULT_CROSSING] = {"crossings", "pairs of triangles that cross"},
+    [FAULT_INVERTED] = {"inverted_cells", "inverted cells (stats.csv)"},
+    [FAULT_STRETCHED] = {"stretched_edges", "edges stretched"},
+    [FAULT_NON_MANIFOLD] = {"non_manifold_edges", "edges of more than two triangles"},
+    [FAULT_WINDING] = {"winding", "edges whose triangles are wound against each other"},
+    [FAULT_DEGENERATE] = {"degenerate_triangles", "triangles without area"},
+    [FAULT_DUPLICATE] = {"duplicate_triangles", "triangles twice"},
+    [FAULT_NOT_FINITE] = {"not_finite", "values that are not finite"},
+    [FAULT_MISSING] = {"missing", "missing properties"},
+    [FAULT_INDEX] = {"index", "triangles with an index out of range"},
+    [FAULT_STATS] = {"stats", "contradictions to stats.csv"},
+};
+
+typedef struct Row {
+    uint32_t vertices, triangles;
+    uint64_t count[FAULT_COUNT], folded;
+} Row;
+
+typedef struct Verify {
+    Console console;
+    Folder folder;
+    StatsTable stats;
+    const char *csv;
+    double stretch;
+    int first, last, done;        ///< frames; first 0: all
+    Row *rows;                    ///< of every frame
+    Findings findings;
+} Verify;
+
+// ---- one frame
+
+/// What the run wrote of the frame beside its surface.
+static void check_stats(const StatsTable *stats, int frame, const CacheFrame *cache, Findings *findings) {
+    const StatsRow *row = stats_table_row(stats, frame);
+    if (!stats->rows) return;
+    if (!row) {
+        findings_add(findings, FAULT_STATS, "stats.csv has no line of frame %d", frame);
+        return;
+    }
+    if (row->triangles != cache->triangle_count)
+        findings_add(findings, FAULT_STATS, "stats.csv has %.0f triangles, the frame %u", row->triangles,
+                     cache->triangle_count);
+    if (!isnan(cache->time) && !(fabs(row->time - cache->time) <= 1e-6 * fmax(1, fabs(cache->time))))
+        findings_add(findings, FAULT_STATS, "stats.csv has the time %.9g s, the frame %.9g s", row->time, cache->time);
+    if (row->inverted_cells == 0) return;
+    findings_add(findings, FAULT_INVERTED, "%.0f inverted cells, by stats.csv", row->inverted_cells);
+    findings->count[FAULT_INVERTED] += (uint64_t)row->inverted_cells - 1;
+}
+
+static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError *error) {
+    CacheFrame cache;
+    Findings *findings = &verify->findings;
+    char *path = folder_ply(&verify->folder, frame);
+    memset(findings->count, 0, sizeof findings->count);
+    findings->folded = 0, findings->file = path;
+    SingeResult result = cache_read(path, &cache, error);
+    if (!result) {
+        check_values(&cache, findings);
+        check_stats(&verify->stats, frame, &cache, findings);
+        if (!check_surface(&cache, findings)) {
+            *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+            snprintf(error->message, sizeof error->message, "no memory to verify frame %d", frame);
+            result = SINGE_ERROR_MEMORY;
+        }
+        *row = (Row){.vertices = cache.vertex_count, .triangles = cache.triangle_count, .folded = findings->folded};
+        memcpy(row->count, findings->count, sizeof row->count);
+    }
+    cache_free(&cache);
+    free(path);
+    return result;
+}
+
+// ---- the whole
+
+static uint64_t faults_of(const Row *row) {
+    uint64_t sum = 0;
+    for (int f = 0; f < FAULT_COUNT; f++) sum += row->count[f];
+    return sum;
+}
+
+/// Frames that have faults, a column a kind that occurs.
+static void print_frames(const Verify *verify, const uint64_t *total) {
+    printf("%7s%11s", "frame", "triangles");
+    for (int f = 0; f < FAULT_COUNT; f++)
+        if (total[f]) printf("  %s", faults[f].key);
+    putchar('\n');
+    for (int i = 0; i < verify->done; i++) {
+        const Row *row = &verify->rows[i];
+        if (faults_of(row) == 0) continue;
+        printf("%7d%11" PRIu32, verify->first + i, row->triangles);
+        for (int f = 0; f < FAULT_COUNT; f++)
+            if (total[f]) printf("  %*" PRIu64, (int)strlen(faults[f].key), row->count[f]);
+        putchar('\n');
+    }
+    putchar('\n');
+}
+
+/// Returns the number of all faults.
+static uint64_t print_table(const Verify *verify) {
+    uint64_t total[FAULT_COUNT] = {0}, all = 0, folded = 0, triangles = 0;
+    int frames[FAULT_COUNT] = {0}, worst[FAULT_COUNT] = {0}, bad = 0;
+    for (int i = 0; i < verify->done; i++) {
+        const Row *row = &verify->rows[i];
+        for (int f = 0; f < FAULT_COUNT; f++) {
+            total[f] += row->count[f], frames[f] += row->count[f] > 0;
+            if (row->count[f] > verify->rows[worst[f]].count[f]) worst[f] = i;
+        }
+        bad += faults_of(row) > 0, all += faults_of(row), folded += row->folded, triangles += row->triangles;
+    }
+    if (all) print_frames(verify, total);
+    printf("%-52s%12s%8s%10s%7s\n", "fault", "all frames", "frames", "worst", "frame");
+    for (int f = 0; f < FAULT_COUNT; f++) {
+        const bool known = verify->stats.rows || (f != FAULT_INVERTED && f != FAULT_STATS);
+        printf("%-52s", faults[f].title);
+        if (!known) printf("%12s\n", "-");
+        else if (!total[f]) printf("%12d\n", 0);
+        else printf("%12" PRIu64 "%8d%10" PRIu64 "%7d\n", total[f], frames[f], verify->rows[worst[f]].count[f],
+                    verify->first + worst[f]);
+    }
+    printf("%-52s%12" PRIu64 "\n", "(no fault) edges folded onto each other", folded);
+    printf("\n%d frames, %" PRIu64 " triangles: ", verify->done, triangles);
+    if (all) printf("%" PRIu64 " faults in %d frames\n", all, bad);
+    else printf("no faults\n");
+    return all;
+}
+
+static ExitCode write_csv(Verify *verify) {
+    FILE *file = fopen(verify->csv, "w");
+    if (file) {
+        fputs("frame,vertices,triangles", file);
+        for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
+        fputs(",folded_edges\n", file);
+        for (int i = 0; i < verify->done; i++) {
+            const Row *row = &verify->rows[i];
+            fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
+            for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%" PRIu64, row->count[f]);
+            fprintf(file, ",%" PRIu64 "\n", row->folded);
+        }
+    }
+    bool failed = !file || ferror(file);
+    if (file && fclose(file)) failed = true;
+    if (failed) console_error(&verify->console, "cannot write %s: %s", verify->csv, strerror(errno));
+    return failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
+/// A second is waited for before progress is shown.
+static void show_progress(Verify *verify, double begun) {
+    const double seconds = console_clock() - begun;
+    if (seconds > 1)
+        console_picture(&verify->console, verify->first + verify->done - 1, verify->last, seconds / verify->done);
+}
+
+static ExitCode verify_all(Verify *verify) {
+    const int frames = verify->last - verify->first + 1;
+    const double begun = console_clock();
+    SingeError error = {0};
+    SingeResult result = SINGE_OK;
+    verify->rows = calloc((size_t)frames, sizeof *verify->rows);
+    if (!verify->rows) {
+        console_error(&verify->console, "no memory for the counts of %d frames", frames);
+        return EXIT_FAILED;
+    }
+    while (verify->done < frames && !result && !interrupt_asked()) {
+        result = verify_frame(verify, verify->first + verify->done, &verify->rows[verify->done], &error);
+        verify->done += !result;
+        show_progress(verify, begun);
+    }
+    console_clear(&verify->console);
+    if (result) {
+        console_result(&verify->console, &error);
+        return result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
+    }
+    ExitCode code = print_table(verify) ? EXIT_FAILED : EXIT_GOOD;
+    if (verify->csv && write_csv(verify)) code = EXIT_FAILED;
+    if (verify->done == frames) return code;
+    console_error(&verify->console, "interrupted: frames %d-%d are not verified", verify->first + verify->done,
+                  verify->last);
+    return EXIT_FAILED;
+}
+
+// ---- the cache
+
+/// The name of the run's files, as its record has it.
+static ExitCode find_folder(Verify *verify, const char *path) {
+    SingeError error = {0};
+    Bytes bytes = {0};
+    const char *value;
+    size_t size;
+    char *record = text_format("%s/run.json", path), *name = NULL;
+    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
+        console_result(&verify->console, &error);
+        free(record);
+        return EXIT_INPUT;
+    }
+    if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
+        name = text_json_unquote(value, size);
+    if (name) verify->folder = folder_name(path, name);
+    else console_error(&verify->console, "%s is not a record of a run: no \"name\"", record);
+    bytes_free(&bytes);
+    free(record);
+    free(name);
+    return verify->folder.path ? EXIT_GOOD : EXIT_INPUT;
+}
+
+static ExitCode find_frames(Verify *verify) {
+    int first, last, count = folder_frames(&verify->folder, &first, &last);
+    if (count == 0) {
+        console_error(&verify->console, "no frames %s/ply/%s.*.ply", verify->folder.path, verify->folder.name);
+        return EXIT_INPUT;
+    }
+    if (verify->first == 0) verify->first = first, verify->last = last;
+    if (verify->first >= first && verify->last <= last) return EXIT_GOOD;
+    console_error(&verify->console, "frames %d-%d are asked for, but %s has %d-%d", verify->first, verify->last,
+                  verify->folder.path, first, last);
+    return EXIT_INPUT;
+}
+
+static bool read_stretch(const ArgReader *reader, const char *text, double *stretch) {
+    char *end;
+    *stretch = strtod(text, &end);
+    if (end != text && *end == 0 && *stretch >= 1 && isfinite(*stretch)) return true;
+    args_complain(reader, "--stretch: expected a number of 1 or more, got '%s'", text);
+    return false;
+}
+
+int command_verify(int argc, char **argv) {
+    Verify verify = {.console = console_make(false), .stretch = 2};
+    ArgReader reader = args_begin(&verify_command, argc, argv);
+    const char *value, *path = NULL;
+    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
+        bool good = true;
+        if (option == ARG_HELP) return EXIT_GOOD;
+        if (option == ARG_OPERAND) path = value;
+        else if (option == OPT_CSV) verify.csv = value;
+        else if (option == OPT_STRETCH) good = read_stretch(&reader, value, &verify.stretch);
+        else good = option == OPT_FRAMES && args_span(&reader, option, value, &verify.first, &verify.last);
+        if (!good) return EXIT_INPUT;
+    }
+    interrupt_watch();
+    verify.findings = (Findings){.console = &verify.console, .stretch = verify.stretch};
+    ExitCode code = find_folder(&verify, path);
+    if (!code) code = find_frames(&verify);
+    if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
+    if (!code) code = verify_all(&verify);
+    stats_table_free(&verify.stats);
+    folder_free(&verify.folder);
+    free(verify.rows);
+    return code;
+}

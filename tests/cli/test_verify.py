@@ -1,0 +1,337 @@
+"""singe verify: a good cache passes, faults of every kind are found and named, crossings as in rational numbers."""
+
+import csv
+import itertools
+import os
+import random
+import signal
+import struct
+import unittest
+from fractions import Fraction
+
+from support import Case
+
+FLOATS = ("x y z nx ny nz s t vx vy vz rest_x rest_y rest_z temperature temperature_peak mass burn_rate char "
+          "time_ignited").split()
+INTEGERS = "piece_id vertex_id sheet".split()
+KINDS = ("crossings", "inverted_cells", "stretched_edges", "non_manifold_edges", "winding", "degenerate_triangles",
+         "duplicate_triangles", "not_finite", "missing", "index", "stats")
+
+
+class Surface:
+    """A frame of a cache: rows of values by name, and triangles."""
+
+    def __init__(self, path=None, positions=(), triangles=()):
+        self.columns = [("float", n) for n in FLOATS] + [("int", n) for n in INTEGERS]
+        self.time = "0"
+        self.vertices = [self.vertex(p) for p in positions]
+        self.triangles = [list(t) for t in triangles]
+        if path:
+            self.read(path)
+
+    @staticmethod
+    def vertex(position):
+        row = dict.fromkeys(FLOATS + INTEGERS, 0)
+        for axis, value in zip("xyz", position):
+            row[axis] = row["rest_" + axis] = value
+        return row
+
+    def form(self):
+        return "<" + "".join("i" if kind == "int" else "f" for kind, _ in self.columns)
+
+    def read(self, path):
+        with open(path, "rb") as file:
+            header, _, data = file.read().partition(b"end_header\n")
+        lines = header.decode().splitlines()
+        self.time = next(line for line in lines if line.startswith("comment")).split()[-1]
+        count, faces = [int(line.split()[2]) for line in lines if line.startswith("element")]
+        names = [name for _, name in self.columns]
+        size = struct.calcsize(self.form())
+        self.vertices = [dict(zip(names, row)) for row in struct.iter_unpack(self.form(), data[: size * count])]
+        self.triangles = [list(row[1:]) for row in struct.iter_unpack("<B3i", data[size * count :])]
+        assert len(self.triangles) == faces
+
+    def write(self, path):
+        lines = ["ply", "format binary_little_endian 1.0", f"comment singe 0.1.0 time {self.time}",
+                 f"element vertex {len(self.vertices)}"]
+        lines += [f"property {kind} {name}" for kind, name in self.columns]
+        lines += [f"element face {len(self.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+        with open(path, "wb") as file:
+            file.write("\n".join(lines).encode())
+            for row in self.vertices:
+                file.write(struct.pack(self.form(), *(row[name] for _, name in self.columns)))
+            for triangle in self.triangles:
+                file.write(struct.pack("<B3i", 3, *triangle))
+
+
+# ---- crossings in rational numbers, by cutting instead of by signs
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def normal(t):
+    return cross(minus(t[1], t[0]), minus(t[2], t[0]))
+
+
+def between(p, q, f, g):
+    """Where a linear function of f at p and g at q is 0."""
+    return [x + (y - x) * f / (f - g) for x, y in zip(p, q)]
+
+
+def cut(polygon, inward, origin):
+    """The part of a polygon with inward . (p - origin) >= 0."""
+    kept = []
+    for i, p in enumerate(polygon):
+        q = polygon[(i + 1) % len(polygon)]
+        f, g = dot(inward, minus(p, origin)), dot(inward, minus(q, origin))
+        if f >= 0:
+            kept.append(p)
+        if f * g < 0:
+            kept.append(between(p, q, f, g))
+    return kept
+
+
+def overlap_in_plane(a, b):
+    n, polygon = normal(a), list(b)
+    for i in range(3):
+        polygon = cut(polygon, cross(n, minus(a[(i + 1) % 3], a[i])), a[i])
+    twice = [sum(c) for c in zip([0] * 3, *(cross(minus(p, a[0]), minus(q, a[0])) for p, q in
+                                          zip(polygon, polygon[1:] + polygon[:1])))]
+    return any(twice)
+
+
+def triangles_cross(a, b):
+    n = normal(a)
+    height = [dot(n, minus(p, a[0])) for p in b]
+    if not any(height):
+        return overlap_in_plane(a, b)
+    if min(height) >= 0 or max(height) <= 0:
+        return False
+    ends = [p for p, h in zip(b, height) if h == 0]
+    sides = [(i, j) for i, j in ((0, 1), (1, 2), (2, 0)) if height[i] * height[j] < 0]
+    ends += [between(b[i], b[j], height[i], height[j]) for i, j in sides]
+    low, high = Fraction(0), Fraction(1)  # along what b has in the plane of a
+    for i in range(3):
+        inward = cross(n, minus(a[(i + 1) % 3], a[i]))
+        f, g = (dot(inward, minus(p, a[i])) for p in ends)
+        if f <= 0 and g <= 0:
+            return False
+        if f < 0:
+            low = max(low, f / (f - g))
+        if g < 0:
+            high = min(high, f / (f - g))
+    return low < high
+
+
+def crossings(surface):
+    corners = [[[Fraction(surface.vertices[v][axis]) for axis in "xyz"] for v in t] for t in surface.triangles]
+    return sum(triangles_cross(a, b) for a, b in itertools.combinations(corners, 2))
+
+
+class Verify(Case):
+    def setUp(self):
+        super().setUp()
+        self.run_scene("o", "--quiet", "--set", "sources=[]", "--set", "gas=no")
+
+    def frame(self, number=3):
+        return self.path("o", "ply", "tiny.%04d.ply" % number)
+
+    def verify(self, *args, expect=0):
+        path = self.path("counts.csv")
+        out, err = self.singe("verify", self.path("o"), "--csv", path, *args, expect=expect)
+        with open(path, newline="") as file:
+            return out, err, [{k: int(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+    def damage(self, change, number=3):
+        surface = Surface(self.frame(number))
+        change(surface)
+        surface.write(self.frame(number))
+
+    def finds(self, kind, change, *messages, others=()):
+        """That a change makes a fault of this kind in frame 3, and none of any but `others`."""
+        with open(self.frame(), "rb") as file:
+            whole = file.read()
+        with self.subTest(kind, change=change.__name__):
+            self.damage(change)
+            out, err, rows = self.verify(expect=1)
+            self.assertGreater(rows[2][kind], 0)
+            for row in rows:
+                for name in KINDS:
+                    if row["frame"] != 3 or name not in (kind, *others):
+                        self.assertEqual(row[name], 0, f"{name} of frame {row['frame']}")
+            self.assertIn("faults in 1 frames", out)
+            self.assertIn("tiny.0003.ply", err)
+            for message in messages:
+                self.assertIn(message, err)
+        with open(self.frame(), "wb") as file:
+            file.write(whole)
+
+    def test_good(self):
+        out, err, rows = self.verify()
+        self.assertEqual(err, "")
+        self.assertIn("no faults", out)
+        self.assertEqual([row["frame"] for row in rows], list(range(1, 7)))
+        self.assertEqual(sum(row[kind] for row in rows for kind in KINDS), 0)
+        surface = Surface(self.frame(1))
+        self.assertEqual((rows[0]["vertices"], rows[0]["triangles"]), (len(surface.vertices), len(surface.triangles)))
+
+    def test_frames(self):
+        self.damage(lambda s: s.vertices[5].update(mass=float("nan")))
+        _, _, rows = self.verify("--frames", "4-6")
+        self.assertEqual([row["frame"] for row in rows], [4, 5, 6])
+        _, _, rows = self.verify("--frames", "3", expect=1)
+        self.assertEqual(rows[0]["not_finite"], 1)
+
+    def test_values(self):
+        def not_a_number(s): s.vertices[7]["temperature"] = float("nan")
+        def infinite_position(s): s.vertices[7]["y"] = float("inf")
+        def no_uv(s): s.columns = [c for c in s.columns if c[1] not in "st"]
+        def no_rest(s): s.columns = [c for c in s.columns if c[1] != "rest_y"]
+        def other_type(s): s.columns = [("float" if c[1] == "piece_id" else c[0], c[1]) for c in s.columns]
+        def no_vertex(s): s.triangles[9][1] = len(s.vertices)
+        def negative(s): s.triangles[9][1] = -1
+        self.finds("not_finite", not_a_number, "temperature of vertex 7 is not finite")
+        self.finds("not_finite", infinite_position, "y of vertex 7 is not finite")
+        self.finds("missing", no_uv, '"float s"', '"float t"')
+        self.finds("missing", no_rest, '"float rest_y"')
+        self.finds("missing", other_type, '"int piece_id"')
+        self.finds("index", no_vertex, "triangle 9 names vertex")
+        self.finds("index", negative, "triangle 9 names vertex -1")
+
+    def test_surface(self):
+        def through(s):
+            a, b = s.triangles[0], next(t for t in s.triangles if not set(t) & set(s.triangles[0]))
+            middle = [sum(s.vertices[v][axis] for v in a) / 3 for axis in "xyz"]
+            normal_ = normal([[s.vertices[v][axis] for axis in "xyz"] for v in a])
+            far = 1e-3 / dot(normal_, normal_) ** 0.5
+            for v, way in zip(b, (far, -far, -far)):
+                for k, axis in enumerate("xyz"):
+                    s.vertices[v][axis] = middle[k] + way * normal_[k] + (2e-4 * k if v == b[2] else 0)
+        def long(s): s.vertices[0]["z"] += 1
+        def duplicate(s): s.triangles[1] = s.triangles[0][1:] + s.triangles[0][:1]
+        def point(s): s.triangles[4][2] = s.triangles[4][1]
+        def line(s):
+            a, b, c = (s.vertices[v] for v in s.triangles[4])
+            c.update({axis: a[axis] for axis in "xyz"})
+        def third(s):
+            edge = next(set(a) & set(b) for a, b in itertools.combinations(s.triangles, 2) if len(set(a) & set(b)) == 2)
+            s.vertices.append(Surface.vertex([s.vertices[min(edge)][axis] + (axis == "z") * 5e-3 for axis in "xyz"]))
+            s.triangles[-1] = [*edge, len(s.vertices) - 1]
+        def turned(s): s.triangles[0].reverse()
+        self.finds("crossings", through, "triangles", "cross near", others=("stretched_edges",))
+        self.finds("stretched_edges", long, "mm at rest", others=("crossings",))
+        self.finds("duplicate_triangles", duplicate, "triangles 0 and 1 have the same vertices",
+                   others=("crossings", "non_manifold_edges", "winding"))
+        self.finds("degenerate_triangles", point, "triangle 4", "has no area")
+        self.finds("degenerate_triangles", line, "has no area", others=("crossings", "stretched_edges"))
+        self.finds("non_manifold_edges", third, "has 3 triangles", others=("stretched_edges", "winding"))
+        self.finds("winding", turned, "run the same way along edge")
+
+    def test_stats(self):
+        path = self.path("o", "stats.csv")
+        with open(path) as file:
+            lines = file.read().splitlines()
+        names, third = lines[0].split(","), lines[3].split(",")
+
+        def rewrite(name, value):
+            cells = list(third)
+            cells[names.index(name)] = value
+            with open(path, "w") as file:
+                file.write("\n".join(lines[:3] + [",".join(cells)] + lines[4:]) + "\n")
+
+        for name, value, kind, count in (("inverted_cells", "4", "inverted_cells", 4), ("triangles", "1", "stats", 1),
+                                         ("time", "7", "stats", 1)):
+            rewrite(name, value)
+            _, err, rows = self.verify(expect=1)
+            self.assertEqual(rows[2][kind], count)
+            self.assertIn("stats.csv", err)
+        rewrite("time", "soon")
+        self.assertIn("stats.csv:4", self.singe("verify", self.path("o"), expect=2)[1])
+        with open(path, "w") as file:
+            file.write("\n".join(lines[:-1]) + "\n")
+        self.assertIn("no line of frame 6", self.verify(expect=1)[1])
+        os.remove(path)
+        out, err, _ = self.verify()
+        self.assertIn("inverted cells are not known", err)
+
+    def test_stretch(self):
+        _, err, rows = self.verify("--stretch", "1", expect=1)
+        self.assertGreater(rows[-1]["stretched_edges"], 0)
+        self.assertIn("further ones of this kind are only counted", err)
+        self.assertEqual(err.count("mm at rest"), 3)
+
+    def test_refusals(self):
+        for args, message in (
+            ([], "needs"),
+            ([self.path("nowhere")], "run.json"),
+            ([self.path("o"), "--frames", "5-9"], "has 1-6"),
+            ([self.path("o"), "--stretch", "0.5"], "1 or more"),
+            ([self.path("o"), "--stretch", "wide"], "1 or more"),
+            ([self.path("o"), "--colour"], "unknown option"),
+        ):
+            with self.subTest(args):
+                self.assertIn(message, self.singe("verify", *args, expect=2)[1])
+        self.singe("verify", self.path("o"), "--csv", self.path("no", "such"), expect=1)
+
+    def test_what_cannot_be_read(self):
+        def no_position(s): s.columns = s.columns[1:]
+        self.damage(no_position)
+        self.assertIn("tiny.0003.ply", self.singe("verify", self.path("o"), expect=2)[1])
+        size = os.path.getsize(self.frame(4))
+        for keep in (size - 1, size // 2, 40, 0):
+            with open(self.frame(4), "r+b") as file:
+                file.truncate(keep)
+            self.assertIn("tiny.0004.ply", self.singe("verify", self.path("o"), "--frames", "4-6", expect=2)[1])
+        os.remove(self.frame(4))
+        self.assertIn("tiny.0004.ply", self.singe("verify", self.path("o"), "--frames", "4-6", expect=2)[1])
+
+    def test_rational(self):
+        """Soups on lattices, where much touches, and off them, with vertices shared and not."""
+        os.remove(self.path("o", "stats.csv"))
+        generator = random.Random(7)
+        expected = []
+        for number in range(1, 7):
+            count, most = (24, 10) if number < 4 else (30, 16)
+            lattice = 2 + number
+            points = [[generator.randint(0, lattice) * 0.125 if number < 5 else generator.random() for _ in range(3)]
+                      for _ in range(most)]
+            corners = {tuple(generator.sample(range(most), 3)) for _ in range(count)}
+            surface = Surface(positions=points, triangles=sorted(corners))
+            surface.write(self.frame(number))
+            surface.read(self.frame(number))  # rounded as written
+            at = [[[Fraction(surface.vertices[v][axis]) for axis in "xyz"] for v in t] for t in surface.triangles]
+            surface.triangles = [t for t, a in zip(surface.triangles, at) if any(normal(a))]
+            surface.write(self.frame(number))
+            expected.append(crossings(surface))
+        rows = self.verify(expect=1)[2]
+        self.assertEqual([row["crossings"] for row in rows], expected)
+        self.assertGreater(min(expected), 10)
+
+    def test_interrupted(self):
+        """Ctrl-C ends it after a frame, and what was not looked at is told."""
+        surface = Surface(self.frame(1))
+        for number in range(7, 1200):
+            surface.write(self.frame(number))
+        os.remove(self.path("o", "stats.csv"))
+        run = self.start("verify", self.path("o"))
+        self.addCleanup(run.stderr.close)
+        while "singe: warning" not in run.stderr.readline():
+            pass
+        run.send_signal(signal.SIGINT)
+        code = run.wait(timeout=60)
+        self.assertEqual(code, 1)
+        self.assertIn("are not verified", run.stderr.read())
+
+
+if __name__ == "__main__":
+    unittest.main()
