@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/crossings.h"
 #include "cli/exact.h"
@@ -74,20 +75,54 @@ static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *f
     return count;
 }
 
+static double distance(const float a[3], const float b[3]) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+    return sqrt(sum);
+}
+
+/// Between the nearest corners of two triangles at rest, m. *side gets the longest of their edges.
+static double rest_gap(const CacheFrame *frame, uint32_t a, uint32_t b, double *side) {
+    const uint32_t *s = frame->triangles[a], *t = frame->triangles[b];
+    double gap = (double)INFINITY;
+    *side = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) gap = fmin(gap, distance(frame->rest[s[i]], frame->rest[t[k]]));
+        *side = fmax(*side, distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
+        *side = fmax(*side, distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+    }
+    return gap;
+}
+
+static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
+    int32_t sheet;
+    const float bits = cache_value(frame, CACHE_SHEET, frame->triangles[triangle][0]);
+    memcpy(&sheet, &bits, sizeof sheet);
+    return sheet;
+}
+
+static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
+    const float *p = frame->position[frame->triangles[a][0]];
+    const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
+    double side, gap = rest_gap(frame, a, b, &side);
+    char where[64];
+    if (one != other) snprintf(where, sizeof where, "of sheets %d and %d", (int)one, (int)other);
+    else snprintf(where, sizeof where, "%.3g mm apart at rest", 1e3 * gap);
+    findings->near += one == other && gap <= side;
+    findings_add(findings, FAULT_CROSSING, "triangles %u and %u, %s, cross near (%.4g, %.4g, %.4g) m", a, b, where,
+                 (double)p[0], (double)p[1], (double)p[2]);
+}
+
 static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
-    uint32_t (*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
+    uint32_t(*triangles)[3] = malloc(((size_t)count + 1) * sizeof *triangles);
     CrossingList list = {0};
     if (!triangles) return false;
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
     const float(*position)[3] = (const float(*)[3])frame->position;
     const bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
-    for (size_t i = 0; i < list.count; i++) {
-        const uint32_t a = list.pairs[i][0], b = list.pairs[i][1];
-        const float *p = frame->position[triangles[a][0]];
-        findings_add(findings, FAULT_CROSSING, "triangles %u and %u cross near (%.4g, %.4g, %.4g) m", sound[a],
-                     sound[b], (double)p[0], (double)p[1], (double)p[2]);
-    }
+    for (size_t i = 0; i < list.count; i++)
+        add_crossing(frame, sound[list.pairs[i][0]], sound[list.pairs[i][1]], findings);
     crossings_free(&list);
     free(triangles);
     return good;
@@ -143,12 +178,6 @@ static int by_edge(const void *a, const void *b) {
     if (x->low != y->low) return x->low < y->low ? -1 : 1;
     if (x->high != y->high) return x->high < y->high ? -1 : 1;
     return (x->triangle > y->triangle) - (x->triangle < y->triangle);
-}
-
-static double distance(const float a[3], const float b[3]) {
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
-    return sqrt(sum);
 }
 
 static void normal_of(const float a[3], const float b[3], const float c[3], double normal[3]) {

@@ -25,6 +25,7 @@ typedef struct Findings {
     const char *file;         ///< the frame's path, for messages
     double stretch;           ///< edges longer than this many times their length at rest count
     uint64_t count[FAULT_COUNT];
+    uint64_t near;            ///< of the crossings, those of triangles side by side at rest
     uint64_t folded;          ///< edges whose triangles lie on one another; no fault
     int told[FAULT_COUNT];    ///< messages so far
 } Findings;

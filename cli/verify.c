@@ -42,7 +42,7 @@ static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
 
 typedef struct Row {
     uint32_t vertices, triangles;
-    uint64_t count[FAULT_COUNT], folded;
+    uint64_t count[FAULT_COUNT], near, folded;
 } Row;
 
 typedef struct Verify {
@@ -81,7 +81,7 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     Findings *findings = &verify->findings;
     char *path = folder_ply(&verify->folder, frame);
     memset(findings->count, 0, sizeof findings->count);
-    findings->folded = 0, findings->file = path;
+    findings->near = findings->folded = 0, findings->file = path;
     SingeResult result = cache_read(path, &cache, error);
     if (!result) {
         check_values(&cache, findings);
@@ -91,7 +91,8 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
             snprintf(error->message, sizeof error->message, "no memory to verify frame %d", frame);
             result = SINGE_ERROR_MEMORY;
         }
-        *row = (Row){.vertices = cache.vertex_count, .triangles = cache.triangle_count, .folded = findings->folded};
+        *row = (Row){.vertices = cache.vertex_count, .triangles = cache.triangle_count, .near = findings->near,
+                     .folded = findings->folded};
         memcpy(row->count, findings->count, sizeof row->count);
     }
     cache_free(&cache);
@@ -126,7 +127,7 @@ static void print_frames(const Verify *verify, const uint64_t *total) {
 
 /// Returns the number of all faults.
 static uint64_t print_table(const Verify *verify) {
-    uint64_t total[FAULT_COUNT] = {0}, all = 0, folded = 0, triangles = 0;
+    uint64_t total[FAULT_COUNT] = {0}, all = 0, near = 0, folded = 0, triangles = 0;
     int frames[FAULT_COUNT] = {0}, worst[FAULT_COUNT] = {0}, bad = 0;
     for (int i = 0; i < verify->done; i++) {
         const Row *row = &verify->rows[i];
@@ -134,7 +135,8 @@ static uint64_t print_table(const Verify *verify) {
             total[f] += row->count[f], frames[f] += row->count[f] > 0;
             if (row->count[f] > verify->rows[worst[f]].count[f]) worst[f] = i;
         }
-        bad += faults_of(row) > 0, all += faults_of(row), folded += row->folded, triangles += row->triangles;
+        bad += faults_of(row) > 0, all += faults_of(row), triangles += row->triangles;
+        near += row->near, folded += row->folded;
     }
     if (all) print_frames(verify, total);
     printf("%-52s%12s%8s%10s%7s\n", "fault", "all frames", "frames", "worst", "frame");
@@ -146,7 +148,8 @@ static uint64_t print_table(const Verify *verify) {
         else printf("%12" PRIu64 "%8d%10" PRIu64 "%7d\n", total[f], frames[f], verify->rows[worst[f]].count[f],
                     verify->first + worst[f]);
     }
-    printf("%-52s%12" PRIu64 "\n", "(no fault) edges folded onto each other", folded);
+    printf("%-52s%12" PRIu64 "\n", "(of the crossings: side by side at rest)", near);
+    printf("%-52s%12" PRIu64 "\n", "(no fault: edges folded onto each other)", folded);
     printf("\n%d frames, %" PRIu64 " triangles: ", verify->done, triangles);
     if (all) printf("%" PRIu64 " faults in %d frames\n", all, bad);
     else printf("no faults\n");
@@ -158,12 +161,12 @@ static ExitCode write_csv(Verify *verify) {
     if (file) {
         fputs("frame,vertices,triangles", file);
         for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
-        fputs(",folded_edges\n", file);
+        fputs(",near_crossings,folded_edges\n", file);
         for (int i = 0; i < verify->done; i++) {
             const Row *row = &verify->rows[i];
             fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
             for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%" PRIu64, row->count[f]);
-            fprintf(file, ",%" PRIu64 "\n", row->folded);
+            fprintf(file, ",%" PRIu64 ",%" PRIu64 "\n", row->near, row->folded);
         }
     }
     bool failed = !file || ferror(file);

@@ -23,6 +23,8 @@ class Example(Case):
     """Runs the scene once, whole, and reads its numbers."""
 
     NAME = None
+    # kinds of faults that `singe verify` may find for now; an example that holds its layers apart has none: ()
+    PENDING = ("crossings", "inverted_cells")
 
     def run_example(self, out, *args, **options):
         scene = os.path.join(EXAMPLES, self.NAME, self.NAME + ".yaml")
@@ -50,7 +52,25 @@ class Example(Case):
             self.assertLess(row["ledger_error"] * largest, 1e-5 * max(largest, 1e-2), f"ledger of frame {row['frame']}")
         self.assertLess(max(self.column("mass_ledger_error")), 1e-6)
         self.assertEqual(self.rows[-1]["frame"], len(self.rows))
+        self.verified()
         self.say["ledgers"] = f"{max(self.column('ledger_error')):.1e}, {max(self.column('mass_ledger_error')):.1e}"
+
+    def verified(self):
+        """What `singe verify` counts in the cache: nothing, but for what is pending."""
+        path = self.path("faults.csv")
+        run = self.start("verify", self.path("whole"), "--csv", path)
+        err = run.communicate(timeout=800)[1]
+        self.assertIn(run.returncode, (0, 1), err)
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(self.rows))
+        for kind in list(rows[0])[3 : list(rows[0]).index("stats") + 1]:
+            count = sum(int(row[kind]) for row in rows)
+            self.say[kind] = count
+            if kind not in self.PENDING:
+                self.assertEqual(count, 0, f"{kind}: {err}")
+        if not self.PENDING:
+            self.assertEqual(run.returncode, 0, err)
 
     def before_the_fire(self):
         """The same scene without its sources hangs, lies and falls without turning a cell inside out."""
@@ -99,7 +119,7 @@ class Example(Case):
             self.assertGreaterEqual(ratio, power)
 
     def told(self):
-        print("  ".join(f"{name} {value}" for name, value in self.say.items()))
+        print("  ".join(f"{name} {value}" for name, value in self.say.items() if value != 0))
 
 
 class Letter(Example):
