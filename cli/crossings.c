@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/hinges.h"
 #include "cli/triangle_pair.h"
 
 enum { LEAF = 4, MORTON_BITS = 21 };
@@ -27,6 +28,7 @@ typedef struct Tree {
     Placed *order;          ///< [count]
     Box *boxes;             ///< [count] of order's triangles
     Box *nodes;             ///< [2 * leaves - 1]
+    CrossingList touching;  ///< pairs that hinges.h is to decide
 } Tree;
 
 static void box_empty(Box *box) {
@@ -132,6 +134,7 @@ static bool tree_make(Tree *tree) {
 }
 
 static void tree_free(Tree *tree) {
+    crossings_free(&tree->touching);
     free(tree->order);
     free(tree->boxes);
     free(tree->nodes);
@@ -151,16 +154,25 @@ static bool list_add(CrossingList *list, uint32_t a, uint32_t b) {
     return true;
 }
 
-static bool test_pair(const Tree *tree, uint32_t a, uint32_t b, CrossingList *list) {
+/// Neighbours along an edge have nothing else in common.
+static bool are_neighbours(const uint32_t *s, const uint32_t *t) {
+    int same = 0;
+    for (int i = 0; i < 9; i++) same += s[i / 3] == t[i % 3];
+    return same > 1;
+}
+
+static bool test_pair(Tree *tree, uint32_t a, uint32_t b, CrossingList *list) {
     const uint32_t *s = tree->triangles[a], *t = tree->triangles[b];
     const Corners first = {tree->position[s[0]], tree->position[s[1]], tree->position[s[2]]};
     const Corners second = {tree->position[t[0]], tree->position[t[1]], tree->position[t[2]]};
     list->tested++;
-    return !triangles_cross(first, second) || list_add(list, a, b);
+    bool touch;
+    if (triangles_cross(first, second, &touch)) return list_add(list, a, b);
+    return !touch || are_neighbours(s, t) || list_add(&tree->touching, a, b);
 }
 
 /// All pairs of two leaves, or within one.
-static bool test_leaves(const Tree *tree, uint32_t a, uint32_t b, CrossingList *list) {
+static bool test_leaves(Tree *tree, uint32_t a, uint32_t b, CrossingList *list) {
     for (uint32_t i = leaf_begin(tree, a); i < leaf_begin(tree, a + 1); i++)
         for (uint32_t j = a == b ? i + 1 : leaf_begin(tree, b); j < leaf_begin(tree, b + 1); j++)
             if (boxes_meet(&tree->boxes[i], &tree->boxes[j]) &&
@@ -170,7 +182,7 @@ static bool test_leaves(const Tree *tree, uint32_t a, uint32_t b, CrossingList *
 }
 
 /// The two nodes are of one level at all times, so that the stack holds three pairs a level beside the one in hand.
-static bool tree_pairs(const Tree *tree, CrossingList *list) {
+static bool tree_pairs(Tree *tree, CrossingList *list) {
     uint32_t stack[4 * 33][2] = {{0, 0}};
     for (int depth = 1; depth > 0;) {
         const uint32_t a = stack[--depth][0], b = stack[depth][1];
@@ -186,6 +198,15 @@ static bool tree_pairs(const Tree *tree, CrossingList *list) {
     return true;
 }
 
+/// Adds those of the touching pairs that cross all the same.
+static bool add_hinges(Tree *tree, CrossingList *list) {
+    CrossingList *touching = &tree->touching;
+    if (!hinges_find(tree->position, tree->triangles, tree->count, touching->pairs, &touching->count)) return false;
+    for (size_t i = 0; i < touching->count; i++)
+        if (!list_add(list, touching->pairs[i][0], touching->pairs[i][1])) return false;
+    return true;
+}
+
 static int by_numbers(const void *a, const void *b) {
     const uint32_t *x = a, *y = b;
     const int k = x[0] == y[0];
@@ -196,7 +217,7 @@ bool crossings_find(const float (*position)[3], const uint32_t (*triangles)[3], 
     *list = (CrossingList){0};
     if (count == 0) return true;
     Tree tree = {.position = position, .triangles = triangles, .count = count};
-    const bool good = tree_make(&tree) && tree_pairs(&tree, list);
+    const bool good = tree_make(&tree) && tree_pairs(&tree, list) && add_hinges(&tree, list);
     if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, by_numbers);
     tree_free(&tree);
     return good;

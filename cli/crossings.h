@@ -13,8 +13,8 @@ typedef struct CrossingList {
     uint64_t tested;         ///< pairs whose boxes met
 } CrossingList;
 
-/// Finds the pairs that cross (triangles_cross) among triangles of finite corners that are not on a line. False when
-/// out of memory. The list is to be freed, after failure too.
+/// Finds the pairs that cross among triangles of finite corners that are not on a line: by triangle_pair.h or hinges.h.
+/// False when out of memory. The list is to be freed, after failure too.
 bool crossings_find(const float (*position)[3], const uint32_t (*triangles)[3], uint32_t count, CrossingList *list);
 void crossings_free(CrossingList *list);
 

@@ -69,7 +69,8 @@ static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *f
         const float *a = frame->position[v[0]];
         if (exact_collinear(a, frame->position[v[1]], frame->position[v[2]]))
             findings_add(findings, FAULT_DEGENERATE,
-                         "triangle %u (vertices %u, %u, %u) at (%.4g, %.4g, %.4g) m has no area", t, v[0], v[1], v[2], (double)a[0], (double)a[1], (double)a[2]);
+                         "triangle %u (vertices %u, %u, %u) at (%.4g, %.4g, %.4g) m has no area", t, v[0], v[1], v[2],
+                         (double)a[0], (double)a[1], (double)a[2]);
         else sound[count++] = t;
     }
     return count;

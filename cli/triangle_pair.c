@@ -20,6 +20,8 @@ static void sides(const Corners a, const Corners b, int sign[3]) {
     for (int k = 0; k < 3; k++) sign[k] = exact_orient3(a[0], a[1], a[2], b[k]);
 }
 
+static bool is_edge_in_plane(const int sign[3]) { return (sign[0] == 0) + (sign[1] == 0) + (sign[2] == 0) > 1; }
+
 static bool on_both_sides(const int sign[3]) {
     bool above = false, below = false;
     for (int k = 0; k < 3; k++) above |= sign[k] > 0, below |= sign[k] < 0;
@@ -66,11 +68,13 @@ static bool overlap_in_plane(const Corners a, const Corners b) {
     return false;
 }
 
-bool triangles_cross(const Corners a, const Corners b) {
+bool triangles_cross(const Corners a, const Corners b, bool *touch) {
     int of_a[3], of_b[3];
     sides(a, b, of_b);
+    *touch = is_edge_in_plane(of_b);
     if (!of_b[0] && !of_b[1] && !of_b[2]) return overlap_in_plane(a, b);
     if (!on_both_sides(of_b)) return false;
     sides(b, a, of_a);
+    *touch |= is_edge_in_plane(of_a);
     return on_both_sides(of_a) && intervals_overlap(a, of_a, b, of_b);
 }

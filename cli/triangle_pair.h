@@ -8,7 +8,8 @@ typedef const float *Corners[3]; ///< three points of three finite coordinates, 
 
 /// Whether the insides of the two, which are the triangles without their edges and corners, have a point in common. So
 /// what only touches does not count, be it at a corner or along an edge, shared or not; what lies in one plane counts
-/// where it overlaps with an area.
-bool triangles_cross(const Corners a, const Corners b);
+/// where it overlaps with an area. *touch: whether an edge of one lies in the plane of the other, so that there may be
+/// more to it (hinges.h).
+bool triangles_cross(const Corners a, const Corners b, bool *touch);
 
 #endif

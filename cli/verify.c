@@ -24,7 +24,7 @@ static const ArgOption verify_options[OPT_COUNT] = {
 
 static const ArgCommand verify_command = {
     "verify", "DIR", "Reads a cache again and counts crossings, inverted cells and other faults.", verify_options,
-    OPT_COUNT, "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 what cannot be read."};
+    OPT_COUNT, "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
 
 static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
     [FAULT_CROSSING] = {"crossings", "pairs of triangles that cross"},

@@ -11,6 +11,7 @@
 
 #include "cli/crossings.h"
 #include "cli/exact.h"
+#include "cli/hinges.h"
 #include "cli/triangle_pair.h"
 
 static uint64_t random_state = 1;
@@ -137,7 +138,9 @@ static void check_case(const Case *one, int turn) {
     for (int i = 0; i < 36; i++) {
         const int *s = orders[i / 6], *t = orders[i % 6];
         const Corners first = {a[s[0]], a[s[1]], a[s[2]]}, second = {b[t[0]], b[t[1]], b[t[2]]};
-        if (triangles_cross(first, second) != one->cross || triangles_cross(second, first) != one->cross)
+        bool touch;
+        if (triangles_cross(first, second, &touch) != one->cross ||
+            triangles_cross(second, first, &touch) != one->cross)
             fail_msg("%s, order %d, turned %d", one->what, i, turn);
     }
 }
@@ -179,22 +182,33 @@ static Soup *soup_make(uint32_t count, float size, int steps) {
 static void check_soup(Soup *soup) {
     const float(*position)[3] = (const float(*)[3])soup->position;
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])soup->triangles;
-    CrossingList list;
-    size_t next = 0;
-    assert_true(crossings_find(position, triangles, soup->count, &list));
+    const size_t pairs = (size_t)soup->count * soup->count / 2 + 1;
+    uint32_t(*touching)[2] = malloc(pairs * sizeof *touching);
+    bool *crossing = calloc((size_t)soup->count * soup->count + 1, sizeof *crossing);
+    size_t touches = 0, count = 0;
+    assert_true(touching && crossing);
     for (uint32_t a = 0; a < soup->count; a++)
         for (uint32_t b = a + 1; b < soup->count; b++) {
             const Corners first = {position[3 * a], position[3 * a + 1], position[3 * a + 2]};
             const Corners second = {position[3 * b], position[3 * b + 1], position[3 * b + 2]};
-            if (!triangles_cross(first, second)) continue;
-            assert_true(next < list.count);
-            assert_int_equal(list.pairs[next][0], a);
-            assert_int_equal(list.pairs[next][1], b);
-            next++;
+            bool touch;
+            if (triangles_cross(first, second, &touch)) crossing[a * soup->count + b] = true, count++;
+            else if (touch) touching[touches][0] = a, touching[touches++][1] = b;
         }
-    assert_int_equal(next, list.count);
-    assert_true(soup->count < 10 || next > 0);
+    assert_true(hinges_find(position, triangles, soup->count, touching, &touches));
+    for (size_t i = 0; i < touches; i++) crossing[touching[i][0] * soup->count + touching[i][1]] = true, count++;
+    CrossingList list;
+    assert_true(crossings_find(position, triangles, soup->count, &list));
+    assert_int_equal(list.count, count);
+    for (size_t i = 0; i < list.count; i++) {
+        bool *pair = &crossing[list.pairs[i][0] * soup->count + list.pairs[i][1]];
+        assert_true(*pair);
+        *pair = false; // each once
+    }
+    assert_true(soup->count < 10 || count > 0);
     crossings_free(&list);
+    free(touching);
+    free(crossing);
     free(soup);
 }
 
@@ -224,6 +238,56 @@ static void add_sheet(uint32_t cells, int sheet, float tilt, float (*position)[3
     }
 }
 
+/// A sheet of four squares in z = 0 with the lines x = -1, 0 and 1, and another that meets it along a line of its own.
+typedef struct Meeting {
+    const char *what;
+    float ridge[3], foot[3], other[3]; ///< where the middle line of the second sheet lies, and those beside it
+    bool cross;
+} Meeting;
+
+static const Meeting meetings[] = {
+    {"straight through", {0, 0, 0}, {0, 0, 1}, {0, 0, -1}, true},
+    {"through, and bent", {0, 0, 0}, {0.5f, 0, 1}, {0.75f, 0, -1}, true},
+    {"a ridge on it", {0, 0, 0}, {0.5f, 0, 1}, {-0.5f, 0, 1}, false},
+    {"through between the lines", {0.25f, 0, 0}, {0.25f, 0, 1}, {0.25f, 0, -1}, true},
+    {"a ridge between the lines", {0.25f, 0, 0}, {0.5f, 0, 1}, {0, 0, 1}, false},
+    {"stands on it", {0.25f, 0, 1}, {0.25f, 0, 2}, {0.25f, 0, 0}, false},
+    {"beside it", {1, 0, 0}, {1, 0, 1}, {1, 0, -1}, false},
+    {"folded shut on it", {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, true}, // with itself
+};
+
+/// Squares between three lines along y, cut by diagonals.
+static void add_lines(const float *const lines[3], uint32_t first, float (*position)[3], uint32_t (*triangles)[3]) {
+    for (uint32_t v = 0; v < 9; v++)
+        for (int k = 0; k < 3; k++) position[first + v][k] = lines[v % 3][k] + (k == 1 ? (float)(v / 3) : 0);
+    for (uint32_t c = 0; c < 4; c++) {
+        const uint32_t v = first + c / 2 * 3 + c % 2;
+        const uint32_t corners[6] = {v, v + 1, v + 3, v + 1, v + 4, v + 3};
+        memcpy(triangles[2 * c], corners, sizeof corners);
+    }
+}
+
+static void test_hinges(void **state) {
+    (void)state;
+    static const float left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0}, right[3] = {1, 0, 0};
+    for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
+        for (int apart = 0; apart < 4; apart++) { // lines at the same places, or not; the sheets' order
+            const Meeting *m = &meetings[i];
+            float position[18][3];
+            uint32_t triangles[16][3];
+            CrossingList list;
+            const uint32_t first = apart & 1 ? 9 : 0;
+            add_lines((const float *const[3]){left, middle, right}, first, position, triangles + (first ? 8 : 0));
+            const uint32_t second = 9 - first;
+            add_lines((const float *const[3]){m->other, m->ridge, m->foot}, second, position, triangles + (first ? 0 : 8));
+            for (uint32_t v = second; v < second + 9 && apart & 2; v++)
+                position[v][1] = 0.75f * position[v][1] + 0.125f;
+            assert_true(crossings_find((const float(*)[3])position, (const uint32_t(*)[3])triangles, 16, &list));
+            if ((list.count > 0) != m->cross) fail_msg("%s, %d: %zu", m->what, apart, list.count);
+            crossings_free(&list);
+        }
+}
+
 /// A stack of eight sheets: the pairs that are looked at grow with the triangles, not with their square.
 static void test_linear(void **state) {
     (void)state;
@@ -248,7 +312,7 @@ static void test_linear(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_orientation), cmocka_unit_test(test_orientation_far_apart), cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_tree),        cmocka_unit_test(test_linear),
+        cmocka_unit_test(test_tree), cmocka_unit_test(test_hinges), cmocka_unit_test(test_linear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

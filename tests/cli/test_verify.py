@@ -133,9 +133,82 @@ def triangles_cross(a, b):
     return low < high
 
 
+def neighbours(triangles, at):
+    """Pairs of triangles at an edge, as (a, b): (its ends, a's other corner, b's other corner)."""
+    places = {}
+    for number, t in enumerate(triangles):
+        for k in range(3):
+            ends = sorted(((tuple(at[number][i]), t[i]) for i in (k, (k + 1) % 3)))
+            place, names = tuple(p for p, _ in ends), tuple(v for _, v in ends)
+            places.setdefault(place, {}).setdefault(names, []).append((number, at[number][(k + 2) % 3]))
+    joined = []
+    for place, edges in places.items():
+        groups = [g for g in edges.values() if len(g) == 2]
+        alone = [g[0] for g in edges.values() if len(g) == 1]
+        joined += [(place, *g) for g in groups + ([alone] if len(alone) == 2 else [])]
+    return joined
+
+
+def within(p, q, t):
+    """Whether a segment in the plane of a triangle has points of its inside."""
+    low, high, n = Fraction(0), Fraction(1), normal(t)
+    for i in range(3):
+        inward = cross(n, minus(t[(i + 1) % 3], t[i]))
+        f, g = dot(inward, minus(p, t[i])), dot(inward, minus(q, t[i]))
+        if f <= 0 and g <= 0:
+            return False
+        if f < 0:
+            low = max(low, f / (f - g))
+        if g < 0:
+            high = min(high, f / (f - g))
+    return low < high
+
+
+def angle(axis, origin, first, p):
+    """A number that grows with the angle about an axis, from that of `first`: 0 to 4."""
+    along = dot(axis, axis)
+    flat = [minus(v, [dot(v, axis) / along * c for c in axis]) for v in (minus(first, origin), minus(p, origin))]
+    x, y = dot(*flat), dot(cross(axis, flat[0]), flat[1])
+    # not the angle, but as monotonous: squares of cosine and sine by quadrant
+    cosine = x * x * along / (x * x * along + y * y)
+    if y == 0:
+        return Fraction(0 if x > 0 else 2)
+    if y > 0:
+        return 1 - cosine if x >= 0 else 1 + cosine
+    return 3 - cosine if x <= 0 else 3 + cosine
+
+
+def hinges_cross(one, other):
+    """Whether two edges, each with its two triangles, cross along a length that they have in common."""
+    (p, q), (_, a), (_, b) = one
+    (r, s), (_, t), (_, u) = other
+    axis = minus(q, p)
+    if any(cross(axis, minus(r, p))) or any(cross(axis, minus(s, p))):
+        return False
+    ends = sorted(dot(axis, minus(e, p)) / dot(axis, axis) for e in (r, s))
+    if ends[1] <= 0 or ends[0] >= 1:
+        return False
+    b, t, u = (angle(axis, p, a, e) for e in (b, t, u))
+    t, u = sorted((t, u))
+    return 0 < t < b < u
+
+
 def crossings(surface):
-    corners = [[[Fraction(surface.vertices[v][axis]) for axis in "xyz"] for v in t] for t in surface.triangles]
-    return sum(triangles_cross(a, b) for a, b in itertools.combinations(corners, 2))
+    at = [[[Fraction(surface.vertices[v][axis]) for axis in "xyz"] for v in t] for t in surface.triangles]
+    found = {(a, b) for a, b in itertools.combinations(range(len(at)), 2) if triangles_cross(at[a], at[b])}
+    insides = len(found)
+    edges = neighbours(surface.triangles, at)
+    for (p, q), (a, one), (b, other) in edges:
+        for number, t in enumerate(at):
+            n = normal(t)
+            sides = [dot(n, minus(v, t[0])) for v in (p, q, one, other)]
+            if number not in (a, b) and sides[:2] == [0, 0] and sides[2] * sides[3] < 0 and within(p, q, t):
+                found.add(tuple(sorted((min(a, b), number))))
+    for one, other in itertools.combinations(edges, 2):
+        numbers = [e[0] for e in one[1:] + other[1:]]
+        if len(set(numbers)) == 4 and hinges_cross(one, other):
+            found.add(tuple(sorted((min(numbers[:2]), min(numbers[2:])))))
+    return len(found), len(found) - insides
 
 
 class Verify(Case):
@@ -299,23 +372,34 @@ class Verify(Case):
         """Soups on lattices, where much touches, and off them, with vertices shared and not."""
         os.remove(self.path("o", "stats.csv"))
         generator = random.Random(7)
-        expected = []
+        expected, touching = [], 0
         for number in range(1, 7):
-            count, most = (24, 10) if number < 4 else (30, 16)
-            lattice = 2 + number
-            points = [[generator.randint(0, lattice) * 0.125 if number < 5 else generator.random() for _ in range(3)]
-                      for _ in range(most)]
-            corners = {tuple(generator.sample(range(most), 3)) for _ in range(count)}
+            if number < 4:  # hinges of two triangles about a plane, or in it
+                points = []
+                for _ in range(16):
+                    heights, axis = generator.choice([(1, 1, 0, 2), (1, 1, 1, 1), (1, 1, 2, 2)]), generator.randrange(3)
+                    for height in heights:
+                        point = [generator.randint(0, 1 + number) / 8 for _ in range(3)]
+                        point[axis] = height / 8
+                        points.append(point)
+                corners = [c for i in range(0, 64, 4) for c in ((i, i + 1, i + 2), (i + 1, i, i + 3))]
+            else:
+                points = [[generator.randint(0, 5) / 8 if number == 4 else generator.random() for _ in range(3)]
+                          for _ in range(16)]
+                corners = {tuple(generator.sample(range(16), 3)) for _ in range(30)}
             surface = Surface(positions=points, triangles=sorted(corners))
             surface.write(self.frame(number))
             surface.read(self.frame(number))  # rounded as written
             at = [[[Fraction(surface.vertices[v][axis]) for axis in "xyz"] for v in t] for t in surface.triangles]
             surface.triangles = [t for t, a in zip(surface.triangles, at) if any(normal(a))]
             surface.write(self.frame(number))
-            expected.append(crossings(surface))
+            count, at_edges = crossings(surface)
+            expected.append(count)
+            touching += at_edges
         rows = self.verify(expect=1)[2]
         self.assertEqual([row["crossings"] for row in rows], expected)
         self.assertGreater(min(expected), 10)
+        self.assertGreater(touching, 5)
 
     def test_interrupted(self):
         """Ctrl-C ends it after a frame, and what was not looked at is told."""
