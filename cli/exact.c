@@ -9,11 +9,13 @@
 // sum with all products positive (its permanent), e = 2^-53. Else the determinant is multiplied out: 24 products of
 // three coordinates, or 6 of two. A product of two floats is a double exactly (24 + 24 bits of 53); cut into halves of
 // 26 bits it gives two exact doubles with a third. These are added up as an expansion, a sum of doubles that do not
-// overlap, whose largest part has the sign of the whole (Shewchuk's Grow-Expansion, theorem 10). Floats lie between
-// 2^-149 and 2^128, so nothing under- or overflows.
+// overlap, whose largest part has the sign of the whole (Shewchuk's Grow-Expansion, theorem 10). The same serves for
+// the differences themselves, with 6 products, where they are exact and have no more than 26 bits: points close
+// together. Floats lie between 2^-149 and 2^128, so nothing under- or overflows.
 #include "cli/exact.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 enum { PARTS = 48 };
 static const double rounding = 0x1p-53;
@@ -40,29 +42,51 @@ static int sign_of(double value) { return (value > 0) - (value < 0); }
 
 static int expansion_sign(const Expansion *sum) { return sum->count ? sign_of(sum->parts[sum->count - 1]) : 0; }
 
-/// Adds p q r.
-static void add_product(Expansion *sum, double p, double q, double r) {
-    const double pq = p * q, spread = 0x8000001p0 * pq; // 2^27 + 1, Veltkamp's splitting
-    const double high = spread - (spread - pq), low = pq - high;
-    add(sum, high * r);
-    add(sum, low * r);
+/// The upper 26 bits of a double (Veltkamp's splitting).
+static double high_half(double x) {
+    const double spread = 0x8000001p0 * x; // 2^27 + 1
+    return spread - (spread - x);
 }
 
-/// Adds sign |a b c|.
-static void add_determinant(Expansion *sum, double sign, const float a[3], const float b[3], const float c[3]) {
+/// Adds p q r, of at most 26 bits each.
+static void add_product(Expansion *sum, double p, double q, double r) {
+    const double pq = p * q, high = high_half(pq);
+    add(sum, high * r);
+    add(sum, (pq - high) * r);
+}
+
+/// Adds sign |a b c| of coordinates of at most 26 bits.
+static void add_determinant(Expansion *sum, double sign, const double a[3], const double b[3], const double c[3]) {
     for (int k = 0; k < 3; k++) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
-        add_product(sum, sign * (double)a[k], (double)b[l], (double)c[m]);
-        add_product(sum, -sign * (double)a[k], (double)b[m], (double)c[l]);
+        add_product(sum, sign * a[k], b[l], c[m]);
+        add_product(sum, -sign * a[k], b[m], c[l]);
     }
 }
 
-static int orient3_slowly(const float a[3], const float b[3], const float c[3], const float d[3]) {
+/// Whether p = a - d is exact, and of at most 26 bits.
+static bool is_short(const float a[3], const float d[3], const double p[3]) {
+    for (int k = 0; k < 3; k++) {
+        const double high = high_half(p[k]), of_d = (double)a[k] - p[k];
+        if (high != p[k] || of_d != (double)d[k] || p[k] + of_d != (double)a[k]) return false;
+    }
+    return true;
+}
+
+/// Where the differences from d are short they will do; else the determinant of the four with a column of ones.
+static int orient3_slowly(const float *const points[4], const double p[3], const double q[3], const double r[3]) {
     Expansion sum = {0};
-    add_determinant(&sum, 1, a, b, c);
-    add_determinant(&sum, -1, a, b, d);
-    add_determinant(&sum, 1, a, c, d);
-    add_determinant(&sum, -1, b, c, d);
+    const float *d = points[3];
+    if (is_short(points[0], d, p) && is_short(points[1], d, q) && is_short(points[2], d, r)) {
+        add_determinant(&sum, 1, p, q, r);
+        return expansion_sign(&sum);
+    }
+    double at[4][3];
+    for (int i = 0; i < 12; i++) at[i / 3][i % 3] = (double)points[i / 3][i % 3];
+    add_determinant(&sum, 1, at[0], at[1], at[2]);
+    add_determinant(&sum, -1, at[0], at[1], at[3]);
+    add_determinant(&sum, 1, at[0], at[2], at[3]);
+    add_determinant(&sum, -1, at[1], at[2], at[3]);
     return expansion_sign(&sum);
 }
 
@@ -81,7 +105,7 @@ int exact_orient3(const float a[3], const float b[3], const float c[3], const fl
     // a difference is 0 only where it is so exactly, and then so are the products with it
     if (permanent == 0) return 0;
     if (fabs(value) > (7 + 56 * rounding) * rounding * permanent) return sign_of(value);
-    return orient3_slowly(a, b, c, d);
+    return orient3_slowly((const float *const[4]){a, b, c, d}, p, q, r);
 }
 
 static int orient2_slowly(const float a[3], const float b[3], const float c[3], int x, int y) {

@@ -223,18 +223,19 @@ static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t coun
 }
 
 static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t count, Findings *findings) {
-    Side *sides = malloc((3 * (size_t)count + 1) * sizeof *sides);
+    const size_t side_count = 3 * (size_t)count;
+    Side *sides = malloc((side_count + 1) * sizeof *sides);
     if (!sides) return false;
-    for (uint32_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t *v = frame->triangles[sound[i]], from = v[k], to = v[(k + 1) % 3];
-            const bool forward = from < to;
-            sides[3 * i + k] = (Side){forward ? from : to, forward ? to : from, sound[i], v[(k + 2) % 3], forward};
-        }
-    qsort(sides, 3 * (size_t)count, sizeof *sides, by_edge);
-    for (uint32_t i = 0, end; i < 3 * count; i = end) {
-        for (end = i + 1; end < 3 * count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) end++;
-        check_edge(frame, &sides[i], end - i, findings);
+    for (size_t i = 0; i < side_count; i++) {
+        const uint32_t triangle = sound[i / 3], *v = frame->triangles[triangle];
+        const uint32_t from = v[i % 3], to = v[(i + 1) % 3], opposite = v[(i + 2) % 3];
+        const bool forward = from < to;
+        sides[i] = (Side){forward ? from : to, forward ? to : from, triangle, opposite, forward};
+    }
+    qsort(sides, side_count, sizeof *sides, by_edge);
+    for (size_t i = 0, end; i < side_count; i = end) {
+        for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) end++;
+        check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
     }
     free(sides);
     return true;

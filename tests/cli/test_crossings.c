@@ -74,6 +74,25 @@ static void test_orientation(void **state) {
     assert_in_range(flat, 90000, 180000);
 }
 
+/// A point a little off the plane of 0, p, q and p + q, whose differences no double holds: d (q x p) has the sign.
+static void test_orientation_near_a_plane(void **state) {
+    (void)state;
+    for (int trial = 0; trial < 100000; trial++) {
+        int64_t p[4][3];
+        float at[4][3];
+        const int shift = trial % 90;
+        random_points(100, p);
+        for (int k = 0; k < 3; k++) {
+            p[3][k] = p[1][k] + p[2][k], p[0][k] %= 2;
+            at[0][k] = ldexpf((float)p[0][k], -30);
+            for (int i = 1; i < 4; i++) at[i][k] = ldexpf((float)p[i][k], shift - 20);
+        }
+        const Wide value = minor(p[0], p[2], p[1]);
+        assert_int_equal(exact_orient3(at[0], at[1], at[2], at[3]), (value > 0) - (value < 0));
+        assert_int_equal(exact_orient3(at[3], at[1], at[2], at[0]), (value < 0) - (value > 0));
+    }
+}
+
 /// What doubles cannot tell: the least of floats decides beside the largest.
 static void test_orientation_far_apart(void **state) {
     (void)state;
@@ -279,7 +298,8 @@ static void test_hinges(void **state) {
             const uint32_t first = apart & 1 ? 9 : 0;
             add_lines((const float *const[3]){left, middle, right}, first, position, triangles + (first ? 8 : 0));
             const uint32_t second = 9 - first;
-            add_lines((const float *const[3]){m->other, m->ridge, m->foot}, second, position, triangles + (first ? 0 : 8));
+            add_lines((const float *const[3]){m->other, m->ridge, m->foot}, second, position,
+                      triangles + (first ? 0 : 8));
             for (uint32_t v = second; v < second + 9 && apart & 2; v++)
                 position[v][1] = 0.75f * position[v][1] + 0.125f;
             assert_true(crossings_find((const float(*)[3])position, (const uint32_t(*)[3])triangles, 16, &list));
@@ -311,7 +331,8 @@ static void test_linear(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orientation), cmocka_unit_test(test_orientation_far_apart), cmocka_unit_test(test_pairs),
+        cmocka_unit_test(test_orientation), cmocka_unit_test(test_orientation_near_a_plane),
+        cmocka_unit_test(test_orientation_far_apart), cmocka_unit_test(test_pairs),
         cmocka_unit_test(test_tree), cmocka_unit_test(test_hinges), cmocka_unit_test(test_linear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
