@@ -1,17 +1,20 @@
 """Meshes of every class that users bring (tools/make_meshes.py): two seconds of each, and what `singe verify` says.
 
-A good mesh runs without a warning and without a fault. A broken one either runs, and then what was repaired is said
+A good mesh runs without a warning and without a fault, and its first frame has all of it: every vertex at its place
+with its uv. A broken one either runs, and then what was repaired is said
 with the file's name and a number, or it is refused with exit code 2, the file's name and the element's number.
 """
 
 import collections
 import csv
+import math
 import os
 import re
 import sys
 import unittest
 
 from support import Case
+from test_verify import Surface
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "tools"))
 import make_meshes  # noqa: E402
@@ -121,8 +124,35 @@ class MeshZoo(Case):
             return "what was repaired is not told"
         if name not in BROKEN and "warning" in told:
             return told
+        lost = None if name in BROKEN else self.lost(name)
+        if lost:
+            return lost
         bad = {k: v for k, v in faults.items() if k not in PENDING_FAULTS | FORGIVEN.get(name, set())}
         return f"verify: {bad}" if bad else None
+
+    def lost(self, name):
+        """What the first frame does not have of the input: each vertex at its place, under its number, with its uv."""
+        mesh = make_meshes.MESHES[name][2]()
+        angle, scale = math.radians(TURN.get(name, 20)), SCALE.get(name, 1)
+        values, uv_faces = mesh.corner_uv or (mesh.uv, mesh.faces)
+        uv = collections.defaultdict(list)
+        for f, c in zip(mesh.faces, uv_faces):
+            for v, number in zip(f, c):
+                uv[v] += [values[number]] if values else []
+        seen = set()
+        for row in Surface(self.path(name, "ply", "zoo.0001.ply")).vertices:
+            number = row["vertex_id"]
+            if number < 0:
+                continue
+            x, y, z = (scale * c for c in mesh.points[number])
+            place = x, y * math.cos(angle) - z * math.sin(angle), y * math.sin(angle) + z * math.cos(angle) + 0.15
+            if math.dist(place, [row[axis] for axis in "xyz"]) > 2e-6:
+                return f"vertex {number} is not at {place}"
+            if uv[number] and min(math.dist(t, (row["s"], row["t"])) for t in uv[number]) > 1e-6:
+                return f"vertex {number} has the uv {row['s']}, {row['t']} instead of {uv[number][0]}"
+            seen.add(number)
+        missing = set(uv) - seen
+        return f"vertices {sorted(missing)[:9]} are not drawn" if missing else None
 
     def test_meshes(self):
         self.assertEqual(set(BROKEN), {n for n, row in make_meshes.MESHES.items() if row[1] == "broken"})
