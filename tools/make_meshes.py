@@ -476,7 +476,8 @@ def ply_bytes(mesh, binary):
 
 def glb_bytes(mesh):
     """Positions, uv, whose v runs down, and triangles in one buffer (glTF 2.0, binary)."""
-    parts = [b"".join(struct.pack("<3f", *p) for p in mesh.points), b"".join(struct.pack("<2f", s, 1 - t) for s, t in mesh.uv),
+    parts = [b"".join(struct.pack("<3f", *p) for p in mesh.points),
+             b"".join(struct.pack("<2f", s, 1 - t) for s, t in mesh.uv),
              b"".join(struct.pack("<3I", *f) for f in mesh.faces)]
     starts = [0, len(parts[0]), len(parts[0]) + len(parts[1])]
     low, high = ([pick(p[k] for p in mesh.points) for k in range(3)] for pick in (min, max))
