@@ -290,6 +290,10 @@ class Verify(Case):
             for v, way in zip(b, (far, -far, -far)):
                 for k, axis in enumerate("xyz"):
                     s.vertices[v][axis] = middle[k] + way * normal_[k] + (2e-4 * k if v == b[2] else 0)
+            return b
+        def of_other_sheet(s):
+            for v in through(s):
+                s.vertices[v]["sheet"] = 1
         def long(s): s.vertices[0]["z"] += 1
         def duplicate(s): s.triangles[1] = s.triangles[0][1:] + s.triangles[0][:1]
         def point(s): s.triangles[4][2] = s.triangles[4][1]
@@ -302,6 +306,7 @@ class Verify(Case):
             s.triangles[-1] = [*edge, len(s.vertices) - 1]
         def turned(s): s.triangles[0].reverse()
         self.finds("crossings", through, "triangles", "cross near", others=("stretched_edges",))
+        self.finds("crossings", of_other_sheet, "of sheets", others=("stretched_edges",))
         self.finds("stretched_edges", long, "mm at rest", others=("crossings",))
         self.finds("duplicate_triangles", duplicate, "triangles 0 and 1 have the same vertices",
                    others=("crossings", "non_manifold_edges", "winding"))
