@@ -76,6 +76,24 @@ double geometry_folded(const SingeView *view, int cells) {
     return edges ? (double)folded / edges : 0;
 }
 
+double geometry_inverted(const SingeView *view) {
+    double count = 0;
+    for (uint32_t cell = 0; cell < view->cell_count; cell++) {
+        double normal[3], above = 0, square = 0;
+        if (!(view->cell_flags[cell] & SINGE_ALIVE)) continue;
+        cell_normal(view, cell, normal);
+        const float *centre = view->position[view->vertex_count + cell];
+        for (int axis = 0; axis < 3; axis++) {
+            double mean = 0;
+            for (int i = 0; i < 4; i++) mean += (double)view->position[view->cells[cell][i]][axis] / 4;
+            above += normal[axis] * ((double)centre[axis] - mean);
+            square += normal[axis] * normal[axis];
+        }
+        count += square > 0 && !(above > 0);
+    }
+    return count;
+}
+
 double geometry_reach(const SingeView *view, const float *place) {
     double most = 0;
     for (uint32_t i = 0; i < view->vertex_count; i++) {

@@ -11,6 +11,8 @@
 //             of its size (one that hangs from a corner has 0.7), or more than a quarter of the inner edges fold
 //             sharper than a right angle
 //   ok        else
+//
+// Beside it: the most cells that were inverted, their centre not in front of their corners, at the end of any step.
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,7 +25,7 @@
 
 static const double gravity = 9.81, speed_limit = 100, reach_limit = 1.5, gyration_limit = 0.35, folded_limit = 0.25;
 
-enum { STATE, CELLS, RATIO, STEP, RESULT, STRAIN, P99, SPEED, ENERGY, REACH, GYRATION, FOLDED, COLUMNS };
+enum { STATE, CELLS, RATIO, STEP, RESULT, STRAIN, P99, SPEED, ENERGY, REACH, GYRATION, FOLDED, INVERTED, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
     [STATE] = {"state", NULL, 6, NULL},
@@ -38,6 +40,7 @@ static const BenchColumn columns[COLUMNS] = {
     [REACH] = {"reach", "%.3f", 7, NULL},
     [GYRATION] = {"gyration", "%.2f", 8, NULL},
     [FOLDED] = {"folded", "%.2f", 6, NULL},
+    [INVERTED] = {"inverted", "%.0f", 8, NULL},
 };
 
 typedef struct Case {
@@ -45,6 +48,7 @@ typedef struct Case {
     double t_over_s, seconds;
     bool finite;
     double speed, energy_gain, reach, gyration, folded; ///< the greatest, and the last two at the end
+    double inverted; ///< cells, the most after any step
     BenchValue strain;
     SingeResult failed; ///< could not be built
     SingeError error;
@@ -77,7 +81,8 @@ static void follow(Case *c, SingeSim *sim, Strain *strain) {
     c->finite = true;
     for (int step = 1; step <= steps && c->finite; step++) {
         if (singe_sim_step(sim)) c->finite = false;
-        else if (step % every == 0 || step == steps) sample(c, sim, energy, strain);
+        else c->inverted = larger(c->inverted, geometry_inverted(&view));
+        if (c->finite && (step % every == 0 || step == steps)) sample(c, sim, energy, strain);
     }
     view = singe_sim_view(sim);
     double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
@@ -124,6 +129,7 @@ static void done(void *context, int i) {
         [REACH] = bench_number(c->reach),
         [GYRATION] = bench_number(c->gyration),
         [FOLDED] = bench_number(c->folded),
+        [INVERTED] = bench_number(c->inverted),
     };
     if (!table_add(cases->table, row)) cases->full_table = true;
 }

@@ -16,8 +16,8 @@ enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240, ONE_C
 static const double right_motion[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
 
 enum {
-    CELLS, THICKNESS, SUBSTEPS, CPU_MEDIAN, CPU_MEAN, DYNAMICS, BLUE, RED, GREEN, YELLOW, FALL, OFF, SPEED, BARS,
-    RESULT, COLUMNS
+    CELLS, THICKNESS, SUBSTEPS, CPU_MEDIAN, CPU_MEAN, DYNAMICS, BLUE, RED, GREEN, YELLOW, FALL, OFF, SPEED, INVERTED,
+    BARS, RESULT, COLUMNS
 };
 
 static const BenchColumn columns[COLUMNS] = {
@@ -34,6 +34,7 @@ static const BenchColumn columns[COLUMNS] = {
     [FALL] = {"fall_m", "%.3f", 20, "0.33/0.50/0.67"},
     [OFF] = {"off_cm", "%.1f", 6, NULL},
     [SPEED] = {"speed", "%.2f", 9, NULL},
+    [INVERTED] = {"inverted", "%.0f", 8, NULL},
     [BARS] = {"bars", NULL, 6, NULL},
     [RESULT] = {"result", NULL, 8, NULL},
 };
@@ -75,6 +76,7 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const
         [FALL] = {.number = {t->fall[0], t->fall[1], t->fall[2]}},
         [OFF] = bench_number(off),
         [SPEED] = bench_number(t->speed_max),
+        [INVERTED] = bench_number(t->inverted),
         [BARS] = bench_text(bars_held(setup, t, off)),
         [RESULT] = bench_text(t->diverged ? "diverged" : "ok"),
     };

@@ -30,8 +30,14 @@ static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps,
     double height = geometry_height(&start);
     while (trajectory->frames < frames && !trajectory->diverged && machine_clock() < until) {
         double begun = machine_cpu_clock();
-        for (int step = 0; step < steps && !trajectory->diverged; step++) trajectory->diverged = singe_sim_step(sim);
-        trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun);
+        double looked = 0; // time that is not the simulation's
+        for (int step = 0; step < steps && !trajectory->diverged; step++) {
+            trajectory->diverged = singe_sim_step(sim);
+            double look = machine_cpu_clock();
+            trajectory->inverted = fmax(trajectory->inverted, geometry_inverted(&start));
+            looked += machine_cpu_clock() - look;
+        }
+        trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun - looked);
         if (!trajectory->diverged) sample(trajectory, sim, height);
     }
     SingeTimers timers = singe_sim_timers(sim);

@@ -176,6 +176,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     TRY(dynamics_check(plan, pool, dynamics, error));
     if (plan->touch) touch_guard(plan->touch, shell, state, pool, h, dynamics);
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
+    dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;
     if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
     return SINGE_OK;

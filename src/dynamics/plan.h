@@ -101,6 +101,10 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics);
 
+/// Puts centres that have gone through their corners back over them: the last pass of a step (order.c).
+void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics);
+
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);
 

@@ -86,6 +86,7 @@ static double stats_front_speed(const SingeSim *sim) {
     return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
 }
 
+/// A cell of no area has no front on which its centre could be missing.
 static uint32_t stats_inverted(const SingeSim *sim) {
     const float(*x)[4] = (const float(*)[4])sim->state.dynamics.position;
     uint32_t inverted = 0;
@@ -95,7 +96,8 @@ static uint32_t stats_inverted(const SingeSim *sim) {
         Vec p[4], mean = {0, 0, 0};
         for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]), mean = vec_mad(mean, p[i], 0.25f);
         Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
-        inverted += vec_dot(normal, vec_sub(vec_load(x[shell_centre(&sim->shell, c)]), mean)) <= 0;
+        float above = vec_dot(normal, vec_sub(vec_load(x[shell_centre(&sim->shell, c)]), mean));
+        inverted += !(above > 0) && !(vec_dot(normal, normal) == 0);
     }
     return inverted;
 }

@@ -195,9 +195,8 @@ static void test_spin(void **unused) {
         }
 }
 
-/// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
-static void test_crushed_sheet_opens(void **unused) {
-    (void)unused;
+/// The largest strain after a second of a sheet crushed to 1 % of its size, and a little thrown about.
+static double open_crushed(uint32_t seed) {
     Bench bench;
     SingeMaterialDef material = plain();
     bench_open(&bench, quads_grid(12, 12, 0.01f, 0.01f, false), &material, 1);
@@ -206,7 +205,7 @@ static void test_crushed_sheet_opens(void **unused) {
         float *x = bench.state.dynamics.position[i];
         const float *rest = bench.shell.rest_position[i];
         for (int k = 0; k < 3; k++)
-            x[k] = 0.01f * rest[k] + 1e-5f * random_unit(random_hash(i, (uint32_t)k, 3, 5));
+            x[k] = 0.01f * rest[k] + 1e-5f * random_unit(random_hash(i, (uint32_t)k, 3, seed));
     }
     double fastest = 0;
     for (int step = 0; step < 480; step++) {
@@ -214,10 +213,20 @@ static void test_crushed_sheet_opens(void **unused) {
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
             fastest = fmax(fastest, (double)vec_length(vec_load(bench.state.dynamics.velocity[i])));
     }
-    print_message("crushed to 1 %%: opens at %.1f m/s, strain %.4f after 1 s\n", fastest, blue_strain(&bench));
+    double strain = blue_strain(&bench);
+    print_message("crushed to 1 %%: opens at %.1f m/s, strain %.4f after 1 s\n", fastest, strain);
     assert_true(fastest < 0.01 * 480 * bench.settings.solver.substeps); // a cell in a substep
-    assert_true(blue_strain(&bench) < 0.15);
     bench_close(&bench);
+    return strain;
+}
+
+/// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
+/// How much stays crumpled hangs on chance: 4 to 23 %, 10 % in the mean.
+static void test_crushed_sheet_opens(void **unused) {
+    (void)unused;
+    double mean = 0;
+    for (uint32_t seed = 1; seed <= 8; seed++) mean += open_crushed(seed) / 8;
+    assert_true(mean < 0.13);
 }
 
 /// Distance that a small sheet slides in 0.5 s down a plane of this slope.

@@ -145,7 +145,7 @@ class Letter(Example):
         self.assertGreater(last["particles"], 100)
         self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
         self.assertLessEqual(self.rows[0]["springs"], 30000)
         self.assertEqual(len(self.rows), 200)
@@ -169,7 +169,7 @@ class LetterHanging(Example):
         self.told()
         self.assertLessEqual(max(self.column("strain_mean")), 0.01)
         self.assertLessEqual(max(self.column("strain_p99")), 0.05)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
         self.assertLessEqual(rest, 5e-3)
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.3)  # it did burn
         self.assertLess(self.rows[-1]["burnt_fraction"], 0.9)  # and there is something left to be still
@@ -188,7 +188,7 @@ class HotSphere(Example):
         self.told()
         self.assertGreaterEqual(last["pieces"], 2)
         self.assertTrue(0.1 < last["burnt_fraction"] < 0.9)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
 class PageHot(Example):
@@ -202,7 +202,7 @@ class PageHot(Example):
         self.told()
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.6)
         self.assertGreaterEqual(self.rows[-1]["pieces"], 4)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
 class Newspaper(Example):
@@ -216,7 +216,7 @@ class Newspaper(Example):
         # newsprint as sources have it: 7.8 to 12.4 mm/s
         self.assertTrue(7.8e-3 <= self.rows[-1]["front_speed"] <= 12.4e-3)
         self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.9)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
 class CurtainFlame(Example):
@@ -230,7 +230,7 @@ class CurtainFlame(Example):
         self.look("100-119", creases=None, power=None)  # it hangs in pleats: creases along the warp, wrinkles all over
         self.told()
         self.assertTrue(0.1 < self.rows[-1]["burnt_fraction"] < 0.9)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
 class StackEdge(Example):
@@ -243,7 +243,7 @@ class StackEdge(Example):
         self.told()
         # one sheet alone is a fifth
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.4)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
 class SameBytes(Example):
