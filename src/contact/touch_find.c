@@ -53,7 +53,7 @@ static void box_range(void *task, int begin, int end) {
         }
         Quad way = quad_load(plan->speed[c]) * ((float)plan->steps * plan->time_step);
         low[3] = high[3] = way[3] = 0;
-        plan->boxes[c] = (TouchBox){low, high, way};
+        plan->boxes[c] = (TouchBox){.low = low, .high = high, .way = way};
         uint8_t owned = 0;
         for (int i = 0; i < 4; i++) {
             owned |= (uint8_t)((plan->owner[corner[i]] == c) << i);
@@ -63,13 +63,16 @@ static void box_range(void *task, int begin, int end) {
     }
 }
 
-/// The region that a cell's widened box passes over.
-static inline void swept(const TouchPlan *plan, uint32_t c, Quad *low, Quad *high) {
-    const TouchBox *box = &plan->boxes[c];
+/// Widens the swept boxes for plan->reach.
+static void sweep_boxes(void *task, int begin, int end) {
+    TouchPlan *plan = ((Find *)task)->plan;
     float wide = 0.5f * plan->reach;
     Quad zero = {0};
-    *low = box->low + quad_min(box->way, zero) - wide;
-    *high = box->high + quad_max(box->way, zero) + wide;
+    for (int c = begin; c < end; c++) {
+        TouchBox *box = &plan->boxes[c];
+        box->swept_low = box->low + quad_min(box->way, zero) - wide;
+        box->swept_high = box->high + quad_max(box->way, zero) + wide;
+    }
 }
 
 // ---- grid
@@ -104,9 +107,7 @@ static float first_edge(const TouchPlan *plan) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
-        Quad low, high;
-        swept(plan, c, &low, &high);
-        Quad size = high - low;
+        Quad size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
         sum += (double)fmaxf(size[0], fmaxf(size[1], size[2]));
         count++;
     }
@@ -119,9 +120,8 @@ static uint64_t fill_grid(TouchPlan *plan, bool writing) {
     uint64_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
-        Quad low, high;
-        swept(plan, c, &low, &high);
-        Cube first = cube_of(low, inverse), last = cube_of(high, inverse), at;
+        const TouchBox *box = &plan->boxes[c];
+        Cube first = cube_of(box->swept_low, inverse), last = cube_of(box->swept_high, inverse), at;
         count += cubes_between(first, last, plan->entry_capacity);
         if (count > plan->entry_capacity) return count;
         for (at.x = first.x; at.x <= last.x; at.x++)
@@ -179,15 +179,14 @@ static uint32_t bucket_pairs(const Find *find, uint32_t first, uint32_t last, To
     uint32_t count = 0;
     for (uint32_t i = first; i < last; i++) {
         uint32_t a = plan->entries[i].cell, key = plan->entries[i].key;
-        Quad low_a, high_a;
-        swept(plan, a, &low_a, &high_a);
+        const TouchBox *p = &plan->boxes[a];
         for (uint32_t j = i + 1; j < last; j++) {
             if (plan->entries[j].key != key) continue;
             uint32_t b = plan->entries[j].cell;
-            Quad low_b, high_b;
-            swept(plan, b, &low_b, &high_b);
-            if (!quads_meet(low_a, high_a, low_b, high_b) || !boxes_meet(plan, a, b)) continue;
-            if (cube_key(cube_of(quad_max(low_a, low_b), inverse)) != key) continue;
+            const TouchBox *q = &plan->boxes[b];
+            if (!quads_meet(p->swept_low, p->swept_high, q->swept_low, q->swept_high) || !boxes_meet(plan, a, b))
+                continue;
+            if (cube_key(cube_of(quad_max(p->swept_low, q->swept_low), inverse)) != key) continue;
             if (out && count < room)
                 out[count] = (TouchPair){.a = a, .b = b, .distance = plan->reach, .hit = 2,
                                          .ring = corners_shared(find->shell->cells[a], find->shell->cells[b]) > 0};
@@ -227,6 +226,7 @@ static void find_pairs(Find *find, Pool *pool) {
     plan->slack = plan->slack_most;
     for (int trial = 0;; trial++) {
         plan->reach = plan->thickness + plan->slack;
+        pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, find);
         sort_into_grid(plan);
         plan->pair_count = 0;
         if (plan->entry_count == 0) return;
@@ -287,10 +287,9 @@ static void stray_against_boxes(TouchPlan *plan, const Shell *shell, uint32_t a,
                 for (uint32_t k = plan->bucket_first[bucket]; k < plan->bucket_first[bucket + 1]; k++) {
                     uint32_t b = plan->entries[k].cell;
                     if (plan->entries[k].key != key || plan->strayed[b]) continue;
-                    Quad low, high;
-                    swept(plan, b, &low, &high);
-                    if (!quads_meet(box->low, box->high, low, high)) continue;
-                    if (cube_key(cube_of(quad_max(box->low, low), inverse)) == key)
+                    const TouchBox *other = &plan->boxes[b];
+                    if (!quads_meet(box->low, box->high, other->swept_low, other->swept_high)) continue;
+                    if (cube_key(cube_of(quad_max(box->low, other->swept_low), inverse)) == key)
                         add_stray_pair(plan, shell, a, b);
                 }
             }
@@ -312,41 +311,82 @@ void touch_search_strayed(TouchPlan *plan, const Shell *shell, uint32_t stray_co
 
 // ---- features
 
-/// Boxes of a cell's triangles and edges, widened.
-typedef struct NodeBoxes {
-    Quad node[5], triangle_low[4], triangle_high[4], edge_low[8], edge_high[8];
-    uint32_t id[5];
-} NodeBoxes;
+/// Boxes of four things at once: x, y, z of their lower and upper ends.
+typedef struct FourBoxes {
+    Quad low[3], high[3];
+} FourBoxes;
 
-static void node_boxes(const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin, float wide,
-                       NodeBoxes *boxes) {
-    Quad *node = boxes->node;
-    touch_nodes(shell->cells[cell], x, origin, node);
-    for (int i = 0; i < 5; i++) boxes->id[i] = touch_id(shell, cell, i);
+static FourBoxes four_boxes(const Quad low[4], const Quad high[4]) {
+    FourBoxes four;
+    Quad l[4] = {low[0], low[1], low[2], low[3]}, h[4] = {high[0], high[1], high[2], high[3]};
+    quad_transpose(l);
+    quad_transpose(h);
+    memcpy(four.low, l, sizeof four.low);
+    memcpy(four.high, h, sizeof four.high);
+    return four;
+}
+
+/// Bit k is set where box k meets the box from `low` to `high`.
+static inline unsigned which_meet(const FourBoxes *four, Quad low, Quad high) {
+    QuadMask meet = {-1, -1, -1, -1};
+    for (int k = 0; k < 3; k++) meet &= (four->low[k] <= quad_all(high[k])) & (four->high[k] >= quad_all(low[k]));
+    return (unsigned)((meet[0] & 1) | (meet[1] & 2) | (meet[2] & 4) | (meet[3] & 8));
+}
+
+/// A cell's nodes, with boxes of its edges and triangles.
+typedef struct Nodes {
+    Quad at[5], edge_low[8], edge_high[8];
+    FourBoxes triangles, edges[2];
+    uint32_t id[5];
+} Nodes;
+
+static void place_nodes(const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin, Nodes *nodes) {
+    touch_nodes(shell->cells[cell], x, origin, nodes->at);
+    for (int i = 0; i < 5; i++) nodes->id[i] = touch_id(shell, cell, i);
+}
+
+static void place_boxes(Nodes *nodes) {
+    Quad low[4], high[4];
     for (int e = 0; e < 8; e++) {
-        boxes->edge_low[e] = quad_min(node[touch_edge[e][0]], node[touch_edge[e][1]]) - wide;
-        boxes->edge_high[e] = quad_max(node[touch_edge[e][0]], node[touch_edge[e][1]]) + wide;
+        nodes->edge_low[e] = quad_min(nodes->at[touch_edge[e][0]], nodes->at[touch_edge[e][1]]);
+        nodes->edge_high[e] = quad_max(nodes->at[touch_edge[e][0]], nodes->at[touch_edge[e][1]]);
     }
     for (int t = 0; t < 4; t++) {
-        boxes->triangle_low[t] = quad_min(boxes->edge_low[t], boxes->edge_low[4 + t]);
-        boxes->triangle_high[t] = quad_max(boxes->edge_high[t], boxes->edge_high[4 + t]);
+        low[t] = quad_min(nodes->edge_low[t], nodes->edge_low[4 + t]);
+        high[t] = quad_max(nodes->edge_high[t], nodes->edge_high[4 + t]);
     }
+    nodes->triangles = four_boxes(low, high);
+    nodes->edges[0] = four_boxes(nodes->edge_low, nodes->edge_high);
+    nodes->edges[1] = four_boxes(nodes->edge_low + 4, nodes->edge_high + 4);
+}
+
+/// Whether two cells lie farther apart than `far` along the normal of the first one's diagonals.
+static bool normal_parts(const Nodes *p, const Nodes *q, float far) {
+    Quad normal = quad_cross(p->at[2] - p->at[0], p->at[3] - p->at[1]);
+    float length = sqrtf(quad_dot(normal, normal)), low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int i = 0; i < 4; i++) { // the virtual centre lies between
+        float a = quad_dot(normal, p->at[i]), b = quad_dot(normal, q->at[i]);
+        low[0] = a < low[0] ? a : low[0], high[0] = a > high[0] ? a : high[0];
+        low[1] = b < low[1] ? b : low[1], high[1] = b > high[1] ? b : high[1];
+    }
+    return low[0] - high[1] > far * length || low[1] - high[0] > far * length;
 }
 
 /// Nodes of p that cell a owns against triangles of q that do not have them.
-static uint64_t near_nodes(const TouchPlan *plan, uint32_t a, const NodeBoxes *p, const NodeBoxes *q, float far,
+static uint64_t near_nodes(const TouchPlan *plan, uint32_t a, const Nodes *p, const Nodes *q, float far,
                            float *nearest) {
     uint64_t found = 0;
     for (int i = 0; i < 5; i++) {
         if (!touch_owns_node(plan, a, i)) continue;
-        for (int j = 0; j < 4; j++) {
+        unsigned meet = which_meet(&q->triangles, p->at[i] - far, p->at[i] + far);
+        for (int j = 0; meet >> j; j++) {
             const uint8_t *k = touch_triangle[j];
-            if (!quads_meet(p->node[i], p->node[i], q->triangle_low[j], q->triangle_high[j])) continue;
-            if (p->id[i] == q->id[k[0]] || p->id[i] == q->id[k[1]] || p->id[i] == q->id[k[2]]) continue;
+            if (!(meet >> j & 1) || p->id[i] == q->id[k[0]] || p->id[i] == q->id[k[1]] || p->id[i] == q->id[k[2]])
+                continue;
             float weight[3];
-            Quad apart = touch_from_triangle(p->node[i], q->node[k[0]], q->node[k[1]], q->node[k[2]], weight);
+            Quad apart = touch_from_triangle(p->at[i], q->at[k[0]], q->at[k[1]], q->at[k[2]], weight);
             float distance = sqrtf(quad_dot(apart, apart));
-            *nearest = fminf(*nearest, distance);
+            *nearest = distance < *nearest ? distance : *nearest;
             if (distance < far) found |= UINT64_C(1) << (4 * i + j);
         }
     }
@@ -360,29 +400,32 @@ static bool edges_cross(Quad a, Quad b, Quad c, Quad d) {
     return uv * uv < 0.97f * quad_dot(u, u) * quad_dot(v, v);
 }
 
-static uint64_t near_edges(const TouchPlan *plan, const TouchPair *pair, const NodeBoxes *p, const NodeBoxes *q,
-                           float far, float *nearest) {
+static bool is_near_edge(const Nodes *p, const uint8_t k[2], const Nodes *q, const uint8_t l[2], float far,
+                         float *nearest) {
+    if (p->id[k[0]] == q->id[l[0]] || p->id[k[0]] == q->id[l[1]] || p->id[k[1]] == q->id[l[0]] ||
+        p->id[k[1]] == q->id[l[1]])
+        return false;
+    float s, t;
+    Quad apart = touch_from_segment(p->at[k[0]], p->at[k[1]], q->at[l[0]], q->at[l[1]], &s, &t);
+    float distance = sqrtf(quad_dot(apart, apart));
+    *nearest = distance < *nearest ? distance : *nearest;
+    // where an end is the nearest point, that node's triangles see it too; and edges side by side would make ridges of
+    // a flat sheet
+    return distance < far && s > 0 && s < 1 && t > 0 && t < 1 &&
+           edges_cross(p->at[k[0]], p->at[k[1]], q->at[l[0]], q->at[l[1]]);
+}
+
+static uint64_t near_edges(const TouchPlan *plan, const TouchPair *pair, const Nodes *p, const Nodes *q, float far,
+                           float *nearest) {
     uint64_t found = 0;
     for (int i = 0; i < 8; i++) {
         if (!touch_owns_edge(plan, pair->a, i)) continue;
-        for (int j = 0; j < 8; j++) {
-            if (!touch_owns_edge(plan, pair->b, j) ||
-                !quads_meet(p->edge_low[i], p->edge_high[i], q->edge_low[j], q->edge_high[j]))
-                continue;
-            const uint8_t *k = touch_edge[i], *l = touch_edge[j];
-            if (p->id[k[0]] == q->id[l[0]] || p->id[k[0]] == q->id[l[1]] || p->id[k[1]] == q->id[l[0]] ||
-                p->id[k[1]] == q->id[l[1]])
-                continue;
-            float s, t;
-            Quad apart = touch_from_segment(p->node[k[0]], p->node[k[1]], q->node[l[0]], q->node[l[1]], &s, &t);
-            float distance = sqrtf(quad_dot(apart, apart));
-            *nearest = fminf(*nearest, distance);
-            // where an end is the nearest point, that node's triangles see it too; and edges side by side would make
-            // ridges of a flat sheet
-            if (distance < far && s > 0 && s < 1 && t > 0 && t < 1 &&
-                edges_cross(p->node[k[0]], p->node[k[1]], q->node[l[0]], q->node[l[1]]))
+        Quad low = p->edge_low[i] - far, high = p->edge_high[i] + far;
+        unsigned meet = which_meet(&q->edges[0], low, high) | which_meet(&q->edges[1], low, high) << 4;
+        for (int j = 0; meet >> j; j++)
+            if (meet >> j & 1 && touch_owns_edge(plan, pair->b, j) &&
+                is_near_edge(p, touch_edge[i], q, touch_edge[j], far, nearest))
                 found |= UINT64_C(1) << (8 * i + j);
-        }
     }
     return found;
 }
@@ -391,21 +434,20 @@ static void measure_pair(const Find *find, TouchPair *pair) {
     const TouchPlan *plan = find->plan;
     const float(*x)[4] = (const float(*)[4])plan->place;
     Quad origin = quad_load(x[find->shell->cells[pair->a][0]]);
-    NodeBoxes p, q;
     // as far as the two may meet before the next search
     Quad nearing = plan->boxes[pair->a].way - plan->boxes[pair->b].way;
-    float far = plan->reach + sqrtf(quad_dot(nearing, nearing)), wide = 0.5f * far, nearest = far;
-    node_boxes(find->shell, pair->a, x, origin, wide, &p);
-    node_boxes(find->shell, pair->b, x, origin, wide, &q);
-    if (pair->ring && touch_is_unfolded(touch_normals(p.node), touch_normals(q.node), false)) {
+    float far = plan->reach + sqrtf(quad_dot(nearing, nearing)), nearest = far;
+    Nodes p, q;
+    place_nodes(find->shell, pair->a, x, origin, &p);
+    place_nodes(find->shell, pair->b, x, origin, &q);
+    pair->distance = far;
+    if (!pair->ring && (normal_parts(&p, &q, far) || normal_parts(&q, &p, far))) return;
+    if (pair->ring && touch_is_unfolded(touch_normals(p.at), touch_normals(q.at), false)) {
         pair->distance = 0;
         return;
     }
-    // nodes are points: their boxes have all of the width
-    for (int t = 0; t < 4; t++) {
-        p.triangle_low[t] -= wide, p.triangle_high[t] += wide;
-        q.triangle_low[t] -= wide, q.triangle_high[t] += wide;
-    }
+    place_boxes(&p);
+    place_boxes(&q);
     pair->nodes = near_nodes(plan, pair->a, &p, &q, far, &nearest);
     pair->nodes |= near_nodes(plan, pair->b, &q, &p, far, &nearest) << 20;
     pair->edges = near_edges(plan, pair, &p, &q, far, &nearest);

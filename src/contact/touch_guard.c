@@ -29,7 +29,7 @@ enum { ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
 
 /// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
 /// next step begins with a search.
-enum { STRAY_MOST = 512, STRAY_PART = 64 };
+enum { STRAY_MOST = 512, STRAY_PART = 32 };
 
 typedef struct Guard {
     TouchPlan *plan;

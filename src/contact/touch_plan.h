@@ -6,7 +6,7 @@
 #include "contact/touch.h"
 
 /// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
-enum { TOUCH_STEPS = 6 };
+enum { TOUCH_STEPS = 10 };
 /// Buckets or pairs that are worked on together.
 enum { TOUCH_BLOCK = 256 };
 /// Room for a cell, of each list.
@@ -15,6 +15,7 @@ enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_PUSHES = 16 };
 /// A cell's box at the search and the way it was on, over plan->steps. The fourth numbers are 0.
 typedef struct TouchBox {
     Quad low, high, way;
+    Quad swept_low, swept_high; ///< the region that the widened box passes over
 } TouchBox;
 
 /// An entry of the grid: a cell in one of the cubes that its swept box overlaps.
