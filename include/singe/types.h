@@ -219,9 +219,17 @@ typedef enum SingeColliderKind {
     SINGE_COLLIDER_SPHERE = 1,
     SINGE_COLLIDER_BOX = 2,     ///< half_size along the local axes
     SINGE_COLLIDER_CAPSULE = 3, ///< along local z, `height` between the centres of its caps
+    SINGE_COLLIDER_HEIGHTFIELD = 4, ///< solid below heights over a rectangle about the origin, without end down local z
+    SINGE_COLLIDER_MESH = 5,    ///< what a closed triangle mesh encloses
 } SingeColliderKind;
 
-/// A rigid primitive that sheets rest on and slide over.
+/// Which layers of a sheet that touches a collider exchange heat with it.
+typedef enum SingeContactSides {
+    SINGE_SIDES_TOUCHING = 0, ///< the one on the side that faces the collider; the other gets it through the sheet
+    SINGE_SIDES_BOTH = 1,     ///< the one behind as well, as if the sheet were so thin that heat is through at once
+} SingeContactSides;
+
+/// A rigid solid that sheets rest on and slide over.
 typedef struct SingeColliderDef {
     size_t struct_size;
     SingeColliderKind kind;
@@ -235,6 +243,16 @@ typedef struct SingeColliderDef {
     float contact_distance;   ///< m, how near counts as contact for heat, >= 0
     uint32_t path_count;      ///< at least 1
     const SingePoseKey *path;
+    SingeContactSides sides;  ///< of a sheet in contact that exchange heat
+    /// mesh: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
+    /// others; vertices at the very same place are one. One that is inside out is turned
+    uint32_t vertex_count;
+    const float *vertices;     ///< [3 * vertex_count] m
+    uint32_t triangle_count;   ///< at least 4
+    const uint32_t *triangles; ///< [3 * triangle_count], vertex indices
+    uint32_t columns, rows;    ///< heightfield: nodes along local x and y, 2 to 32768
+    float size[2];             ///< m, heightfield: of its rectangle along local x and y, 1e-6 to 1e4
+    const float *heights;      ///< [rows * columns] m, from the least y, each row from the least x
 } SingeColliderDef;
 
 SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);

@@ -8,13 +8,13 @@
 
 #include <stdatomic.h>
 
-/// A collider at the two ends of a substep. What is farther from it than it reaches is known without its shape: of
-/// a plane by (x - after.position) . normal, of the rest by |x - after.position|.
+/// A collider at the two ends of a substep, and a box about it that turns with it: what is outside of it is not touched,
+/// whatever the shape. A plane's box is without end but along its normal.
 typedef struct MovingCollider {
-    const SingeColliderDef *def;
+    const Collider *collider;
     Pose before, after;
-    Vec normal;
-    float reach; ///< m
+    Vec axis[3];           ///< of the box, which has `after.position` for its origin
+    float low[3], high[3]; ///< m
 } MovingCollider;
 
 /// The loops that are written once for every instruction set.

@@ -20,8 +20,7 @@ static void blocked_planes(void *context, int begin, int end) {
                     Vec x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
                              plan->origin[1] + plan->cell * ((float)j + 0.5f),
                              plan->origin[2] + plan->cell * ((float)k + 0.5f)}, normal;
-                    float distance = collider_distance(&collider->def, pose_unapply(&pose, x), &normal);
-                    plan->solid[c + (size_t)i] |= distance < 0;
+                    plan->solid[c + (size_t)i] |= collider_distance(collider, pose_unapply(&pose, x), 0, &normal) < 0;
                 }
             }
         }

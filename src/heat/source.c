@@ -97,11 +97,14 @@ void source_free(Memory *memory, const Shell *shell, Source *source) {
 
 // --- what each kind gives -------------------------------------------------------------------------------
 
+/// Cosine between a side's way out and the collider's below which the side faces it.
+static const float SOURCE_LEVEL = 0.1f;
+
 /// A conductance towards `temperature`, weighted by a shape's distance.
 typedef struct SourceJob {
     HeatPass *pass;
     const Source *source;
-    const SingeColliderDef *collider;
+    const Collider *collider;
     Pose pose;
     float strength;
 } SourceJob;
@@ -182,20 +185,48 @@ static SourceFn *const SOURCE_KINDS[] = {
     [SINGE_SOURCE_CALLBACK] = source_callback,
 };
 
+/// The sheet's normal at a particle, of any length.
+static Vec source_normal(const HeatPass *pass, uint32_t i) {
+    const Shell *shell = pass->shell;
+    const float(*x)[4] = (const float(*)[4])pass->state->dynamics.position;
+    Vec sum = {0, 0, 0};
+    bool corner = shell_is_corner(shell, i);
+    uint32_t first = corner ? shell->fan_first[i] : 0, last = corner ? shell->fan_first[i + 1] : 1;
+    for (uint32_t k = first; k < last; k++) {
+        uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
+        if (!(pass->state->ablate.cell_flags[cell] & SINGE_ALIVE)) continue;
+        const uint32_t *at = shell->cells[cell];
+        Vec a = vec_sub(vec_load(x[at[2]]), vec_load(x[at[0]])), b = vec_sub(vec_load(x[at[3]]), vec_load(x[at[1]]));
+        sum = vec_add(sum, vec_cross(a, b));
+    }
+    return sum;
+}
+
+/// A particle touches within contact_distance, if its side of the sheet faces the collider. The one behind it is a
+/// thickness farther; it counts where both sides do. A sheet that stands on its edge touches with both.
 static void source_contact_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     HeatPlan *plan = job->pass->plan;
-    const SingeColliderDef *def = job->collider;
-    for (int i = begin; i < end; i++) {
+    const SingeColliderDef *def = &job->collider->def;
+    const Field thickness = job->pass->shell->matter.thickness;
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if (!plan->alive[i]) continue;
         Vec normal, local = pose_unapply(&job->pose, vec_load(job->pass->state->dynamics.position[i]));
-        if (collider_distance(def, local, &normal) <= def->contact_distance)
-            source_add(plan, (uint32_t)i, def->conductance, def->temperature);
+        float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
+        float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
+        if (!(distance <= behind)) continue;
+        if (def->sides != SINGE_SIDES_BOTH || distance > def->contact_distance) {
+            float outward = shell_is_corner(job->pass->shell, i) ? -1 : 1;
+            Vec sheet = source_normal(job->pass, i), away = quat_rotate(job->pose.rotation, normal);
+            bool faces = outward * vec_dot(sheet, away) <= SOURCE_LEVEL * vec_length(sheet);
+            if (def->sides != SINGE_SIDES_BOTH ? !faces : faces) continue;
+        }
+        source_add(plan, i, def->conductance, def->temperature);
     }
 }
 
 static void source_contact(HeatPass *pass, const Collider *collider) {
-    SourceJob job = {.pass = pass, .collider = &collider->def, .pose = path_pose(&collider->path, pass->state->time)};
+    SourceJob job = {.pass = pass, .collider = collider, .pose = path_pose(&collider->path, pass->state->time)};
     pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_contact_task, &job);
 }
 

@@ -81,6 +81,7 @@ static SingeColliderDef standard_collider(void) {
         .offset = 0.0005f,
         .temperature = 293.15f,
         .contact_distance = 0.002f,
+        .size = {0.2f, 0.2f},
     };
 }
 

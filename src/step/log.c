@@ -95,3 +95,7 @@ void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
                 sim->state.time);
     }
 }
+
+void sim_log_turned(const SingeSim *sim, uint32_t collider) {
+    sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been turned", collider);
+}

@@ -84,15 +84,13 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     TRY(object_check(sim, "collider"));
     SingeColliderDef def;
     OBJECT_DEF(sim, "collider", def, given, singe_default_collider);
-    TRY(collider_check(&def, &sim->error));
     uint32_t index;
     Collider *collider =
         sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
     if (!collider || !dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "collider", -1, "out of memory");
-    TRY(path_set(&collider->path, &sim->memory, def.path_count, def.path, "collider", &sim->error));
-    collider->def = def;
-    collider->def.path = NULL;
+    TRY(collider_create(&sim->memory, &def, collider, &sim->error));
+    if (collider->mesh.turned) sim_log_turned(sim, index);
     collider->generation = sim->next_generation++;
     *id = (SingeColliderId){index, collider->generation};
     return SINGE_OK;
@@ -101,8 +99,7 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
 SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id) {
     Collider *collider = OBJECT_FIND(sim->colliders, id);
     if (!collider) return object_stale(sim, "collider", id.index);
-    path_free(&collider->path, &sim->memory);
-    memset(collider, 0, sizeof *collider);
+    collider_free(&sim->memory, collider);
     return SINGE_OK;
 }
 

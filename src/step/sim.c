@@ -138,7 +138,7 @@ void singe_sim_destroy(SingeSim *sim) {
     Memory *memory = &sim->memory;
     pool_destroy(memory, sim->pool);
     for (uint32_t i = 0; i < sim->sources.count; i++) sim_free_source(sim, &sim->sources.items[i]);
-    for (uint32_t i = 0; i < sim->colliders.count; i++) path_free(&sim->colliders.items[i].path, memory);
+    for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
     for (uint32_t i = 0; i < sim->pins.count; i++) sim_free_pin(sim, &sim->pins.items[i]);
     FREE(memory, sim->sources.items, sim->sources.capacity);
     FREE(memory, sim->colliders.items, sim->colliders.capacity);

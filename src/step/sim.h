@@ -63,6 +63,8 @@ SingeResult sim_build(SingeSim *sim);
 void sim_log_commit(const SingeSim *sim);
 /// Tells it once that conduction is less exact than was asked for.
 void sim_log_unconverged(SingeSim *sim);
+/// Tells it that a collider's mesh was inside out.
+void sim_log_turned(const SingeSim *sim, uint32_t collider);
 
 /// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches);

@@ -109,11 +109,43 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
             snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count, sizeof *source->picture));
 }
 
+/// A mesh as its solid has it; the rest follows from it.
+static bool snapshot_mesh(Stream *stream, Memory *memory, MeshSolid *mesh) {
+    MeshSolid saved = *mesh;
+    STREAM(stream, saved.vertex_count);
+    STREAM(stream, saved.triangle_count);
+    bool ok = snapshot_array(stream, memory, &saved.vertices, saved.vertex_count, sizeof *saved.vertices) &&
+              snapshot_array(stream, memory, &saved.triangles, saved.triangle_count, sizeof *saved.triangles);
+    if (stream->mode != STREAM_READ) return ok;
+    SingeResult result = ok ? mesh_solid_create(memory, saved.vertex_count, saved.vertices[0], saved.triangle_count,
+                                                saved.triangles[0], mesh, NULL)
+                            : SINGE_OK;
+    if (saved.vertices) FREE(memory, saved.vertices, saved.vertex_count);
+    if (saved.triangles) FREE(memory, saved.triangles, saved.triangle_count);
+    stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
+    return ok && result == SINGE_OK;
+}
+
+static bool snapshot_heights(Stream *stream, Memory *memory, const SingeColliderDef *def, HeightSolid *heights) {
+    float *saved = heights->heights;
+    size_t count = (size_t)def->columns * def->rows;
+    bool ok = snapshot_array(stream, memory, &saved, count, sizeof *saved);
+    if (stream->mode != STREAM_READ || !ok) return ok;
+    SingeResult result = height_solid_create(memory, def->columns, def->rows, saved, def->size, heights, NULL);
+    FREE(memory, saved, count);
+    stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
+    return result == SINGE_OK;
+}
+
 static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider) {
     STREAM(stream, collider->generation);
     if (collider->generation == 0) return !stream->failed;
     snapshot_collider_def(stream, &collider->def);
-    return snapshot_path(stream, &sim->memory, &collider->path);
+    if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
+    if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
+    if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)
+        return snapshot_heights(stream, &sim->memory, &collider->def, &collider->heights);
+    return true;
 }
 
 static bool snapshot_pin(Stream *stream, SingeSim *sim, Pin *pin) {

@@ -124,5 +124,11 @@ void snapshot_collider_def(Stream *stream, SingeColliderDef *def) {
     STREAM(stream, def->conductance);
     STREAM(stream, def->contact_distance);
     STREAM(stream, def->path_count);
-    stream->failed |= (unsigned)def->kind > SINGE_COLLIDER_CAPSULE;
+    STREAM(stream, def->sides);
+    STREAM(stream, def->vertex_count);
+    STREAM(stream, def->triangle_count);
+    STREAM(stream, def->columns);
+    STREAM(stream, def->rows);
+    STREAM(stream, def->size);
+    stream->failed |= (unsigned)def->kind > SINGE_COLLIDER_MESH || (unsigned)def->sides > SINGE_SIDES_BOTH;
 }

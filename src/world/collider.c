@@ -1,11 +1,11 @@
-// Signed distances of the primitives in their own frames.
+// Signed distances in the colliders' own frames: of the primitives here, of the others from their solids.
 #include "world/collider.h"
 
 static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
 
 SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     const char *what = NULL;
-    if (def->kind < SINGE_COLLIDER_PLANE || def->kind > SINGE_COLLIDER_CAPSULE) what = "kind is unknown";
+    if (def->kind < SINGE_COLLIDER_PLANE || def->kind > SINGE_COLLIDER_MESH) what = "kind is unknown";
     bool round = def->kind == SINGE_COLLIDER_SPHERE || def->kind == SINGE_COLLIDER_CAPSULE;
     if (round && !in_range(def->radius, 1e-6f, 1e6f)) what = "radius must be above 0";
     for (int i = 0; i < 3; i++)
@@ -17,6 +17,7 @@ SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     if (!in_range(def->conductance, 0, 1e9f)) what = "conductance must be 0 or more";
     if (!in_range(def->contact_distance, 0, 1e3f)) what = "contact_distance must be 0 or more";
     if (def->conductance > 0 && !in_range(def->temperature, 1e-3f, 1e5f)) what = "temperature must be above 0 K";
+    if (def->sides < SINGE_SIDES_TOUCHING || def->sides > SINGE_SIDES_BOTH) what = "sides is unknown";
     if (def->path_count == 0) what = "path needs at least one key";
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what) : SINGE_OK;
 }
@@ -45,7 +46,30 @@ static float collider_box(const float half[3], Vec p, Vec *normal) {
     return collider_round(vec_load(n), 0, normal);
 }
 
-float collider_distance(const SingeColliderDef *def, Vec p, Vec *normal) {
+SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error) {
+    TRY(collider_check(def, error));
+    collider->def = *def;
+    collider->def.path = NULL;
+    collider->def.vertices = NULL, collider->def.triangles = NULL, collider->def.heights = NULL;
+    SingeResult result = path_set(&collider->path, memory, def->path_count, def->path, "collider", error);
+    if (!result && def->kind == SINGE_COLLIDER_MESH)
+        result = mesh_solid_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
+                                   &collider->mesh, error);
+    if (!result && def->kind == SINGE_COLLIDER_HEIGHTFIELD)
+        result = height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights, error);
+    if (result) collider_free(memory, collider);
+    return result;
+}
+
+void collider_free(Memory *memory, Collider *collider) {
+    path_free(&collider->path, memory);
+    mesh_solid_free(memory, &collider->mesh);
+    height_solid_free(memory, &collider->heights);
+    *collider = (Collider){0};
+}
+
+float collider_distance(const Collider *collider, Vec p, float limit, Vec *normal) {
+    const SingeColliderDef *def = &collider->def;
     switch (def->kind) {
     case SINGE_COLLIDER_PLANE: *normal = vec(0, 0, 1); return p.z;
     case SINGE_COLLIDER_SPHERE: return collider_round(p, def->radius, normal);
@@ -54,7 +78,28 @@ float collider_distance(const SingeColliderDef *def, Vec p, Vec *normal) {
         float half = def->height / 2, along = fminf(fmaxf(p.z, -half), half);
         return collider_round(vec(p.x, p.y, p.z - along), def->radius, normal);
     }
+    case SINGE_COLLIDER_HEIGHTFIELD: return height_solid_distance(&collider->heights, p, limit, normal);
+    case SINGE_COLLIDER_MESH: return mesh_solid_distance(&collider->mesh, p, limit, normal);
     }
     *normal = vec(0, 0, 1);
     return INFINITY;
+}
+
+void collider_bounds(const Collider *collider, Vec *low, Vec *high) {
+    const SingeColliderDef *def = &collider->def;
+    Vec half = vec(INFINITY, INFINITY, INFINITY);
+    switch (def->kind) {
+    case SINGE_COLLIDER_PLANE: *low = vec_scale(half, -1), *high = vec(INFINITY, INFINITY, 0); return;
+    case SINGE_COLLIDER_SPHERE: half = vec(def->radius, def->radius, def->radius); break;
+    case SINGE_COLLIDER_BOX: half = vec_load(def->half_size); break;
+    case SINGE_COLLIDER_CAPSULE: half = vec(def->radius, def->radius, def->radius + def->height / 2); break;
+    case SINGE_COLLIDER_HEIGHTFIELD: {
+        const HeightSolid *heights = &collider->heights;
+        *low = vec(-heights->half[0], -heights->half[1], -INFINITY);
+        *high = vec(heights->half[0], heights->half[1], heights->high);
+        return;
+    }
+    case SINGE_COLLIDER_MESH: *low = collider->mesh.low, *high = collider->mesh.high; return;
+    }
+    *low = vec_scale(half, -1), *high = half;
 }

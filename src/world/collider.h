@@ -1,13 +1,17 @@
-// Rigid primitives: their signed distance, for contact in the dynamics and for contact heat.
+// Rigid solids: their signed distance, for contact in the dynamics, for contact heat and for the gas.
 #ifndef WORLD_COLLIDER_H
 #define WORLD_COLLIDER_H
 
+#include "world/height_solid.h"
+#include "world/mesh_solid.h"
 #include "world/path.h"
 
 typedef struct Collider {
     uint32_t generation; ///< 0: the slot is free
-    SingeColliderDef def; ///< its `path` pointer is not used
+    SingeColliderDef def; ///< its pointers are not used
     Path path;
+    MeshSolid mesh;      ///< of a mesh
+    HeightSolid heights; ///< of a heightfield
 } Collider;
 
 typedef struct ColliderList {
@@ -15,10 +19,19 @@ typedef struct ColliderList {
     Collider *items;
 } ColliderList;
 
+/// Checks the numbers of a Def.
 SingeResult collider_check(const SingeColliderDef *def, SingeError *error);
 
-/// Signed distance of a point in the collider's own frame, negative inside, and the outward unit
-/// normal there (own frame).
-float collider_distance(const SingeColliderDef *def, Vec local, Vec *normal);
+/// Checks a Def and copies what it points to, into a zeroed Collider whose generation stays 0. On failure it is empty.
+SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error);
+void collider_free(Memory *memory, Collider *collider);
+
+/// Signed distance of a point in the collider's own frame, negative inside, and the outward unit normal there (own
+/// frame). Exact inside and where it is less than `limit`; farther out it is some number that is not less than `limit`,
+/// and no more than the distance, and the normal is any. With a limit of 0 only its sign counts, inside too.
+float collider_distance(const Collider *collider, Vec local, float limit, Vec *normal);
+
+/// The box that holds the collider, in its own frame; infinite where the collider is.
+void collider_bounds(const Collider *collider, Vec *low, Vec *high);
 
 #endif

@@ -20,9 +20,14 @@ static SingeColliderDef make(SingeColliderKind kind) {
     return def;
 }
 
+static float distance_at(const SingeColliderDef *def, Vec p, Vec *normal) {
+    Collider collider = {.def = *def};
+    return collider_distance(&collider, p, INFINITY, normal);
+}
+
 static double distance(const SingeColliderDef *def, Vec p) {
     Vec normal;
-    return (double)collider_distance(def, p, &normal);
+    return (double)distance_at(def, p, &normal);
 }
 
 static void normals_are_gradients(void **state) {
@@ -33,7 +38,7 @@ static void normals_are_gradients(void **state) {
         int checked = 0;
         for (int i = 0; i < 5000; i++) {
             Vec p = vec(any(3), any(3), any(3)), normal;
-            double d = (double)collider_distance(&def, p, &normal);
+            double d = (double)distance_at(&def, p, &normal);
             assert_true(isfinite(d) && fabsf(vec_length(normal) - 1) < 1e-5f);
             double gradient[3] = {
                 (distance(&def, vec(p.x + e, p.y, p.z)) - distance(&def, vec(p.x - e, p.y, p.z))) / (2 * (double)e),
@@ -59,7 +64,7 @@ static void normals_are_gradients(void **state) {
 static void expect(SingeColliderKind kind, Vec p, float d, Vec n) {
     SingeColliderDef def = make(kind);
     Vec normal;
-    float found = collider_distance(&def, p, &normal);
+    float found = distance_at(&def, p, &normal);
     if (fabsf(found - d) > 1e-6f || vec_length(vec_sub(normal, n)) > 1e-6f)
         fail_msg("kind %d: %g (%g, %g, %g)", (int)kind, (double)found, (double)normal.x, (double)normal.y,
                  (double)normal.z);
@@ -87,10 +92,10 @@ static void surfaces_are_round_inside(void **state) {
     (void)state;
     SingeColliderDef def = make(SINGE_COLLIDER_BOX);
     Vec normal;
-    assert_true(collider_distance(&def, vec(0.5f, 1, 1.5f), &normal) == 0); // a corner
+    assert_true(distance_at(&def, vec(0.5f, 1, 1.5f), &normal) == 0); // a corner
     assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
     def = make(SINGE_COLLIDER_CAPSULE);
-    assert_true(collider_distance(&def, vec(0, 0, 0.3f), &normal) == -0.7f); // on the axis
+    assert_true(distance_at(&def, vec(0, 0, 0.3f), &normal) == -0.7f); // on the axis
     assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
 }
 

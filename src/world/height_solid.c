@@ -1,0 +1,190 @@
+// Signed distance from what lies below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y). Each
+// cell of the grid is two triangles, split from its node of least x and y to the opposite one. The rectangle's edges are
+// walls that go down without end.
+//
+// The surface straight above or below is |z - h| away, so only cells that near can hold the foot; blocks of cells whose
+// heights do not come near enough are passed over.
+#include "world/height_solid.h"
+#include "world/triangle.h"
+
+enum { HEIGHT_BLOCK = 8 };
+
+static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+static void height_ranges(HeightSolid *solid) {
+    for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
+        for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
+            float *range = solid->ranges[bj * solid->blocks[0] + bi];
+            range[0] = INFINITY, range[1] = -INFINITY;
+            for (uint32_t j = bj * HEIGHT_BLOCK; j <= least((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
+                for (uint32_t i = bi * HEIGHT_BLOCK; i <= least((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
+                    float h = solid->heights[(size_t)j * solid->columns + i];
+                    range[0] = fminf(range[0], h), range[1] = fmaxf(range[1], h);
+                }
+        }
+}
+
+SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows, const float *heights,
+                                const float size[2], HeightSolid *solid, SingeError *error) {
+    *solid = (HeightSolid){.columns = columns, .rows = rows, .low = INFINITY, .high = -INFINITY};
+    const char *what = NULL;
+    if (columns < 2 || rows < 2 || columns > 32768 || rows > 32768) what = "columns and rows must be between 2 and 32768";
+    for (int d = 0; d < 2; d++)
+        if (!(size[d] >= 1e-6f && size[d] <= 1e4f)) what = "size must be between 1e-6 and 10000 m";
+    if (!heights) what = "heights are missing";
+    if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what);
+    size_t count = (size_t)columns * rows;
+    for (size_t k = 0; k < count; k++)
+        if (!(fabsf(heights[k]) <= 1e4f))
+            return error_set(error, SINGE_ERROR_ARGUMENT, "collider", (int64_t)k,
+                             "height %zu (column %zu, row %zu) is not finite or beyond 10 km", k, k % columns, k / columns);
+    const uint32_t n[2] = {columns, rows};
+    for (int d = 0; d < 2; d++) {
+        solid->half[d] = size[d] / 2;
+        solid->step[d] = size[d] / (float)(n[d] - 1);
+        solid->blocks[d] = (n[d] - 1 + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
+    }
+    if (!NEW(memory, solid->heights, count) || !NEW(memory, solid->ranges, (size_t)solid->blocks[0] * solid->blocks[1])) {
+        height_solid_free(memory, solid);
+        return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the heights");
+    }
+    for (size_t k = 0; k < count; k++) {
+        solid->heights[k] = heights[k];
+        solid->low = fminf(solid->low, heights[k]), solid->high = fmaxf(solid->high, heights[k]);
+    }
+    height_ranges(solid);
+    return SINGE_OK;
+}
+
+void height_solid_free(Memory *memory, HeightSolid *solid) {
+    FREE(memory, solid->heights, (size_t)solid->columns * solid->rows);
+    FREE(memory, solid->ranges, (size_t)solid->blocks[0] * solid->blocks[1]);
+    *solid = (HeightSolid){0};
+}
+
+static Vec height_node(const HeightSolid *solid, uint32_t i, uint32_t j) {
+    return vec((float)i * solid->step[0] - solid->half[0], (float)j * solid->step[1] - solid->half[1],
+               solid->heights[(size_t)j * solid->columns + i]);
+}
+
+/// The triangle `upper` of a cell; all turn up.
+static void height_triangle(const HeightSolid *solid, uint32_t i, uint32_t j, bool upper, Vec corner[3]) {
+    corner[0] = height_node(solid, i, j);
+    corner[1] = upper ? height_node(solid, i + 1, j + 1) : height_node(solid, i + 1, j);
+    corner[2] = upper ? height_node(solid, i, j + 1) : height_node(solid, i + 1, j + 1);
+}
+
+/// The cell along an axis that holds x, the first or last beyond the ends; *part is how far x is through it, 0 to 1.
+static uint32_t height_cell(const HeightSolid *solid, int axis, float x, float *part) {
+    uint32_t last = (axis ? solid->rows : solid->columns) - 2;
+    float at = (x + solid->half[axis]) / solid->step[axis];
+    uint32_t cell = at > 0 ? at < (float)last ? (uint32_t)at : last : 0;
+    *part = fminf(fmaxf(at - (float)cell, 0), 1);
+    return cell;
+}
+
+/// Height of the surface at a place, clamped to the rectangle, and its normal there.
+static float height_at(const HeightSolid *solid, float x, float y, Vec *normal) {
+    float s, t;
+    uint32_t i = height_cell(solid, 0, x, &s), j = height_cell(solid, 1, y, &t);
+    Vec corner[3];
+    height_triangle(solid, i, j, t > s, corner);
+    *normal = vec_unit(vec_cross(vec_sub(corner[1], corner[0]), vec_sub(corner[2], corner[0])));
+    // the corners are a, b = a + (1, 0) or (1, 1) and c
+    float b = t > s ? s : s - t, c = t > s ? t - s : t;
+    return corner[0].z + b * (corner[1].z - corner[0].z) + c * (corner[2].z - corner[0].z);
+}
+
+typedef struct HeightFoot {
+    double square, away[3];
+} HeightFoot;
+
+static void height_offer(HeightFoot *best, const TriangleFoot *foot) {
+    if (!(foot->square < best->square)) return;
+    *best = (HeightFoot){foot->square, {foot->away[0], foot->away[1], foot->away[2]}};
+}
+
+/// Square of the distance from p to the box of cells [i, i_end) by [j, j_end) between two heights.
+static double height_box(const HeightSolid *solid, Vec p, const uint32_t first[2], const uint32_t end[2],
+                         const float range[2]) {
+    const float x[2] = {p.x, p.y};
+    double sum = 0;
+    for (int d = 0; d < 2; d++) {
+        double low = (double)((float)first[d] * solid->step[d] - solid->half[d]) - (double)x[d];
+        double high = (double)x[d] - (double)((float)end[d] * solid->step[d] - solid->half[d]);
+        double out = fmax(fmax(low, high), 0);
+        sum += out * out;
+    }
+    double out = fmax(fmax((double)range[0] - (double)p.z, (double)p.z - (double)range[1]), 0);
+    return sum + out * out;
+}
+
+static void height_block(const HeightSolid *solid, Vec p, uint32_t bi, uint32_t bj, const uint32_t from[2],
+                         const uint32_t to[2], HeightFoot *best) {
+    uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
+    uint32_t end[2] = {least(first[0] + HEIGHT_BLOCK, solid->columns - 1), least(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
+    if (height_box(solid, p, first, end, solid->ranges[bj * solid->blocks[0] + bi]) >= best->square) return;
+    for (int d = 0; d < 2; d++) {
+        if (first[d] < from[d]) first[d] = from[d];
+        if (end[d] > to[d] + 1) end[d] = to[d] + 1;
+    }
+    for (uint32_t j = first[1]; j < end[1]; j++)
+        for (uint32_t i = first[0]; i < end[0]; i++)
+            for (int upper = 0; upper < 2; upper++) {
+                Vec corner[3];
+                height_triangle(solid, i, j, upper, corner);
+                TriangleFoot foot = triangle_foot(p, corner[0], corner[1], corner[2]);
+                height_offer(best, &foot);
+            }
+}
+
+/// The surface's foot among those nearer than best->square.
+static void height_surface(const HeightSolid *solid, Vec p, HeightFoot *best) {
+    float reach = (float)sqrt(best->square) * 1.0001f, part;
+    uint32_t from[2] = {height_cell(solid, 0, p.x - reach, &part), height_cell(solid, 1, p.y - reach, &part)};
+    uint32_t to[2] = {height_cell(solid, 0, p.x + reach, &part), height_cell(solid, 1, p.y + reach, &part)};
+    for (uint32_t bj = from[1] / HEIGHT_BLOCK; bj <= to[1] / HEIGHT_BLOCK; bj++)
+        for (uint32_t bi = from[0] / HEIGHT_BLOCK; bi <= to[0] / HEIGHT_BLOCK; bi++)
+            height_block(solid, p, bi, bj, from, to, best);
+}
+
+/// The walls' foot.
+static void height_walls(const HeightSolid *solid, Vec p, HeightFoot *best) {
+    for (int wall = 0; wall < 4; wall++) {
+        float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
+        int axis = wall >> 1;
+        at[axis] = side * solid->half[axis];
+        at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
+        Vec normal;
+        TriangleFoot foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
+        foot.square = triangle_dot(foot.away, foot.away);
+        if (foot.square < best->square && p.z <= height_at(solid, at[0], at[1], &normal)) height_offer(best, &foot);
+    }
+}
+
+float height_solid_distance(const HeightSolid *solid, Vec p, float limit, Vec *normal) {
+    float dx = fabsf(p.x) - solid->half[0], dy = fabsf(p.y) - solid->half[1];
+    bool over = dx <= 0 && dy <= 0;
+    Vec out = vec(fmaxf(dx, 0), fmaxf(dy, 0), fmaxf(p.z - solid->high, 0));
+    float bound = vec_length(out);
+    *normal = vec(0, 0, 1);
+    if (bound > 0 && bound >= limit) return bound;
+    if (!isfinite(p.x + p.y + p.z)) return INFINITY;
+    float above = p.z - height_at(solid, p.x, p.y, normal);
+    bool inside = over && above < 0;
+    if (limit == 0) return inside ? -1 : 1;
+    // straight up or down, or at the foot over the nearest place of the rectangle, there is some surface
+    double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + vec_length(p)); // heights are rounded
+    double most = (double)vec_length(vec(out.x, out.y, above)) + slack;
+    if (!inside) most = fmin(most, (double)limit); // what is not found is not nearer
+    HeightFoot best = {.square = most * most};
+    double unfound = best.square;
+    height_walls(solid, p, &best);
+    height_surface(solid, p, &best);
+    if (!(best.square < unfound)) return inside ? above : (float)most;
+    double distance = sqrt(best.square), sign = inside ? -1 : 1;
+    if (distance > 1e-7 * (1 + (double)vec_length(p)))
+        *normal = vec((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
+                      (float)(sign * best.away[2] / distance));
+    return (float)(sign * distance);
+}

@@ -1,0 +1,27 @@
+// A solid below a grid of heights.
+#ifndef WORLD_HEIGHT_SOLID_H
+#define WORLD_HEIGHT_SOLID_H
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/vec.h"
+
+typedef struct HeightSolid {
+    uint32_t columns, rows;
+    float *heights;  ///< [rows * columns] m, a row along x after another along y
+    // what follows from them
+    float half[2];   ///< m, of the rectangle about the origin
+    float step[2];   ///< m, from node to node
+    float low, high; ///< of the heights
+    uint32_t blocks[2];
+    float (*ranges)[2]; ///< [blocks] least and most height of HEIGHT_BLOCK by HEIGHT_BLOCK cells
+} HeightSolid;
+
+SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows, const float *heights,
+                                const float size[2], HeightSolid *solid, SingeError *error);
+void height_solid_free(Memory *memory, HeightSolid *solid);
+
+/// See collider_distance.
+float height_solid_distance(const HeightSolid *solid, Vec p, float limit, Vec *normal);
+
+#endif

@@ -1,0 +1,176 @@
+// Signed distance from a closed mesh. Its size is that to the nearest triangle; its sign is that of
+//
+//   (p - foot) . n,   n the pseudonormal of the feature that the foot lies on: the face's normal, the sum of an edge's
+//   two, or the sum of a vertex's weighed by their angles
+//
+// (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right for
+// every mesh that does not pass through itself. A grid of distances at its cells' middles spares the tree of triangles
+// (mesh_tree.c) what is far: the distance changes by no more than the way, so that at p
+//
+//   |d(p)| >= |d(c)| - |p - c|,   and the sign is that at c where this is above 0,
+//
+// and it bounds how far the tree has to look. So the grid's coarseness costs time, never accuracy.
+#include "world/mesh_solid.h"
+#include "world/triangle.h"
+
+#include <string.h>
+
+/// Cells of the grid for a triangle, and how many there are at least and most.
+static const double GRID_SHARE = 32, GRID_LEAST = 4096, GRID_MOST = 1 << 20;
+
+/// Of a square of a distance, for rounding.
+static const float SOLID_SLACK = 1.001f;
+
+static Vec solid_corner(const MeshSolid *solid, uint32_t t, uint32_t corner) {
+    return vec_load(solid->vertices[solid->triangles[t][corner]]);
+}
+
+static Vec solid_face_normal(const MeshSolid *solid, uint32_t t) {
+    Vec a = solid_corner(solid, t, 0);
+    return vec_unit(vec_cross(vec_sub(solid_corner(solid, t, 1), a), vec_sub(solid_corner(solid, t, 2), a)));
+}
+
+static bool solid_normals(Memory *memory, MeshSolid *solid) {
+    if (!NEW(memory, solid->vertex_normals, solid->vertex_count)) return false;
+    for (uint32_t t = 0; t < solid->triangle_count; t++) {
+        Vec normal = solid_face_normal(solid, t);
+        for (uint32_t i = 0; i < 3; i++) {
+            Vec at = solid_corner(solid, t, i), a = vec_sub(solid_corner(solid, t, (i + 1) % 3), at);
+            Vec b = vec_sub(solid_corner(solid, t, (i + 2) % 3), at);
+            float angle = atan2f(vec_length(vec_cross(a, b)), vec_dot(a, b));
+            float *sum = solid->vertex_normals[solid->triangles[t][i]];
+            vec_store(sum, vec_mad(vec_load(sum), normal, angle));
+        }
+    }
+    return true;
+}
+
+static void solid_bounds(MeshSolid *solid) {
+    Vec low = solid_corner(solid, 0, 0), high = low;
+    for (uint32_t t = 0; t < solid->triangle_count; t++)
+        for (uint32_t i = 0; i < 3; i++) {
+            Vec v = solid_corner(solid, t, i);
+            low = vec(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
+            high = vec(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
+        }
+    solid->low = low, solid->high = high;
+}
+
+static Vec solid_middle(const MeshSolid *solid, int i, int j, int k) {
+    return vec(solid->origin.x + ((float)i + 0.5f) * solid->cell, solid->origin.y + ((float)j + 0.5f) * solid->cell,
+               solid->origin.z + ((float)k + 0.5f) * solid->cell);
+}
+
+/// The pseudonormal where a foot lies.
+static Vec solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
+    if (feature >= TRIANGLE_FACE) return solid_face_normal(solid, t);
+    if (feature < TRIANGLE_EDGE)
+        return vec_unit(vec_load(solid->vertex_normals[solid->triangles[t][feature - TRIANGLE_CORNER]]));
+    Vec sum = vec_add(solid_face_normal(solid, t),
+                      solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
+    return vec_unit(sum);
+}
+
+/// The distance that the nearest triangle gives.
+static float solid_signed(const MeshSolid *solid, Vec p, uint32_t t, Vec *normal) {
+    TriangleFoot foot = triangle_foot(p, solid_corner(solid, t, 0), solid_corner(solid, t, 1), solid_corner(solid, t, 2));
+    Vec pseudo = solid_pseudonormal(solid, t, foot.feature);
+    const double n[3] = {(double)pseudo.x, (double)pseudo.y, (double)pseudo.z};
+    double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
+    float sign = along < 0 ? -1 : 1;
+    *normal = pseudo;
+    // beside an edge or a vertex the way out is along what is away from it, unless that is lost in rounding
+    if (foot.feature < TRIANGLE_FACE && distance > 1e-7 * (1 + (double)vec_length(p))) {
+        double scale = (double)sign / distance;
+        *normal = vec((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
+    }
+    return sign * (float)distance;
+}
+
+/// The grid's distances, one after another along x: each bounds how far the next has to look.
+static bool solid_grid(Memory *memory, MeshSolid *solid) {
+    Vec size = vec_sub(solid->high, solid->low);
+    double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_LEAST), GRID_MOST);
+    double longest = (double)fmaxf(size.x, fmaxf(size.y, size.z)), least = longest / 256; // flat ones: not all cells there
+    double side[3] = {fmax((double)size.x, least), fmax((double)size.y, least), fmax((double)size.z, least)};
+    solid->cell = (float)cbrt(side[0] * side[1] * side[2] / wanted);
+    size_t count = 1;
+    for (int d = 0; d < 3; d++) { // and one cell about it
+        solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
+        count *= (size_t)solid->cells[d];
+    }
+    Vec half = vec((float)solid->cells[0], (float)solid->cells[1], (float)solid->cells[2]);
+    solid->origin = vec_mad(vec_scale(vec_add(solid->low, solid->high), 0.5f), half, -0.5f * solid->cell);
+    if (!NEW(memory, solid->coarse, count)) return false;
+    float *coarse = solid->coarse;
+    for (int k = 0; k < solid->cells[2]; k++)
+        for (int j = 0; j < solid->cells[1]; j++) {
+            float square = INFINITY;
+            for (int i = 0; i < solid->cells[0]; i++, coarse++) {
+                Vec p = solid_middle(solid, i, j, k), normal;
+                *coarse = solid_signed(solid, p, mesh_tree_nearest(solid, p, &square), &normal);
+                float next = fabsf(*coarse) + 1.01f * solid->cell;
+                square = next * next;
+            }
+        }
+    return true;
+}
+
+SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
+                              const uint32_t *triangles, MeshSolid *solid, SingeError *error) {
+    *solid = (MeshSolid){0};
+    SingeResult result = mesh_solid_take(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
+    if (!result) {
+        solid_bounds(solid);
+        if (!solid_normals(memory, solid) || !mesh_tree_create(memory, solid) || !solid_grid(memory, solid))
+            result = error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
+    }
+    if (result) mesh_solid_free(memory, solid);
+    return result;
+}
+
+void mesh_solid_free(Memory *memory, MeshSolid *solid) {
+    FREE(memory, solid->vertices, solid->vertex_count);
+    FREE(memory, solid->triangles, solid->room);
+    FREE(memory, solid->neighbours, solid->room);
+    FREE(memory, solid->vertex_normals, solid->vertex_count);
+    FREE(memory, solid->order, solid->triangle_count);
+    FREE(memory, solid->leaves, solid->leaf_count);
+    FREE(memory, solid->nodes, solid->node_count);
+    FREE(memory, solid->coarse, (size_t)solid->cells[0] * (size_t)solid->cells[1] * (size_t)solid->cells[2]);
+    *solid = (MeshSolid){0};
+}
+
+/// What the grid knows: *least of the distance's size, *most of it, and the sign where least is above 0.
+static float solid_look(const MeshSolid *solid, const int at[3], Vec p, float *least, float *most) {
+    size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
+    float coarse = solid->coarse[index], way = 1.0001f * vec_length(vec_sub(p, solid_middle(solid, at[0], at[1], at[2])));
+    *least = fabsf(coarse) - way;
+    *most = fabsf(coarse) + way;
+    return coarse;
+}
+
+float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *normal) {
+    const float q[3] = {(p.x - solid->origin.x) / solid->cell, (p.y - solid->origin.y) / solid->cell,
+                        (p.z - solid->origin.z) / solid->cell};
+    int at[3];
+    bool within = true;
+    *normal = vec(0, 0, 1);
+    for (int d = 0; d < 3; d++) {
+        within = within && q[d] >= 0 && q[d] < (float)solid->cells[d];
+        at[d] = within ? (int)q[d] : 0;
+    }
+    float least = 0, most = INFINITY;
+    if (within) {
+        float coarse = solid_look(solid, at, p, &least, &most);
+        if (least > 0 && least >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? least : -least;
+    } else {
+        Vec low = vec_sub(solid->low, p), high = vec_sub(p, solid->high);
+        Vec out = vec(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
+        least = vec_length(out);
+        if (least >= limit) return least;
+    }
+    float square = SOLID_SLACK * most * most;
+    uint32_t t = mesh_tree_nearest(solid, p, &square);
+    return t == UINT32_MAX ? INFINITY : solid_signed(solid, p, t, normal); // of a place that is not a number
+}

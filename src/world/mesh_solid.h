@@ -1,0 +1,64 @@
+// A solid within a closed triangle mesh.
+#ifndef WORLD_MESH_SOLID_H
+#define WORLD_MESH_SOLID_H
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/quad.h"
+#include "base/vec.h"
+
+/// Triangles at a leaf of the tree, and children of a node.
+enum { SOLID_WIDE = 4 };
+
+/// Four triangles side by side: a corner and the edges from it. What is left over repeats the last.
+typedef struct SolidLeaf {
+    Quad a[3], ab[3], ac[3];
+} SolidLeaf;
+
+/// Four boxes side by side, and what they hold: node `child`, or leaf ~child. One that holds nothing is infinitely far.
+typedef struct SolidNode {
+    Quad low[3], high[3];
+    int32_t child[SOLID_WIDE];
+} SolidNode;
+
+typedef struct MeshSolid {
+    uint32_t vertex_count, triangle_count;
+    uint32_t room;             ///< triangles that were asked for, and one: of the arrays
+    float (*vertices)[3];
+    uint32_t (*triangles)[3];
+    // what follows from them
+    uint32_t (*neighbours)[3]; ///< across edge k, which runs from corner k to the next
+    float (*vertex_normals)[3]; ///< weighed by angles, any length
+    uint32_t *order;           ///< [triangles] as the leaves have them
+    uint32_t leaf_count, node_count;
+    SolidLeaf *leaves;
+    SolidNode *nodes;
+    Vec low, high;             ///< of the vertices
+    float cell;                ///< m, side of the cells of the grid
+    int32_t cells[3];
+    Vec origin;
+    float *coarse;             ///< signed distances at the middles of the cells
+    bool turned;               ///< it was inside out
+} MeshSolid;
+
+/// Checks and copies a mesh, and builds what its distances need. Vertices at the same place become one, triangles
+/// without extent that this leaves go; a mesh that is inside out is turned. Errors name the triangle or vertex.
+SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
+                              const uint32_t *triangles, MeshSolid *solid, SingeError *error);
+void mesh_solid_free(Memory *memory, MeshSolid *solid);
+
+/// See collider_distance.
+float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *normal);
+
+// mesh_check.c
+/// Fills in vertices, triangles and neighbours.
+SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
+                            const uint32_t *triangles, MeshSolid *solid, SingeError *error);
+
+// mesh_tree.c
+/// Fills in order, leaves and nodes; false when out of memory.
+bool mesh_tree_create(Memory *memory, MeshSolid *solid);
+/// The triangle nearest to p among those nearer than sqrt(*square), with its distance's square; UINT32_MAX: none.
+uint32_t mesh_tree_nearest(const MeshSolid *solid, Vec p, float *square);
+
+#endif

@@ -1,0 +1,229 @@
+// The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes and a leaf's triangles are looked
+// at in one go (Wald et al., Getting rid of packets, 2008, for rays). Halves of equal size along the longest axis of the
+// middles; a leaf is full but for the last, so that counts tell how many nodes there are.
+#include "world/mesh_solid.h"
+
+#include <string.h>
+
+/// Of three children left at every level that a path leads through, and levels of a tree of 2^31 triangles.
+enum { TREE_STACK = 3 * 17 + 4 };
+
+typedef struct TreeBuild {
+    MeshSolid *solid;
+    float (*middle)[3];
+    uint32_t leaves, nodes;
+} TreeBuild;
+
+/// Triangles of the first half: leaves but the last are full.
+static uint32_t tree_half(uint32_t count) {
+    return count <= SOLID_WIDE ? count : (count / 2 + SOLID_WIDE - 1) / SOLID_WIDE * SOLID_WIDE;
+}
+
+static void tree_count(uint32_t count, uint32_t *nodes) {
+    uint32_t half = tree_half(count), parts[4] = {tree_half(half), 0, tree_half(count - half), 0};
+    parts[1] = half - parts[0], parts[3] = count - half - parts[2];
+    ++*nodes;
+    for (int i = 0; i < 4; i++)
+        if (parts[i] > SOLID_WIDE) tree_count(parts[i], nodes);
+}
+
+static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Vec *low, Vec *high) {
+    *low = vec(INFINITY, INFINITY, INFINITY), *high = vec(-INFINITY, -INFINITY, -INFINITY);
+    for (uint32_t k = first; k < first + count; k++)
+        for (int i = 0; i < 3; i++) {
+            const float *v = build->solid->vertices[build->solid->triangles[build->solid->order[k]][i]];
+            *low = vec(fminf(low->x, v[0]), fminf(low->y, v[1]), fminf(low->z, v[2]));
+            *high = vec(fmaxf(high->x, v[0]), fmaxf(high->y, v[1]), fmaxf(high->z, v[2]));
+        }
+}
+
+/// The axis along which the middles reach farthest.
+static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
+    int best = 0;
+    float most = -1;
+    for (int axis = 0; axis < 3; axis++) {
+        float low = INFINITY, high = -INFINITY;
+        for (uint32_t k = first; k < first + count; k++) {
+            float x = build->middle[build->solid->order[k]][axis];
+            low = fminf(low, x), high = fmaxf(high, x);
+        }
+        if (high - low > most) most = high - low, best = axis;
+    }
+    return best;
+}
+
+/// Whether triangle a comes before b along the axis: by number where they are equal, so that there is one order.
+static bool tree_before(const TreeBuild *build, int axis, uint32_t a, uint32_t b) {
+    float x = build->middle[a][axis], y = build->middle[b][axis];
+    return x < y || (!(y < x) && a < b);
+}
+
+/// Brings the `half` first along the axis to the front (Hoare's selection).
+static void tree_split(TreeBuild *build, uint32_t first, uint32_t count, uint32_t half) {
+    uint32_t *order = build->solid->order;
+    int axis = tree_axis(build, first, count);
+    int64_t low = first, high = (int64_t)first + count - 1, wanted = (int64_t)first + half;
+    while (half < count && low < high) {
+        uint32_t pivot = order[low + (high - low) / 2];
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (tree_before(build, axis, order[i], pivot)) i++;
+            while (tree_before(build, axis, pivot, order[j])) j--;
+            if (i > j) break;
+            uint32_t swap = order[i];
+            order[i++] = order[j], order[j--] = swap;
+        }
+        if (wanted <= j) high = j;
+        else if (wanted >= i) low = i;
+        else break;
+    }
+}
+
+static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
+    uint32_t index = first / SOLID_WIDE;
+    SolidLeaf *leaf = &build->solid->leaves[index];
+    for (uint32_t lane = 0; lane < SOLID_WIDE; lane++) {
+        const uint32_t *corner = build->solid->triangles[build->solid->order[first + (lane < count ? lane : count - 1)]];
+        for (int i = 0; i < 3; i++) {
+            float a = build->solid->vertices[corner[0]][i];
+            leaf->a[i][lane] = a;
+            leaf->ab[i][lane] = build->solid->vertices[corner[1]][i] - a;
+            leaf->ac[i][lane] = build->solid->vertices[corner[2]][i] - a;
+        }
+    }
+    return ~(int32_t)index;
+}
+
+static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
+    if (count <= SOLID_WIDE) return tree_leaf(build, first, count);
+    uint32_t index = build->nodes++, half = tree_half(count);
+    uint32_t parts[4] = {tree_half(half), 0, tree_half(count - half), 0};
+    parts[1] = half - parts[0], parts[3] = count - half - parts[2];
+    tree_split(build, first, count, half);
+    if (half > SOLID_WIDE) tree_split(build, first, half, parts[0]);
+    if (count - half > SOLID_WIDE) tree_split(build, first + half, count - half, parts[2]);
+    for (int i = 0; i < SOLID_WIDE; first += parts[i++]) {
+        Vec low, high;
+        tree_box(build, first, parts[i], &low, &high);
+        int32_t child = parts[i] ? tree_build(build, first, parts[i]) : 0;
+        SolidNode *node = &build->solid->nodes[index];
+        node->low[0][i] = low.x, node->low[1][i] = low.y, node->low[2][i] = low.z;
+        node->high[0][i] = high.x, node->high[1][i] = high.y, node->high[2][i] = high.z;
+        node->child[i] = child;
+    }
+    return (int32_t)index;
+}
+
+bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
+    uint32_t count = solid->triangle_count, nodes = 0;
+    tree_count(count, &nodes);
+    solid->leaf_count = count / SOLID_WIDE + (count % SOLID_WIDE > 0);
+    solid->node_count = nodes;
+    TreeBuild build = {.solid = solid};
+    bool ok = NEW(memory, solid->order, count) && NEW(memory, solid->leaves, solid->leaf_count) &&
+              NEW(memory, solid->nodes, nodes) && NEW(memory, build.middle, count);
+    for (uint32_t t = 0; ok && t < count; t++) {
+        solid->order[t] = t;
+        for (int i = 0; i < 3; i++) {
+            const uint32_t *corner = solid->triangles[t];
+            float a = solid->vertices[corner[0]][i], b = solid->vertices[corner[1]][i];
+            build.middle[t][i] = a + b + solid->vertices[corner[2]][i];
+        }
+    }
+    if (ok && count > SOLID_WIDE) tree_build(&build, 0, count);
+    if (ok && count <= SOLID_WIDE) { // a node all the same
+        tree_leaf(&build, 0, count);
+        for (int i = 0; i < 3; i++)
+            solid->nodes[0].low[i] = quad_all(-INFINITY), solid->nodes[0].high[i] = quad_all(INFINITY);
+        for (int i = 0; i < SOLID_WIDE; i++) solid->nodes[0].child[i] = ~0;
+    }
+    FREE(memory, build.middle, count);
+    return ok;
+}
+
+static inline Quad tree_dot(const Quad a[3], const Quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Squares of the distances to the boxes; infinite for an empty one.
+static inline Quad tree_boxes(const SolidNode *node, const Quad p[3]) {
+    Quad sum = quad_all(0);
+    for (int i = 0; i < 3; i++) {
+        Quad out = quad_max(quad_max(node->low[i] - p[i], p[i] - node->high[i]), quad_all(0));
+        sum += out * out;
+    }
+    return sum;
+}
+
+/// Square of the distance from pa (seen from the edge's start) to the edge.
+static inline Quad tree_edge(const Quad pa[3], const Quad edge[3]) {
+    Quad t = quad_min(quad_max(tree_dot(pa, edge) / tree_dot(edge, edge), quad_all(0)), quad_all(1)), off[3];
+    for (int i = 0; i < 3; i++) off[i] = pa[i] - t * edge[i];
+    return tree_dot(off, off);
+}
+
+static inline void tree_cross(const Quad a[3], const Quad b[3], Quad out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/// Squares of the distances to a leaf's triangles: to the plane over the inside, else to the nearest edge.
+static inline Quad tree_triangles(const SolidLeaf *leaf, const Quad p[3]) {
+    Quad pa[3], pb[3], bc[3], normal[3], side[3], back[3];
+    for (int i = 0; i < 3; i++) {
+        pa[i] = p[i] - leaf->a[i];
+        pb[i] = pa[i] - leaf->ab[i];
+        bc[i] = leaf->ac[i] - leaf->ab[i];
+        back[i] = -leaf->ac[i];
+    }
+    tree_cross(leaf->ab, leaf->ac, normal);
+    tree_cross(leaf->ab, pa, side);
+    QuadMask inside = tree_dot(side, normal) >= 0;
+    tree_cross(bc, pb, side);
+    inside &= tree_dot(side, normal) >= 0;
+    tree_cross(back, pa, side);
+    inside &= tree_dot(side, normal) >= 0;
+    Quad height = tree_dot(pa, normal);
+    Quad plane = height * height / tree_dot(normal, normal);
+    Quad edges = quad_min(quad_min(tree_edge(pa, leaf->ab), tree_edge(pa, leaf->ac)), tree_edge(pb, bc));
+    return quad_select(inside, plane, edges);
+}
+
+typedef struct TreeItem {
+    float square;
+    int32_t child;
+} TreeItem;
+
+/// Pushes what a node holds nearer than the best, the nearest last.
+static int tree_push(const SolidNode *node, const Quad p[3], float best, TreeItem *stack, int depth) {
+    Quad square = tree_boxes(node, p);
+    int first = depth;
+    for (int i = 0; i < SOLID_WIDE; i++) {
+        if (!(square[i] < best)) continue;
+        int k = depth++;
+        for (; k > first && stack[k - 1].square < square[i]; k--) stack[k] = stack[k - 1];
+        stack[k] = (TreeItem){square[i], node->child[i]};
+    }
+    return depth;
+}
+
+uint32_t mesh_tree_nearest(const MeshSolid *solid, Vec at, float *square) {
+    const Quad p[3] = {quad_all(at.x), quad_all(at.y), quad_all(at.z)};
+    TreeItem stack[TREE_STACK];
+    float best = *square;
+    uint32_t found = UINT32_MAX;
+    int depth = tree_push(&solid->nodes[0], p, best, stack, 0);
+    while (depth > 0) {
+        TreeItem item = stack[--depth];
+        if (!(item.square < best)) continue;
+        if (item.child >= 0) {
+            depth = tree_push(&solid->nodes[item.child], p, best, stack, depth);
+            continue;
+        }
+        Quad near = tree_triangles(&solid->leaves[~item.child], p);
+        for (int i = 0; i < SOLID_WIDE; i++)
+            if (near[i] < best) best = near[i], found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
+    }
+    if (found == UINT32_MAX) return found;
+    *square = best;
+    return solid->order[found < solid->triangle_count ? found : solid->triangle_count - 1];
+}
