@@ -4,6 +4,7 @@
 
 struct Pictures {
     const Scene *scene;
+    const SceneAssets *assets;
     PreviewDef def;
     Preview *preview;
     PreviewShape *shapes;
@@ -24,8 +25,9 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     Pictures *pictures = calloc(1, sizeof *pictures);
     if (!pictures) return no_memory(error);
     pictures->scene = job->scene;
+    pictures->assets = &job->assets;
     pictures->def = *def;
-    pictures->shape_max = scene_shapes(job->scene, 0, NULL, 0);
+    pictures->shape_max = scene_shapes(job->scene, &job->assets, 0, NULL, 0);
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
     pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
     SingeResult result = pictures->shapes && pictures->rgb ? SINGE_OK : no_memory(error);
@@ -60,7 +62,7 @@ SingeResult pictures_open_sharp(const Job *job, int scale, Pictures **pictures, 
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
                              SingeError *error) {
     // a ball may be hot at one time and not at another, so the number may have grown
-    uint32_t count = scene_shapes(pictures->scene, time, NULL, 0);
+    uint32_t count = scene_shapes(pictures->scene, pictures->assets, time, NULL, 0);
     if (count > pictures->shape_max) {
         PreviewShape *shapes = realloc(pictures->shapes, count * sizeof *shapes);
         if (!shapes) {
@@ -69,7 +71,7 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
         }
         pictures->shapes = shapes, pictures->shape_max = count;
     }
-    count = scene_shapes(pictures->scene, time, pictures->shapes, pictures->shape_max);
+    count = scene_shapes(pictures->scene, pictures->assets, time, pictures->shapes, pictures->shape_max);
     if (preview_set_shapes(pictures->preview, pictures->shapes, count, error)) return NULL;
     if (preview_set_gas(pictures->preview, gas, error)) return NULL;
     if (preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error)) return NULL;

@@ -95,6 +95,17 @@ typedef struct Scene {
     int light_count;
 } Scene;
 
+/// What rays need of a PreviewSolid.
+typedef struct Facets {
+    const PreviewSolid *solid;
+    RTCScene embree;
+    V3 *normals;  ///< [3 * triangle_count] of each triangle's corners
+    V3 middle;    ///< of its bounds, in its own frame
+    float extent; ///< m, from the middle
+    uint32_t triangle_count;
+    struct Facets *next;
+} Facets;
+
 struct Preview {
     PreviewDef def;
     SingeAllocator allocator;
@@ -106,6 +117,7 @@ struct Preview {
     float sun_spread;          ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
+    Facets *facets;            ///< of the solids that were drawn
     Texture *textures;         ///< [def.sheet_count]
     float linear[256];         ///< sRGB byte to linear
     V3 blackbody[BLACKBODY_COUNT];
@@ -185,6 +197,14 @@ void sky_fill(Preview *preview);
 V3 sky_ambient(const Sky *sky, V3 normal);
 V3 sky_mirrored(const Sky *sky, V3 direction);
 
+// facets.c
+
+/// Finds or makes those of a solid.
+SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **facets, SingeError *error);
+void facets_free(Preview *preview);
+/// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
+float facets_intersect(const Facets *facets, V3 origin, V3 direction, float near, float far, V3 *normal);
+
 // shape.c
 /// Seconds from the middle of the exposure, for a ray's time in [0, 1].
 static inline float shutter_moment(const Preview *preview, float time) { return (time - 0.5f) * preview->def.shutter; }
@@ -192,7 +212,9 @@ static inline float shutter_moment(const Preview *preview, float time) { return 
 float shape_intersect(const PreviewShape *shape, float moment, V3 origin, V3 direction, float near, float far,
                       V3 *normal);
 
-/// Radius of a sphere about its position that holds the shape while the shutter is open.
+/// Middle of a sphere that holds the shape in the middle of the frame's time.
+V3 shape_middle(const PreviewShape *shape);
+/// Radius of a sphere about its middle that holds the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
 
 // mask.c

@@ -66,9 +66,10 @@ static void add_shapes(Preview *preview) {
     for (uint32_t k = 0; k < preview->shape_count && scene->light_count < LIGHT_LIMIT / 2; k++) {
         const PreviewShape *shape = &preview->shapes[k];
         if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;
-        float r = shape->kind == SINGE_COLLIDER_BOX ? v3_length(v3_load(shape->half_size)) * 0.6f : shape->radius;
+        float r = shape->facets ? 0.5f * shape->facets->extent : shape->radius;
+        if (shape->kind == SINGE_COLLIDER_BOX) r = v3_length(v3_load(shape->half_size)) * 0.6f;
         V3 glow = blackbody_glow(preview->blackbody, shape->temperature);
-        V3 place = v3_load(shape->position);
+        V3 place = shape_middle(shape);
         add_light(scene, place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r);
     }
 }

@@ -73,7 +73,7 @@ static bool sky_may_be_hidden(const Preview *preview, V3 p, float reach) {
     if (within(&preview->scene, p, reach)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
-        V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
+        V3 to = v3_sub(shape_middle(&preview->shapes[k]), p);
         if (v3_dot(to, to) < near * near) return true;
     }
     return false;
@@ -86,7 +86,7 @@ static bool sun_may_be_hidden(const Preview *preview, V3 p, float margin) {
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        V3 to = v3_sub(v3_load(preview->shapes[k].position), p);
+        V3 to = v3_sub(shape_middle(&preview->shapes[k]), p);
         float along = v3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         V3 aside = v3_mad(to, sun, -along);
         float near = extent + margin + spread * maxf(along + extent, 0);

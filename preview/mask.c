@@ -60,7 +60,7 @@ void mask_fill(Preview *preview) {
         mark(preview, &r);
     }
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        V3 centre = v3_load(preview->shapes[k].position);
+        V3 centre = shape_middle(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Rectangle r = nowhere;
         for (int corner = 0; corner < 8; corner++)

@@ -76,6 +76,8 @@ static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeEr
     case SINGE_COLLIDER_CAPSULE:
         good = good && shape->radius > 0 && shape->radius < 1e4f && shape->height >= 0 && shape->height < 1e4f;
         break;
+    case SINGE_COLLIDER_HEIGHTFIELD:
+    case SINGE_COLLIDER_MESH: good = good && shape->solid; break;
     default: good = false;
     }
     if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
@@ -199,8 +201,17 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
     for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
     PreviewShape *copy = preview_resize(&preview->allocator, NULL, 0, drawn * sizeof *copy);
     if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
-    for (uint32_t i = 0, next = 0; i < count; i++)
-        if (shapes[i].kind != SINGE_COLLIDER_PLANE) copy[next++] = shapes[i];
+    for (uint32_t i = 0, next = 0; i < count && !result; i++) {
+        if (shapes[i].kind == SINGE_COLLIDER_PLANE) continue;
+        PreviewShape *shape = &copy[next++];
+        *shape = shapes[i];
+        shape->facets = NULL;
+        if (shape->solid) result = facets_get(preview, shape->solid, &shape->facets, error);
+    }
+    if (result) {
+        preview_resize(&preview->allocator, copy, drawn * sizeof *copy, 0);
+        return result;
+    }
     preview_resize(&preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview->shapes = copy, preview->shape_count = drawn;
     return SINGE_OK;
@@ -212,6 +223,7 @@ void preview_destroy(Preview *preview) {
     SingeAllocator allocator = preview->allocator;
     tracer_free(preview);
     fire_free(preview);
+    facets_free(preview);
     if (preview->device) rtcReleaseDevice(preview->device);
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);

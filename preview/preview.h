@@ -11,13 +11,23 @@ typedef struct PreviewCamera {
     float focus;                    ///< m, distance along the view that is sharp; 0: the target's
 } PreviewCamera;
 
-/// A primitive that is drawn: the scene's colliders and hot balls at the frame's time.
+/// A closed surface of triangles, counter-clockwise from outside. It must not change while a Preview draws it, and must
+/// outlive that.
+typedef struct PreviewSolid {
+    uint32_t vertex_count, triangle_count;
+    float *vertices;     ///< [3 * vertex_count] m
+    uint32_t *triangles; ///< [3 * triangle_count]
+} PreviewSolid;
+
+/// A rigid thing that is drawn: the scene's colliders and hot balls at the frame's time.
 typedef struct PreviewShape {
     SingeColliderKind kind;
     float position[3], rotation[4], radius, half_size[3], height;
     float velocity[3];  ///< m/s, for the blur of what moves
     float colour[3];    ///< linear albedo
     float temperature;  ///< K; glows by black-body colour above about 800 K
+    const PreviewSolid *solid; ///< of a heightfield or a mesh, in the shape's frame
+    const struct Facets *facets; ///< the preview's own; NULL
 } PreviewShape;
 
 /// The light from all around, of mean `sky_colour`.

@@ -1,4 +1,4 @@
-// Balls, boxes and capsules: plain matter when cold; hot, they glow as metal does, with scale on it that is cooler and
+// Balls, boxes, capsules and solids: plain matter when cold; hot, they glow as metal does, with scale on it that is cooler and
 // darker, and a limb that is a little dimmer because a rough oxide emits less at grazing angles.
 
 #include "preview/internal.h"
@@ -10,6 +10,7 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
     point->gloss = 0.12f, point->shininess = 40, point->mirror = 0.5f;
     if (!(shape->temperature > BLACKBODY_MIN)) return;
     float size = shape->kind == SINGE_COLLIDER_BOX ? shape->half_size[0] : shape->radius;
+    if (shape->facets) size = 0.5f * shape->facets->extent;
     V3 centre = v3_mad(v3_load(shape->position), v3_load(shape->velocity), moment);
     V3 local = v3_rotate(shape->rotation, v3_sub(point->position, centre), -1);
     V3 p = v3_scale(local, 3.5f / maxf(size, 1e-6f));

@@ -74,12 +74,19 @@ float shape_intersect(const PreviewShape *shape, float moment, V3 origin, V3 dir
     float t = -1;
     if (shape->kind == SINGE_COLLIDER_BOX) t = box(shape, o, d, near, far, &n);
     if (shape->kind == SINGE_COLLIDER_CAPSULE) t = capsule(shape, o, d, near, far, &n);
+    if (shape->facets) t = facets_intersect(shape->facets, o, d, near, far, &n);
     if (t > 0) *normal = v3_rotate(shape->rotation, n, 1);
     return t;
 }
 
+V3 shape_middle(const PreviewShape *shape) {
+    V3 position = v3_load(shape->position);
+    return shape->facets ? v3_add(position, v3_rotate(shape->rotation, shape->facets->middle, 1)) : position;
+}
+
 float shape_extent(const PreviewShape *shape, float shutter) {
     float way = 0.5f * shutter * v3_length(v3_load(shape->velocity));
+    if (shape->facets) return way + shape->facets->extent;
     if (shape->kind == SINGE_COLLIDER_BOX) return way + v3_length(v3_load(shape->half_size));
     return way + shape->radius + (shape->kind == SINGE_COLLIDER_CAPSULE ? 0.5f * shape->height : 0);
 }

@@ -101,6 +101,10 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
         return no_memory(builder, collider->place);
     def.path_count = collider->key_count;
     def.path = path;
+    const SceneSolid *solid = &builder->assets->solids[index];
+    def.vertex_count = solid->surface.vertex_count, def.vertices = solid->surface.vertices;
+    def.triangle_count = solid->surface.triangle_count, def.triangles = solid->surface.triangles;
+    def.columns = solid->columns, def.rows = solid->rows, def.heights = solid->heights;
     SingeColliderId id;
     SingeResult result = singe_sim_add_collider(builder->sim, &def, &id);
     free(path);

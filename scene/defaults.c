@@ -67,6 +67,8 @@ bool default_source(SceneArena *arena, void *object) {
 bool default_collider(SceneArena *arena, void *object) {
     SceneCollider *collider = object;
     collider->def = singe_default_collider();
+    collider->scale = 1;
+    collider->heights[1] = 0.02f;
     set3(collider->colour, 0.5f, 0.5f, 0.5f);
     collider->visible = true;
     collider->keys = arena_new(arena, 1, sizeof *collider->keys); // at the origin

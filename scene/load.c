@@ -2,6 +2,7 @@
 #include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
+#include "scene/solid.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,6 +125,31 @@ static void load_sheet(Loader *loader, uint32_t index) {
     }
 }
 
+/// A collider's mesh or heights.
+static void load_solid(Loader *loader, uint32_t index) {
+    const SceneCollider *collider = &loader->scene->colliders[index];
+    SceneSolid *solid = &loader->assets->solids[index];
+    SingeError error = {0};
+    SingeResult result = SINGE_OK;
+    const SceneFile *file = &collider->mesh;
+    if (collider->def.kind == SINGE_COLLIDER_MESH) {
+        Bytes bytes = {0};
+        result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
+        if (!result)
+            result = solid_read_mesh(file->path, bytes.data, bytes.size, collider->scale, solid, &error);
+        bytes_free(&bytes);
+    } else if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD) {
+        SingePicture picture = {0};
+        file = &collider->picture;
+        load_luminance(loader, file, &picture);
+        if (picture.values)
+            result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
+        free((void *)picture.values);
+    }
+    if (result)
+        loader_fail(loader, file, result, error.message);
+}
+
 static void *many(Loader *loader, size_t count, size_t size) {
     void *items = calloc(count ? count : 1, size);
     loader->no_memory = loader->no_memory || !items;
@@ -133,13 +159,15 @@ static void *many(Loader *loader, size_t count, size_t size) {
 SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
     Loader loader = {scene, assets, messages, false};
     uint32_t before = message_total(messages), first = messages->count;
-    *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count};
+    *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count,
+                            .collider_count = scene->collider_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
     assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
     assets->source_pictures = many(&loader, scene->source_count, sizeof *assets->source_pictures);
+    assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
     if (loader.no_memory)
         message_add(messages, scene->text, (ScenePlace){0}, "out of memory");
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
@@ -147,6 +175,8 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
         if (scene->sources[i].picture.name)
             load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
+    for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++)
+        load_solid(&loader, i);
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
     if (message_total(messages) == before && !loader.no_memory)
@@ -174,7 +204,10 @@ void scene_assets_free(SceneAssets *assets) {
     }
     for (uint32_t i = 0; i < assets->source_count && assets->source_pictures; i++)
         picture_free(&assets->source_pictures[i]);
+    for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++)
+        solid_free(&assets->solids[i]);
     image_free(&assets->sky);
+    free(assets->solids);
     free(assets->meshes);
     free(assets->images);
     free(assets->pictures);

@@ -116,7 +116,11 @@ typedef struct SceneSource {
 
 typedef struct SceneCollider {
     ScenePlace place;
-    SingeColliderDef def; ///< its path pointer is empty
+    SingeColliderDef def; ///< its pointers are empty
+    SceneFile mesh;       ///< of a mesh
+    float scale;          ///< metres per unit of the mesh file
+    SceneFile picture;    ///< of a heightfield
+    float heights[2];     ///< m, where the picture is black and where it is white
     uint32_t key_count;   ///< at least 1
     SceneKey *keys;
     float colour[3];      ///< linear, in the preview
@@ -204,15 +208,23 @@ void scene_document(FILE *file);
 
 // ---- from scene to simulation
 
+/// A collider's mesh or heights, in its own frame.
+typedef struct SceneSolid {
+    PreviewSolid surface;   ///< its arrays come from malloc; of a heightfield with walls down to its lowest point
+    uint32_t columns, rows; ///< of a heightfield
+    float *heights;         ///< as SingeColliderDef has them
+} SceneSolid;
+
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
-    uint32_t sheet_count, source_count;
+    uint32_t sheet_count, source_count, collider_count;
     Mesh *meshes;                 ///< [sheet_count]
     Image *images;                ///< [sheet_count], zeroed where there is none
     const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
     float (*colours)[3];          ///< [sheet_count], for PreviewDef
     SingePicture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
     SingePicture *source_pictures; ///< [source_count]
+    SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives
     Image sky;                    ///< zeroed where there is none
 } SceneAssets;
 
@@ -237,8 +249,8 @@ void scene_frame(Scene *scene, const SceneAssets *assets);
 void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *def);
 
 /// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most
-/// `max`, and returns how many the scene has then. shapes may be NULL when max is 0.
-uint32_t scene_shapes(const Scene *scene, double time, PreviewShape *shapes, uint32_t max);
+/// `max`, and returns how many the scene has then. shapes may be NULL when max is 0. They point into the assets.
+uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max);
 
 /// Seconds from one frame to the next, and the simulation's step.
 static inline double scene_frame_time(const Scene *scene) { return 1.0 / (double)scene->fps; }

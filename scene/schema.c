@@ -34,13 +34,17 @@ static const char *const ground_names[] = {
     [PREVIEW_GROUND_WOOD] = "wood", [PREVIEW_GROUND_STONE] = "stone", [PREVIEW_GROUND_PLAIN] = "plain", NULL};
 static const char *const collider_names[] = {
     [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
-    [SINGE_COLLIDER_CAPSULE] = "capsule", NULL};
+    [SINGE_COLLIDER_CAPSULE] = "capsule", [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield", [SINGE_COLLIDER_MESH] = "mesh",
+    NULL};
+static const char *const sides_names[] = {[SINGE_SIDES_TOUCHING] = "touching", [SINGE_SIDES_BOTH] = "both", NULL};
 
 enum {
     BALL = 1 << SINGE_SOURCE_BALL, PICTURE = 1 << SINGE_SOURCE_PICTURE,
     SPOT = 1 << SINGE_SOURCE_SPOT,
     PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
     BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
+    HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD, MESH = 1 << SINGE_COLLIDER_MESH,
+    DRAWN = SPHERE | BOX | CAPSULE | HEIGHTFIELD | MESH,
 };
 
 // ---- parts that several objects share
@@ -289,11 +293,24 @@ static ScenePlace *collider_place(void *object) { return &((SceneCollider *)obje
     {name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text}
 static const SchemaRow collider_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
-     .doc = "`plane` (its normal is its own z axis), `sphere`, `box` or `capsule` (along its own z axis)"},
+     .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
+            "(solid below heights over a rectangle of its own x-y plane) or `mesh` (what a closed mesh encloses)"},
     COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e6), "of the sphere or the capsule"),
     {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX, WITHIN(1e-6, 1e6),
      .doc = "half of the box's lengths along its own axes"},
     COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
+     .doc = "a closed mesh, OBJ or PLY, whose faces turn counter-clockwise seen from outside and do not pass through "
+            "each other; one that is inside out is turned"},
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
+     .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = HEIGHTFIELD, .flags = ROW_REQUIRED,
+     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's middle, "
+            "straight between"},
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.size), .length = 2, .kinds = HEIGHTFIELD, WITHIN(1e-6, 1e4),
+     .doc = "of the rectangle, from the first pixels' middles to the last's, along x and y"},
+    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
+     WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, ANY, .doc = "of its centre, when it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
@@ -305,9 +322,12 @@ static const SchemaRow collider_rows[] = {
     COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, KELVIN, "matters when `conductance` is not 0"),
     COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
     COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, WITHIN(0, 1000), "how near counts as contact for heat"),
-    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = SPHERE | BOX | CAPSULE,
+    {"sides", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.sides), .names = sides_names,
+     .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the one "
+            "behind it as well, as if heat were through the sheet at once"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN,
      WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = SPHERE | BOX | CAPSULE,
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN,
      .doc = "drawn in the preview"},
 };
 static const Schema schema_collider = {

@@ -80,23 +80,27 @@ static bool source_shape(const SceneSource *source, double time, PreviewShape *s
     return true;
 }
 
-static bool collider_shape(const Scene *scene, const SceneCollider *collider, double time, PreviewShape *shape) {
+static bool collider_shape(const Scene *scene, const SceneAssets *assets, uint32_t index, double time,
+                           PreviewShape *shape) {
+    const SceneCollider *collider = &scene->colliders[index];
     if (collider->def.kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count)
         return false;
     const SingeColliderDef *def = &collider->def;
     *shape = (PreviewShape){.kind = def->kind, .radius = def->radius, .height = def->height,
                             .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
+    if (def->kind == SINGE_COLLIDER_MESH || def->kind == SINGE_COLLIDER_HEIGHTFIELD)
+        shape->solid = &assets->solids[index].surface;
     memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
     memcpy(shape->colour, collider->colour, sizeof shape->colour);
     shape_move(collider->keys, collider->key_count, time, shape);
     return true;
 }
 
-uint32_t scene_shapes(const Scene *scene, double time, PreviewShape *shapes, uint32_t max) {
+uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max) {
     uint32_t count = 0;
     PreviewShape shape;
     for (uint32_t i = 0; i < scene->collider_count; i++)
-        if (collider_shape(scene, &scene->colliders[i], time, &shape)) {
+        if (collider_shape(scene, assets, i, time, &shape)) {
             if (count < max)
                 shapes[count] = shape;
             count++;

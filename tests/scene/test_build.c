@@ -222,13 +222,13 @@ static void test_preview(void **state) {
     assert_true(def.width == 64 && def.height == 32 && def.sheet_count == 1 && def.colours[0][1] == 0.25f);
     assert_true(def.ground_height == 0.01f && fabsf(def.camera.fov - 1.04719755f) < 1e-6f && !def.pictures[0]);
     PreviewShape shapes[2];
-    assert_int_equal(scene_shapes(scene, 0.5, NULL, 0), 1); // before the ball's start
-    assert_int_equal(scene_shapes(scene, 2, shapes, 2), 2);
+    assert_int_equal(scene_shapes(scene, &assets, 0.5, NULL, 0), 1); // before the ball's start
+    assert_int_equal(scene_shapes(scene, &assets, 2, shapes, 2), 2);
     assert_true(shapes[0].kind == SINGE_COLLIDER_SPHERE && shapes[0].position[1] == 2);
     assert_true(shapes[0].temperature == scene->sim.ambient_temperature); // it gives no heat
     assert_true(shapes[1].position[0] == 1 && shapes[1].position[2] == 2 && shapes[1].temperature == 1300);
     assert_true(shapes[1].radius == 0.02f && shapes[1].rotation[3] == 1);
-    assert_int_equal(scene_shapes(scene, 2, shapes, 1), 2);
+    assert_int_equal(scene_shapes(scene, &assets, 2, shapes, 1), 2);
     scene_assets_free(&assets);
     scene_free(scene);
 }

@@ -24,8 +24,15 @@ static const char base[] =
     "  - {kind: sphere, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: box, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: capsule, conductance: 10, path: [{time: 0}]}\n"
+    "  - {kind: heightfield, picture: heights.png, conductance: 10, path: [{time: 0}]}\n"
+    "  - {kind: mesh, mesh: cube.obj, conductance: 10, path: [{time: 0}]}\n"
     "pins:\n"
     "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n";
+
+/// A cube of half a unit about its middle.
+static const char cube_file[] = "v -.5 -.5 -.5\nv .5 -.5 -.5\nv .5 .5 -.5\nv -.5 .5 -.5\n"
+                                "v -.5 -.5 .5\nv .5 -.5 .5\nv .5 .5 .5\nv -.5 .5 .5\n"
+                                "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 typedef struct Walk {
     char folder[40];
@@ -192,9 +199,16 @@ static void test_every_row(void **state) {
     assert_non_null(mkdtemp(walk.folder));
     snprintf(picture, sizeof picture, "%s/flux.png", walk.folder);
     assert_int_equal(png_write(picture, 1, 1, (const uint8_t[]){255, 255, 255}, &error), SINGE_OK);
+    char heights[64], cube[64];
+    snprintf(heights, sizeof heights, "%s/heights.png", walk.folder);
+    snprintf(cube, sizeof cube, "%s/cube.obj", walk.folder);
+    assert_int_equal(png_write(heights, 2, 2, (const uint8_t[12]){0, 0, 0, 255, 255, 255}, &error), SINGE_OK);
+    assert_int_equal(file_write(cube, cube_file, sizeof cube_file - 1, &error), SINGE_OK);
     walk_schema(&walk, &schema_scene, "", ~0u);
     assert_true(walk.rows > 110);
     unlink(picture);
+    unlink(heights);
+    unlink(cube);
     rmdir(walk.folder);
 }
 

@@ -1,0 +1,165 @@
+// Rays against closed meshes, on Embree: one tree a solid, in the solid's own frame, to which rays are brought. So a mesh
+// that moves is built once, and blurs as other shapes do.
+//
+// Normals are smooth over edges that are blunter than FACETS_CREASE: a corner's is the sum of those of the faces about it
+// that turn less than that from its own, weighed by their areas.
+
+#include "preview/internal.h"
+
+#include <string.h>
+
+static const float FACETS_CREASE = 0.82f; ///< cosine of 35 degrees
+static const V3 UP = {0, 0, 1};           ///< for the normal of what has no area
+
+static V3 facets_corner(const PreviewSolid *solid, uint32_t triangle, int corner) {
+    return v3_load(solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)triangle + (size_t)corner]);
+}
+
+/// Along the normal, twice the area long.
+static V3 facets_cross(const PreviewSolid *solid, uint32_t t) {
+    V3 a = facets_corner(solid, t, 0);
+    return v3_cross(v3_sub(facets_corner(solid, t, 1), a), v3_sub(facets_corner(solid, t, 2), a));
+}
+
+/// Triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]].
+static void facets_fans(const PreviewSolid *solid, uint32_t *first, uint32_t *fan) {
+    size_t corners = 3 * (size_t)solid->triangle_count;
+    memset(first, 0, ((size_t)solid->vertex_count + 2) * sizeof *first);
+    for (size_t k = 0; k < corners; k++) first[solid->triangles[k] + 2]++;
+    for (size_t v = 2; v <= solid->vertex_count; v++) first[v + 1] += first[v];
+    for (size_t k = 0; k < corners; k++) fan[first[solid->triangles[k] + 1]++] = (uint32_t)(k / 3);
+}
+
+static void facets_smooth(Facets *facets, const uint32_t *first, const uint32_t *fan) {
+    const PreviewSolid *solid = facets->solid;
+    for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
+        V3 own = v3_unit(facets_cross(solid, (uint32_t)(k / 3)), UP), sum = {0, 0, 0};
+        for (uint32_t i = first[solid->triangles[k]]; i < first[solid->triangles[k] + 1]; i++) {
+            V3 other = facets_cross(solid, fan[i]);
+            if (v3_dot(other, own) >= FACETS_CREASE * v3_length(other)) sum = v3_add(sum, other);
+        }
+        facets->normals[k] = v3_dot(sum, own) > 0 ? v3_unit(sum, own) : own;
+    }
+}
+
+static void facets_bounds(Facets *facets) {
+    const PreviewSolid *solid = facets->solid;
+    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
+        V3 v = v3_load(solid->vertices + 3 * (size_t)solid->triangles[k]);
+        low = v3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
+        high = v3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
+    }
+    facets->middle = v3_scale(v3_add(low, high), 0.5f);
+    facets->extent = 0.5f * v3_length(v3_sub(high, low));
+}
+
+static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *error) {
+    const PreviewSolid *solid = facets->solid;
+    SingeAllocator *allocator = &preview->allocator;
+    size_t corners = 3 * (size_t)solid->triangle_count, vertices = (size_t)solid->vertex_count + 2;
+    uint32_t *first = preview_resize(allocator, NULL, 0, vertices * sizeof *first);
+    uint32_t *fan = preview_resize(allocator, NULL, 0, corners * sizeof *fan);
+    facets->normals = preview_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
+    bool ok = first && fan && facets->normals;
+    if (ok) {
+        facets_fans(solid, first, fan);
+        facets_smooth(facets, first, fan);
+        facets_bounds(facets);
+    }
+    preview_resize(allocator, first, first ? vertices * sizeof *first : 0, 0);
+    preview_resize(allocator, fan, fan ? corners * sizeof *fan : 0, 0);
+    return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
+}
+
+/// Copies of the arrays: Embree reads 16 bytes from the last vertex on.
+static bool facets_fill(RTCGeometry geometry, const PreviewSolid *solid) {
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              3 * sizeof(float), solid->vertex_count);
+    uint32_t *triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                  3 * sizeof(uint32_t), solid->triangle_count);
+    if (!vertices || !triangles) return false;
+    memcpy(vertices, solid->vertices, 3 * (size_t)solid->vertex_count * sizeof *vertices);
+    memcpy(triangles, solid->triangles, 3 * (size_t)solid->triangle_count * sizeof *triangles);
+    return true;
+}
+
+static SingeResult facets_build(Preview *preview, Facets *facets, SingeError *error) {
+    SingeResult result = facets_normals(preview, facets, error);
+    if (result) return result;
+    facets->embree = rtcNewScene(preview->device);
+    RTCGeometry geometry = rtcNewGeometry(preview->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    bool ok = facets->embree && geometry && facets_fill(geometry, facets->solid);
+    if (ok) {
+        rtcSetSceneFlags(facets->embree, RTC_SCENE_FLAG_ROBUST);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(facets->embree, geometry);
+        rtcCommitScene(facets->embree);
+    }
+    if (geometry) rtcReleaseGeometry(geometry);
+    ok = ok && rtcGetDeviceError(preview->device) == RTC_ERROR_NONE;
+    return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "Embree refused a mesh");
+}
+
+static SingeResult facets_check(const PreviewSolid *solid, SingeError *error) {
+    bool good = solid->vertices && solid->triangles && solid->triangle_count > 0;
+    for (size_t k = 0; good && k < 3 * (size_t)solid->vertex_count; k++) good = fabsf(solid->vertices[k]) <= 1e4f;
+    for (size_t k = 0; good && k < 3 * (size_t)solid->triangle_count; k++)
+        good = solid->triangles[k] < solid->vertex_count;
+    return good ? SINGE_OK
+                : preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "solid: a vertex is out of place or an index out of range");
+}
+
+SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {
+    Facets *facets = preview->facets;
+    while (facets && facets->solid != solid) facets = facets->next;
+    if (!facets) {
+        SingeResult result = facets_check(solid, error);
+        if (result) return result;
+        facets = preview_resize(&preview->allocator, NULL, 0, sizeof *facets);
+        if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
+        *facets = (Facets){.solid = solid, .triangle_count = solid->triangle_count, .next = preview->facets};
+        preview->facets = facets;
+        result = facets_build(preview, facets, error);
+        if (result) facets->solid = NULL; // stays in the list till it is freed, but is not found
+        if (result) return result;
+    }
+    *found = facets;
+    return SINGE_OK;
+}
+
+void facets_free(Preview *preview) {
+    while (preview->facets) {
+        Facets *facets = preview->facets;
+        preview->facets = facets->next;
+        if (facets->embree) rtcReleaseScene(facets->embree);
+        size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
+        preview_resize(&preview->allocator, facets->normals, size, 0);
+        preview_resize(&preview->allocator, facets, sizeof *facets, 0);
+    }
+}
+
+/// Whether a ray of unit direction comes near enough.
+static bool facets_near(const Facets *facets, V3 origin, V3 direction) {
+    V3 to = v3_sub(facets->middle, origin);
+    V3 aside = v3_mad(to, direction, -v3_dot(to, direction));
+    return v3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent;
+}
+
+float facets_intersect(const Facets *facets, V3 o, V3 d, float near, float far, V3 *normal) {
+    if (!facets_near(facets, o, d)) return -1;
+    struct RTCRayHit hit = {.ray = {.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
+                                    .tnear = maxf(near, 0), .tfar = far, .mask = ~0u}};
+    hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(facets->embree, &context, &hit);
+    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;
+    const V3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
+    float u = hit.hit.u, v = hit.hit.v;
+    V3 smooth = v3_mad(v3_mad(v3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
+    V3 flat = v3_unit(facets_cross(facets->solid, hit.hit.primID), UP);
+    // a smooth normal that looks away from the eye where the face does not would be turned round
+    *normal = v3_dot(smooth, d) * v3_dot(flat, d) > 0 ? v3_unit(smooth, flat) : flat;
+    return hit.ray.tfar;
+}

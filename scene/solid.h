@@ -1,0 +1,18 @@
+// Colliders that files describe.
+#ifndef SCENE_SOLID_H
+#define SCENE_SOLID_H
+
+#include "scene/scene.h"
+
+/// The triangles of a mesh file, scaled.
+SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, float scale,
+                                            SceneSolid *solid, SingeError *error);
+
+/// Heights from a picture, between those of black and of white, over a rectangle of that size, and the surface that is
+/// drawn.
+SINGE_NODISCARD SingeResult solid_make_heights(const SingePicture *picture, const float size[2], const float heights[2],
+                                               SceneSolid *solid, SingeError *error);
+
+void solid_free(SceneSolid *solid);
+
+#endif
