@@ -12,10 +12,10 @@
 #include "dynamics/plan.h"
 
 /// m/s, relative to a collider: what is faster may pass what is smaller than its way in a substep.
-static const float CONTACT_SPEED = 10;
+static const float CONTACT_SPEED = 20;
 
-/// Parts of the way: what is thinner than one of them may be passed.
-enum { CONTACT_STEPS = 32 };
+/// Parts of the way that it is followed in at most.
+enum { CONTACT_STEPS = 128 };
 
 /// As far outside of a surface as this, of the offset or in m, counts as there.
 static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_LEAST = 1e-6f;
@@ -63,14 +63,16 @@ typedef struct Entry {
 static bool contact_enters(const Collider *collider, Vec from, Vec to, Entry *entry) {
     float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_LEAST);
     Vec way = vec_sub(to, from);
-    float length = vec_length(way), least = fmaxf(length / CONTACT_STEPS, 1e-9f), done = 0;
+    float length = vec_length(way), least = fmaxf(length / CONTACT_STEPS, skin), done = 0;
     while (done < length) {
-        entry->place = vec_mad(from, way, done / length);
-        entry->distance = collider_distance(collider, entry->place, length - done, &entry->normal);
-        if (entry->distance >= length - done) return false; // the rest of the way is free
-        if (done == 0 && entry->distance < 0) return false; // it was inside: its depth alone tells the way out
-        if (entry->distance <= skin && vec_dot(way, entry->normal) < 0) return true;
-        done += fmaxf(entry->distance, least);
+        Entry next = {.place = vec_mad(from, way, done / length)};
+        next.distance = collider_distance(collider, next.place, length - done, &next.normal);
+        if (next.distance >= length - done) return false; // the rest of the way is free
+        bool began = done > 0, turned = began && entry->distance < least && vec_dot(entry->normal, next.normal) < -0.5f;
+        if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
+        *entry = next;
+        if (next.distance <= skin && vec_dot(way, next.normal) < 0) return true;
+        done += fmaxf(next.distance, least);
     }
     return false;
 }
@@ -79,7 +81,7 @@ static bool contact_enters(const Collider *collider, Vec from, Vec to, Entry *en
 static float contact_out(const Collider *collider, Vec from, Vec *to, Vec *normal) {
     float offset = collider->def.offset, way = vec_length(vec_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + way, normal);
-    Entry entry;
+    Entry entry = {0};
     // behind a plane, however far, the way out is up
     if (distance < way && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
         (distance >= offset || vec_dot(entry.normal, *normal) < 0.5f)) {

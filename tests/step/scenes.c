@@ -108,7 +108,17 @@ static SingeResult scene_colliders(Scene *scene) {
     SCENE_TRY(singe_sim_add_collider(sim, &def, &scene->box));
     def.kind = SINGE_COLLIDER_CAPSULE;
     def.radius = 0.01f, def.height = 0.05f;
-    return singe_sim_add_collider(sim, &def, &scene->capsule);
+    SCENE_TRY(singe_sim_add_collider(sim, &def, &scene->capsule));
+    static const float vertices[] = {0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f};
+    static const uint32_t triangles[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    def.kind = SINGE_COLLIDER_MESH;
+    def.vertex_count = 6, def.vertices = vertices, def.triangle_count = 8, def.triangles = triangles;
+    def.sides = SINGE_SIDES_BOTH;
+    SCENE_TRY(singe_sim_add_collider(sim, &def, &scene->mesh));
+    static const float heights[] = {0, 0.01f, 0, 0.02f, 0.01f, 0, 0, 0, 0.01f};
+    def.kind = SINGE_COLLIDER_HEIGHTFIELD;
+    def.columns = def.rows = 3, def.heights = heights;
+    return singe_sim_add_collider(sim, &def, &scene->heightfield);
 }
 
 static SingeResult scene_pins(Scene *scene) {

@@ -13,7 +13,7 @@ typedef struct Scene {
     SingeSim *sim;
     SingeSheetId sheets[2];
     SingeSourceId ball, picture, spot, callback;
-    SingeColliderId plane, sphere, box, capsule;
+    SingeColliderId plane, sphere, box, capsule, mesh, heightfield;
     SingePinId points, vertices;
 } Scene;
 

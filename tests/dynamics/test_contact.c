@@ -1,0 +1,287 @@
+// Contact of sheets with colliders: nothing thin is passed, friction holds and gives way where it should, and what has
+// come to rest lies on meshes and heights without sinking in.
+#include "sheets.h"
+
+#include "dynamics/plan.h"
+#include "world/solids.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const float STEP = 1.0f / 480;
+
+static SingeMaterialDef plain(void) {
+    SingeMaterialDef material = singe_default_material();
+    material.drag = singe_param(0);
+    material.damping = singe_param(0);
+    return material;
+}
+
+static void add_collider(Bench *bench, SingeColliderDef def, uint32_t count, const SingePoseKey *keys) {
+    bench->colliders = (ColliderList){1, 1, calloc(1, sizeof(Collider))};
+    Collider *collider = bench->colliders.items;
+    def.path_count = count, def.path = keys;
+    if (collider_create(&bench->memory, &def, collider, &bench->error)) fail_msg("%s", bench->error.message);
+    collider->generation = 1;
+    assert_true(dynamics_plan_reserve(&bench->memory, bench->plan, 1));
+}
+
+static void close_all(Bench *bench) {
+    collider_free(&bench->memory, bench->colliders.items);
+    free(bench->colliders.items);
+    bench_close(bench);
+}
+
+static Vec middle(const Bench *bench) {
+    Vec sum = {0, 0, 0};
+    for (uint32_t i = 0; i < bench->shell.vertex_count; i++)
+        sum = vec_add(sum, vec_load(bench->state.dynamics.position[i]));
+    return vec_scale(sum, 1 / (float)bench->shell.vertex_count);
+}
+
+static void place(Bench *bench, const float rotation[4], Vec at) {
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        vec_store(bench->state.dynamics.position[i],
+                  vec_add(at, quat_rotate(rotation, vec_load(bench->shell.rest_position[i]))));
+}
+
+// ---- thin things
+
+/// A sheet of 2 mm cells thrown at a plate of 6 cm: how many particles are behind it at last.
+static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, const float rotation[4]) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+    SingePoseKey keys[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {1, {0, 0, plate_speed}, {0, 0, 0, 1}}};
+    for (int k = 0; k < 4; k++) keys[0].rotation[k] = keys[1].rotation[k] = rotation[k];
+    add_collider(&bench, plate, 2, keys);
+    const float none[4] = {0, 0, 0, 1};
+    place(&bench, none, vec(-0.016f, -0.016f, 0.02f));
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = -sheet_speed;
+    for (int step = 0; step < 24; step++) bench_step(&bench, STEP);
+    Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
+    int count = 0;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+        Vec local = pose_unapply(&pose, vec_load(bench.state.dynamics.position[i]));
+        count += local.z < 0 && fabsf(local.x) < 0.03f && fabsf(local.y) < 0.03f;
+    }
+    close_all(&bench);
+    return count;
+}
+
+static void nothing_passes_thin_plates(void **unused) {
+    (void)unused;
+    const float level[4] = {0, 0, 0, 1}, aslant[4] = {0.1f, 0.15f, 0, 0.9837f};
+    for (float thickness = 1e-3f; thickness > 0.2e-3f; thickness /= 2) {
+        SingeColliderDef box = singe_default_collider();
+        box.kind = SINGE_COLLIDER_BOX;
+        box.half_size[0] = box.half_size[1] = 0.03f, box.half_size[2] = thickness / 2;
+        Triangles triangles = triangles_box(6, 0.06f, 0.06f, thickness);
+        SingeColliderDef mesh = triangles_def(&triangles);
+        for (float speed = 0.5f; speed <= 8; speed *= 2) {
+            const int behind[6] = {passed(box, speed, 0, level),   passed(box, 0, speed, level),
+                                   passed(box, speed, 0, aslant),  passed(mesh, speed, 0, level),
+                                   passed(mesh, 0, speed, aslant), passed(mesh, speed / 2, speed / 2, level)};
+            for (int k = 0; k < 6; k++)
+                if (behind[k])
+                    fail_msg("%d particles passed a plate of %g mm at %g m/s (case %d)", behind[k],
+                             1e3 * (double)thickness, (double)speed, k);
+        }
+        triangles_free(&triangles);
+    }
+}
+
+// ---- friction
+
+static SingeColliderDef slab(SingeColliderKind kind, Triangles *triangles, const float *heights) {
+    SingeColliderDef def = singe_default_collider();
+    if (kind == SINGE_COLLIDER_MESH) def = triangles_def(triangles);
+    def.kind = kind;
+    def.half_size[0] = def.half_size[1] = 1, def.half_size[2] = 0.05f;
+    def.columns = def.rows = 5, def.size[0] = def.size[1] = 2, def.heights = heights;
+    def.friction = 0.4f;
+    return def;
+}
+
+/// m that a sheet of 4 cm slides in 0.5 s on a slab of that slope, and in the second half of it.
+static double slide(SingeColliderDef def, float slope, double *late) {
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
+    float top = def.kind == SINGE_COLLIDER_BOX || def.kind == SINGE_COLLIDER_MESH ? 0.05f : 0;
+    add_collider(&bench, def, 1, &key);
+    place(&bench, key.rotation, quat_rotate(key.rotation, vec(0, 0, top + def.offset)));
+    Vec start = middle(&bench), half = start;
+    for (int step = 0; step < 240; step++) {
+        bench_step(&bench, STEP);
+        if (step == 119) half = middle(&bench);
+    }
+    double way = (double)vec_length(vec_sub(middle(&bench), start));
+    if (late) *late = (double)vec_length(vec_sub(middle(&bench), half));
+    close_all(&bench);
+    return way;
+}
+
+static void sheets_slip_above_the_angle_of_friction(void **unused) {
+    (void)unused;
+    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    const float heights[25] = {0};
+    const float angle = atanf(0.4f);
+    static const char *const names[] = {"plane", "sphere", "box", "capsule", "heightfield", "mesh"};
+    for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
+        if (kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_CAPSULE) continue;
+        SingeColliderDef def = slab((SingeColliderKind)kind, &triangles, heights);
+        double held = slide(def, 0.98f * angle, NULL), free_way = slide(def, 1.1f * angle, NULL);
+        double expected = 0.5 * 9.81 * (sin(1.1 * (double)angle) - 0.4 * cos(1.1 * (double)angle)) * 0.25;
+        printf("%s: at 0.98 of the angle of friction %.3f mm in 0.5 s, at 1.1 of it %.2f mm (Coulomb: %.2f)\n",
+               names[kind], 1e3 * held, 1e3 * free_way, 1e3 * expected);
+        assert_true(held < 0.5e-3);
+        assert_true(fabs(free_way - expected) < 0.1 * expected);
+    }
+    triangles_free(&triangles);
+}
+
+static void what_lies_still_does_not_creep(void **unused) {
+    (void)unused;
+    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    const float heights[25] = {0};
+    for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
+        if (kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_CAPSULE) continue;
+        SingeColliderDef def = slab((SingeColliderKind)kind, &triangles, heights);
+        double level, slope;
+        slide(def, 0, &level);
+        slide(def, 0.3f, &slope); // tan 0.31 of 0.4
+        printf("kind %d: creeps %.4f mm/s on the level, %.4f mm/s at 0.3 rad\n", kind, 4e3 * level, 4e3 * slope);
+        assert_true(4 * level < 0.02e-3 && 4 * slope < 0.2e-3);
+    }
+    triangles_free(&triangles);
+}
+
+/// m that a sheet stays behind a belt in 0.4 s, which starts from rest with this acceleration.
+static double behind_belt(SingeColliderDef def, float acceleration) {
+    enum { KEYS = 100 };
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(8, 8, 0.005f, 0.005f, false), &material, 1);
+    SingePoseKey keys[KEYS];
+    for (int k = 0; k < KEYS; k++) {
+        float t = 0.45f * (float)k / (KEYS - 1);
+        keys[k] = (SingePoseKey){t, {acceleration * t * t / 2, 0, -0.05f - def.offset}, {0, 0, 0, 1}};
+    }
+    add_collider(&bench, def, KEYS, keys);
+    float start = middle(&bench).x;
+    for (int step = 0; step < 192; step++) bench_step(&bench, STEP);
+    double way = (double)(middle(&bench).x - start), belt = 0.5 * (double)acceleration * 0.16;
+    close_all(&bench);
+    return belt - way;
+}
+
+static void a_belt_carries_what_friction_allows(void **unused) {
+    (void)unused;
+    Triangles triangles = triangles_box(2, 2, 2, 0.1f);
+    SingeColliderDef def = slab(SINGE_COLLIDER_MESH, &triangles, NULL);
+    double held = behind_belt(def, 0.9f * 0.4f * 9.81f), left = behind_belt(def, 1.5f * 0.4f * 9.81f);
+    double expected = 0.5 * 0.5 * 0.4 * 9.81 * 0.16;
+    printf("belt: at 0.9 mu g the sheet stays %.2f mm behind, at 1.5 mu g %.1f mm (Coulomb: %.1f)\n", 1e3 * held,
+           1e3 * left, 1e3 * expected);
+    assert_true(held < 2e-3 && fabs(left - expected) < 0.1 * expected);
+    triangles_free(&triangles);
+}
+
+// ---- at rest
+
+/// How deep the sheet's cells are in the collider at the worst, over a grid of points on each; and how fast it moves.
+static double deepest(const Bench *bench, double *speed) {
+    const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
+    const Collider *collider = bench->colliders.items;
+    Pose pose = path_pose(&collider->path, bench->state.time);
+    double worst = -INFINITY, sum = 0;
+    for (uint32_t c = 0; c < bench->shell.cell_count; c++) {
+        const uint32_t *corner = bench->shell.cells[c];
+        for (int k = 0; k < 25; k++) {
+            float u = (float)(k % 5) / 4, v = (float)(k / 5) / 4; // on the two triangles that are drawn
+            const float *a = x[corner[0]], *b = x[corner[u > v ? 1 : 3]], *d = x[corner[2]];
+            float wide = u > v ? u - v : v - u, far = u > v ? v : u;
+            Vec p = vec_mad(vec_scale(vec_load(a), 1 - wide - far), vec_load(b), wide), normal;
+            p = vec_mad(p, vec_load(d), far);
+            float distance = collider_distance(collider, pose_unapply(&pose, p), INFINITY, &normal);
+            worst = fmax(worst, -(double)distance);
+        }
+    }
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++)
+        sum += (double)vec_length(vec_load(bench->state.dynamics.velocity[i]));
+    *speed = sum / bench->shell.particle_count;
+    return worst;
+}
+
+static double rests(SingeColliderDef def, const char *name, float height) {
+    enum { CELLS = 40 };
+    const float cell = 0.002f;
+    Bench bench;
+    SingeMaterialDef material = singe_default_material();
+    bench_open(&bench, quads_grid(CELLS, CELLS, cell, cell, false), &material, 2);
+    SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 1}};
+    add_collider(&bench, def, 1, &key);
+    const float turned[4] = {0, 0, 0.2588f, 0.9659f};
+    place(&bench, turned, vec_add(vec(0, 0, height), quat_rotate(turned, vec(-0.04f, -0.04f, 0))));
+    for (int step = 0; step < 480; step++) bench_step(&bench, STEP);
+    double speed, worst = deepest(&bench, &speed);
+    printf("%s: after 1 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n", name,
+           1e3 * worst, 100 * worst / (double)cell, 1e3 * speed);
+    close_all(&bench);
+    return worst / (double)cell;
+}
+
+static void sheets_rest_on_meshes_and_heights(void **unused) {
+    (void)unused;
+    Triangles torus = triangles_torus(64, 32, 0.03f, 0.012f);
+    SingeColliderDef def = triangles_def(&torus);
+    assert_true(rests(def, "torus", 0.016f) < 0.05);
+    triangles_free(&torus);
+    enum { N = 65 };
+    static float heights[N * N];
+    for (int k = 0; k < N * N; k++)
+        heights[k] = 0.006f * (1 + sinf(0.2f * (float)(k % N)) * sinf(0.25f * (float)(k / N)));
+    def = singe_default_collider();
+    def.kind = SINGE_COLLIDER_HEIGHTFIELD;
+    def.columns = def.rows = N, def.heights = heights;
+    assert_true(rests(def, "heights", 0.014f) < 0.05);
+}
+
+/// Spheres of several sizes under a sheet: how deep the smallest that still hold reach in.
+static void small_spheres_hold(void **unused) {
+    (void)unused;
+    for (float radius = 8e-3f; radius > 0.4e-3f; radius /= 2) {
+        Bench bench;
+        SingeMaterialDef material = singe_default_material();
+        bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+        SingeColliderDef def = singe_default_collider();
+        def.kind = SINGE_COLLIDER_SPHERE, def.radius = radius;
+        SingePoseKey key = {0, {0.0153f, 0.0147f, -radius - 0.002f}, {0, 0, 0, 1}}; // below the inside of a cell
+        add_collider(&bench, def, 1, &key);
+        double speed, worst = -INFINITY;
+        for (int step = 0; step < 40; step++) {
+            bench_step(&bench, STEP);
+            worst = fmax(worst, deepest(&bench, &speed));
+        }
+        printf("sphere of %.1f mm under cells of 2 mm: %.2f mm in at the worst\n", 1e3 * (double)radius, 1e3 * worst);
+        if (radius > 3e-3f) assert_true(worst < 0);
+        close_all(&bench);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_passes_thin_plates),     cmocka_unit_test(sheets_slip_above_the_angle_of_friction),
+        cmocka_unit_test(what_lies_still_does_not_creep), cmocka_unit_test(a_belt_carries_what_friction_allows),
+        cmocka_unit_test(sheets_rest_on_meshes_and_heights), cmocka_unit_test(small_spheres_hold),
+    };
+    return cmocka_run_group_tests_name("contact", tests, NULL, NULL);
+}
