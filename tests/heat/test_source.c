@@ -104,6 +104,87 @@ static void contact_heats_the_near_layer(void **unused) {
     rig_close(&rig);
 }
 
+static const float CUBE[] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
+static const uint32_t CUBE_TRIANGLES[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+
+/// A slab of 2 cm by 2 cm by 2 m about (2 cm, 2 cm), in contact with the flat sheet's back (from below) or front.
+static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides sides, float temperature) {
+    static float vertices[24];
+    static const float heights[4] = {0, 0, 0, 0};
+    for (int k = 0; k < 24; k++) vertices[k] = CUBE[k] * (k % 3 == 2 ? 1 : 0.01f);
+    SingeColliderDef def = singe_default_collider();
+    // a heightfield's top is its z = 0; turned about x by half a turn it looks down
+    float top = kind == SINGE_COLLIDER_HEIGHTFIELD ? 0 : 1;
+    SingePoseKey pose = {.position = {0.02f, 0.02f, below ? -0.0005f - top : 0.0025f + top}, .rotation = {0, 0, 0, 1}};
+    if (!below) pose.rotation[0] = 1, pose.rotation[3] = 0;
+    def.kind = kind;
+    def.half_size[0] = def.half_size[1] = 0.01f, def.half_size[2] = 1;
+    def.vertex_count = 8, def.vertices = vertices, def.triangle_count = 12, def.triangles = CUBE_TRIANGLES;
+    def.columns = def.rows = 2, def.size[0] = def.size[1] = 0.02f, def.heights = heights;
+    def.conductance = 300, def.temperature = temperature, def.contact_distance = 0.001f, def.sides = sides;
+    def.path_count = 1, def.path = &pose;
+    if (collider_create(&rig->memory, &def, &rig->collider[0], &rig->error)) fail_msg("%s", rig->error.message);
+    rig->collider[0].generation = 1;
+    rig->colliders.count = 1;
+}
+
+/// Every kind, from either side, hot and cold: the layer that faces it or both, and nothing beside it.
+static void contact_takes_the_sides_it_is_told(void **unused) {
+    (void)unused;
+    static const SingeColliderKind kinds[] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_HEIGHTFIELD, SINGE_COLLIDER_MESH};
+    for (int k = 0; k < 24; k++) {
+        bool below = k & 1, both = k & 2, cold = k & 4;
+        RigDef def = inert(20, 20); // 4 cm, the front 2 mm above the back
+        def.material.thickness = singe_param(0.002f);
+        Rig rig;
+        rig_open(&rig, &def);
+        float temperature = cold ? 250 : 700;
+        slab(&rig, kinds[k / 8], below, both ? SINGE_SIDES_BOTH : SINGE_SIDES_TOUCHING, temperature);
+        rig_step(&rig);
+        double a = 0.002 * 300 / PER_AREA, heated = (300 + a * (double)temperature) / (1 + a), stored = 0;
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
+            const float *x = rig_place(&rig, i);
+            double off = fmax(fabs((double)x[0] - 0.02), fabs((double)x[1] - 0.02));
+            if (off > 0.0095 && off < 0.0125) { // the corners of the reach are round
+                stored += (double)rig.shell.matter.area[i] * PER_AREA * ((double)rig.state.heat.temperature[i] - 300);
+                continue;
+            }
+            bool touches = off < 0.01 && (both || shell_is_corner(&rig.shell, i) == below);
+            CHECK_NEAR(rig.state.heat.temperature[i], touches ? heated : 300, 2e-4);
+            stored += (double)rig.shell.matter.area[i] * PER_AREA * ((double)rig.state.heat.temperature[i] - 300);
+        }
+        CHECK_NEAR(rig.state.heat.heat_in, stored, 1e-4 * fabs(stored)); // below 0 where it is cold
+        assert_true((rig.state.heat.heat_in < 0) == cold);
+        collider_free(&rig.memory, &rig.collider[0]);
+        rig_close(&rig);
+    }
+}
+
+/// The layer behind warms by what comes through the sheet, and tends to the same temperature.
+static void contact_heat_goes_through_the_sheet(void **unused) {
+    (void)unused;
+    RigDef def = inert(20, 20);
+    def.material.thickness = singe_param(0.002f);
+    def.material.layer_exchange = singe_param(4); // the difference of the two falls as e^-4t
+    Rig rig;
+    rig_open(&rig, &def);
+    slab(&rig, SINGE_COLLIDER_MESH, true, SINGE_SIDES_TOUCHING, 700);
+    uint32_t near = rig_vertex(&rig, 10, 10), behind = rig_centre(&rig, 10, 10), aside = rig_centre(&rig, 1, 1);
+    float before = 300;
+    for (int k = 0; k < 1500; k++) {
+        rig_step(&rig);
+        if (k == 20)
+            assert_true(rig.state.heat.temperature[near] > 330 && rig.state.heat.temperature[behind] < 310);
+        assert_true(rig.state.heat.temperature[behind] >= before - 1e-3f);
+        before = rig.state.heat.temperature[behind];
+    }
+    CHECK_NEAR(rig.state.heat.temperature[behind], 700, 12); // in 3 s
+    CHECK_NEAR(rig.state.heat.temperature[aside], 300, 1e-3);
+    collider_free(&rig.memory, &rig.collider[0]);
+    rig_close(&rig);
+}
+
 static void picture_and_key_frames(void **unused) {
     (void)unused;
     const float pixels[] = {0, 1, 0.5f, 0.25f}; // top row 0 1, bottom row .5 .25
@@ -211,6 +292,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(relaxes_to_the_source_by_the_formula), cmocka_unit_test(never_overshoots),
         cmocka_unit_test(falls_off_smoothly_and_moves),         cmocka_unit_test(contact_heats_the_near_layer),
+        cmocka_unit_test(contact_takes_the_sides_it_is_told),
+        cmocka_unit_test(contact_heat_goes_through_the_sheet),
         cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
         cmocka_unit_test(bad_defs_are_refused),
     };
