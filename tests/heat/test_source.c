@@ -180,7 +180,7 @@ static void contact_heat_goes_through_the_sheet(void **unused) {
         before = rig.state.heat.temperature[behind];
     }
     CHECK_NEAR(rig.state.heat.temperature[behind], 700, 12); // in 3 s
-    CHECK_NEAR(rig.state.heat.temperature[aside], 300, 1e-3);
+    CHECK_NEAR(rig.state.heat.temperature[aside], 300, 0.5); // 8 mm from its edge
     collider_free(&rig.memory, &rig.collider[0]);
     rig_close(&rig);
 }
