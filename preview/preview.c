@@ -162,7 +162,7 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
         SingeResult result = texture_create(preview, &preview->textures[s], def->pictures[s], error);
         if (result) return result;
     }
-    return preview_set_shapes(preview, def->shapes, def->shape_count, error);
+    return SINGE_OK;
 }
 
 static void aim(Preview *preview) {
@@ -189,6 +189,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
         preview->device = rtcNewDevice("threads=1,set_affinity=0");
         if (!preview->device) result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");
     }
+    if (!result) result = preview_set_shapes(preview, def->shapes, def->shape_count, error);
     if (result) preview_destroy(preview);
     else *out = preview;
     return result;

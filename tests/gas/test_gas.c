@@ -138,6 +138,51 @@ static void plumes_rise_by_their_law(void **unused) {
     assert_true(b / a > 1.5 && b / a < 2.6); // 2 if turbulent, 2.8 if laminar
 }
 
+/// A mesh and heights shut the cells that a box of the same shape shuts.
+static void solids_shut_cells(void **unused) {
+    (void)unused;
+    static float vertices[24];
+    static const uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    static const float heights[4] = {0, 0, 0, 0};
+    const float half[3] = {0.033f, 0.027f, 0.0301f};
+    for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * half[k % 3];
+    static uint8_t expected[1 << 20];
+    const SingeColliderKind kinds[3] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_MESH, SINGE_COLLIDER_HEIGHTFIELD};
+    for (int q = 0; q < 3; q++) {
+        GasSettings settings = settings_default();
+        Air air;
+        air_open(&air, &settings);
+        SingePoseKey key = {.position = {0.02f, 0.02f, 0.18f}, .rotation = {0, 0, 0.3827f, 0.9239f}};
+        SingeColliderDef def = singe_default_collider();
+        def.kind = kinds[q], def.path_count = 1, def.path = &key;
+        memcpy(def.half_size, half, sizeof half);
+        def.vertex_count = 8, def.vertices = vertices, def.triangle_count = 12, def.triangles = triangles;
+        def.columns = def.rows = 2, def.heights = heights, def.size[0] = 2 * half[0], def.size[1] = 2 * half[1];
+        if (q == 2) key.position[2] += half[2];
+        assert_int_equal(collider_create(&air.rig.memory, &def, &air.rig.collider[0], NULL), SINGE_OK);
+        air.rig.collider[0].generation = 1;
+        air.rig.colliders.count = 1;
+        air_burn(&air, 1, true); // wakes it
+        air_step(&air);
+        const GasPlan *plan = air.plan;
+        size_t solid = 0;
+        assert_true(plan->grid.cells < sizeof expected);
+        for (int k = 0; k < plan->grid.n[2]; k++)
+            for (int j = 0; j < plan->grid.n[1]; j++)
+                for (int i = 0; i < plan->grid.n[0]; i++) {
+                    size_t c = gas_at(&plan->grid, i, j, k);
+                    float z = plan->origin[2] + plan->cell * ((float)k + 0.5f);
+                    if (q == 0) expected[c] = plan->solid[c];
+                    else if (q == 1 || z > 0.18f - half[2]) assert_int_equal(plan->solid[c], expected[c]);
+                    solid += plan->solid[c];
+                }
+        assert_true(solid > 20);
+        collider_free(&air.rig.memory, &air.rig.collider[0]);
+        air_close(&air);
+    }
+}
+
 /// The flow's divergence is that of the expansion, nothing passes where the sheet is whole, and nothing enters a
 /// collider.
 static void flow_goes_around(void **unused) {
@@ -290,7 +335,7 @@ int main(void) {
         cmocka_unit_test(heat_is_kept),
         cmocka_unit_test(power_is_the_real_fires),
         cmocka_unit_test(plumes_rise_by_their_law),
-        cmocka_unit_test(flow_goes_around),
+        cmocka_unit_test(solids_shut_cells), cmocka_unit_test(flow_goes_around),
         cmocka_unit_test(gas_heats_what_it_flows_by),
         cmocka_unit_test(it_comes_to_rest),
         cmocka_unit_test(copes_with_anything),

@@ -139,6 +139,45 @@ static void test_shapes(void **state) {
     assert_true(p[0] > p[2]);
 }
 
+/// A mesh of a box is drawn as the box, turned, hot or blurred; one that is built again as before.
+static void test_solids(void **state) {
+    (void)state;
+    static uint8_t box[BYTES], mesh[BYTES], again[BYTES];
+    SingeSurface nothing = {0};
+    PreviewDef def = above();
+    float vertices[24];
+    uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                            2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * (0.02f + 0.01f * (float)(k % 3));
+    PreviewSolid solid = {8, 12, vertices, triangles};
+    PreviewShape shape = {.position = {0.06f, 0.02f, 0.05f}, .rotation = {0.2f, 0.1f, 0.3f, 0.9274f},
+                          .half_size = {0.02f, 0.03f, 0.04f}, .colour = {0.1f, 0.1f, 0.8f}, .temperature = 293};
+    def.shapes = &shape, def.shape_count = 1;
+    for (int moving = 0; moving < 2; moving++) {
+        shape.velocity[0] = moving ? 1.5f : 0;
+        def.shutter = moving ? 0.02f : 0;
+        shape.kind = SINGE_COLLIDER_BOX, shape.solid = NULL;
+        draw(&def, &nothing, 0, box);
+        shape.kind = SINGE_COLLIDER_MESH, shape.solid = &solid;
+        draw(&def, &nothing, 0, mesh);
+        draw(&def, &nothing, 0, again);
+        assert_memory_equal(mesh, again, BYTES);
+        int blue = 0, differ = 0;
+        for (int i = 0; i < BYTES; i += 3) {
+            blue += box[i + 2] > box[i] + 30;
+            differ += abs(box[i] - mesh[i]) + abs(box[i + 1] - mesh[i + 1]) + abs(box[i + 2] - mesh[i + 2]) > 24;
+        }
+        print_message("solid: %d pixels, %d differ\n", blue, differ);
+        assert_true(blue > 100 && differ <= blue / 50);
+    }
+    SingeError error;
+    Preview *preview = NULL;
+    shape.solid = NULL;
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
+    triangles[7] = 8, shape.solid = &solid;
+    assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_ERROR_ARGUMENT);
+}
+
 static void test_hot_ball(void **state) {
     (void)state;
     static uint8_t hot[BYTES], cold[BYTES];
@@ -394,7 +433,7 @@ static void test_set_shapes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads), cmocka_unit_test(test_repeatable), cmocka_unit_test(test_empty_surface),
-        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes), cmocka_unit_test(test_solids),
         cmocka_unit_test(test_hot_ball),
         cmocka_unit_test(test_shadow), cmocka_unit_test(test_bad_vertices), cmocka_unit_test(test_bad_surface),
         cmocka_unit_test(test_bad_defs), cmocka_unit_test(test_odd_sizes), cmocka_unit_test(test_out_of_memory),

@@ -203,6 +203,64 @@ static void test_bad_meshes(void **state) {
     rmdir(folder);
 }
 
+static const char cube[] = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n"
+                           "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n%s";
+
+/// Meshes and pictures of heights become colliders and shapes; what is not closed is told at its collider.
+static void test_solids(void **state) {
+    (void)state;
+    char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
+    const char *const names[] = {"cube.obj", "open.obj", "heights.png"};
+    SingeError error = {0};
+    assert_non_null(mkdtemp(folder));
+    snprintf(text, sizeof text, cube, "f 4 1 5 8\n");
+    write_text(folder, names[0], text);
+    snprintf(text, sizeof text, cube, "");
+    write_text(folder, names[1], text);
+    snprintf(path, sizeof path, "%s/heights.png", folder);
+    // three columns and two rows: above, black, white, black; below, white, black, black
+    const uint8_t pixels[18] = {0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255};
+    assert_int_equal(png_write(path, 3, 2, pixels, &error), SINGE_OK);
+    const char *const good = SHEET "colliders:\n  - {kind: mesh, mesh: cube.obj, scale: 0.001, position: [0, 0, 1 m]}\n"
+                                   "  - {kind: heightfield, picture: heights.png, size: [30 cm, 20 cm], heights: [1 cm, 3 cm]}\n";
+    const char *const bad = SHEET "colliders:\n  - {kind: plane}\n  - {kind: mesh, mesh: open.obj}\n";
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim;
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(scene_parse("t.yaml", good, strlen(good), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    const SceneSolid *mesh = &assets.solids[0], *field = &assets.solids[1];
+    assert_true(mesh->surface.vertex_count == 8 && mesh->surface.triangle_count == 12);
+    assert_true(fabsf(mesh->surface.vertices[3] - 0.02f) < 1e-7f);
+    assert_true(field->columns == 3 && field->rows == 2 && field->surface.triangle_count == 4 + 12);
+    assert_true(fabsf(field->heights[0] - 0.03f) < 1e-6f && fabsf(field->heights[1] - 0.01f) < 1e-6f); // least y first
+    assert_true(fabsf(field->heights[3] - 0.01f) < 1e-6f && fabsf(field->heights[4] - 0.03f) < 1e-6f);
+    assert_true(fabsf(field->surface.vertices[0] + 0.15f) < 1e-6f && fabsf(field->surface.vertices[1] + 0.1f) < 1e-6f);
+    PreviewShape shapes[2];
+    assert_int_equal(scene_shapes(scene, &assets, 0, shapes, 2), 2);
+    assert_true(shapes[0].solid == &mesh->surface && shapes[1].solid == &field->surface);
+    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    singe_sim_destroy(sim);
+    scene_assets_free(&assets);
+    scene_free(scene);
+    assert_int_equal(scene_parse("t.yaml", bad, strlen(bad), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    assert_int_not_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    assert_int_equal(messages.count, 1);
+    assert_non_null(strstr(messages.items[0].text, "open: nothing joins triangle"));
+    assert_string_equal(messages.items[0].origin, "t.yaml:5:5");
+    scene_messages_free(&messages);
+    scene_assets_free(&assets);
+    scene_free(scene);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+}
+
 static void test_preview(void **state) {
     (void)state;
     Scene *scene = good_scene(
@@ -330,7 +388,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rotation),   cmocka_unit_test(test_sim),
         cmocka_unit_test(test_refused),    cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_solids), cmocka_unit_test(test_preview),
         cmocka_unit_test(test_examples),   cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
