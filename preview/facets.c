@@ -1,8 +1,8 @@
-// Rays against closed meshes, on Embree: one tree a solid, in the solid's own frame, to which rays are brought. So a mesh
-// that moves is built once, and blurs as other shapes do.
+// Rays against closed meshes, on Embree: one tree a solid, in the solid's own frame, to which rays are brought. So a
+// mesh that moves is built once, and blurs as other shapes do.
 //
-// Normals are smooth over edges that are blunter than FACETS_CREASE: a corner's is the sum of those of the faces about it
-// that turn less than that from its own, weighed by their areas.
+// Normals are smooth over edges that are blunter than FACETS_CREASE: a corner's is the sum of those of the faces about
+// it that turn less than that from its own, weighed by their areas.
 
 #include "preview/internal.h"
 
@@ -107,7 +107,7 @@ static SingeResult facets_check(const PreviewSolid *solid, SingeError *error) {
     for (size_t k = 0; good && k < 3 * (size_t)solid->triangle_count; k++)
         good = solid->triangles[k] < solid->vertex_count;
     return good ? SINGE_OK
-                : preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "solid: a vertex is out of place or an index out of range");
+                : preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "solid: a vertex or an index is out of range");
 }
 
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **found, SingeError *error) {

@@ -296,8 +296,8 @@ static const SchemaRow collider_rows[] = {
      .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
             "(solid below heights over a rectangle of its own x-y plane) or `mesh` (what a closed mesh encloses)"},
     COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e6), "of the sphere or the capsule"),
-    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX, WITHIN(1e-6, 1e6),
-     .doc = "half of the box's lengths along its own axes"},
+    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX,
+     WITHIN(1e-6, 1e6), .doc = "half of the box's lengths along its own axes"},
     COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
      .doc = "a closed mesh, OBJ or PLY, whose faces turn counter-clockwise seen from outside and do not pass through "
@@ -323,8 +323,8 @@ static const SchemaRow collider_rows[] = {
     COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
     COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, WITHIN(0, 1000), "how near counts as contact for heat"),
     {"sides", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.sides), .names = sides_names,
-     .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the one "
-            "behind it as well, as if heat were through the sheet at once"},
+     .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the "
+            "one behind it as well, as if heat were through the sheet at once"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN,
      WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN,

@@ -1,7 +1,7 @@
 // Colliders that files describe: a mesh's faces become triangles, a picture's pixels heights.
 //
-// A face is cut by ears in the plane across its mean normal (Newell's): the ear that leaves the shortest new edge first,
-// so that a quad is cut along its shorter diagonal where both are inside.
+// A face is cut by ears in the plane across its mean normal (Newell's): the ear that leaves the shortest new edge
+// first, so that a quad is cut along its shorter diagonal where both are inside.
 #include "scene/solid.h"
 
 #include <math.h>

@@ -5,9 +5,10 @@
 // over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
 //
-// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its way over
-// the collider in this substep is longer than its distance, the way is followed from its start, in the collider's frame,
-// by steps that the distance allows (contact_enters); what enters goes back to the plane that touches the surface there.
+// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its way
+// over the collider in this substep is longer than its distance, the way is followed from its start, in the collider's
+// frame, by steps that the distance allows (contact_enters); what enters goes back to the plane that touches the
+// surface there.
 #include "base/quad.h"
 #include "dynamics/plan.h"
 
@@ -78,8 +79,8 @@ static bool contact_enters(const Collider *collider, Vec from, Vec to, Entry *en
 }
 
 /// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is along which way.
-static float contact_out(const Collider *collider, Vec from, Vec *to, Vec *normal) {
-    float offset = collider->def.offset, way = vec_length(vec_sub(*to, from));
+static float contact_out(const Collider *collider, float offset, Vec from, Vec *to, Vec *normal) {
+    float way = vec_length(vec_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + way, normal);
     Entry entry = {0};
     // behind a plane, however far, the way out is up
@@ -98,10 +99,10 @@ static float contact_out(const Collider *collider, Vec from, Vec *to, Vec *norma
     return offset - distance;
 }
 
-static bool contact_particle(const MovingCollider *moving, Vec previous, float *position) {
+bool contact_particle(const MovingCollider *moving, float offset, Vec previous, float *position) {
     const Collider *collider = moving->collider;
     Vec local = pose_unapply(&moving->after, vec_load(position)), out = local, normal;
-    float depth = contact_out(collider, pose_unapply(&moving->before, previous), &out, &normal);
+    float depth = contact_out(collider, offset, pose_unapply(&moving->before, previous), &out, &normal);
     if (depth <= 0) return false;
     normal = quat_rotate(moving->after.rotation, normal);
     Vec x = vec_add(vec_load(position), quat_rotate(moving->after.rotation, vec_sub(out, local)));
@@ -142,10 +143,11 @@ uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float 
         for (uint32_t c = 0; c < collider_count; c++) {
             const MovingCollider *collider = &plan->colliders[c];
             if (!contact_any_near(collider, x)) continue;
+            float offset = collider->collider->def.offset;
             for (int i = first; i < first + count; i++) {
                 if (position[i][3] == 0) continue;
                 Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
-                contacts += contact_particle(collider, previous, position[i]);
+                contacts += contact_particle(collider, offset, previous, position[i]);
             }
             for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
             quad_transpose(x);

@@ -170,6 +170,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
             dynamics_project(plan, shell, pool, h_sub, projection == 0, dynamics, counters);
         height_project(plan, shell, &state->ablate, pool, dynamics);
         if (plan->touch) touch_push(plan->touch, (const float(*)[4])plan->predicted, h_sub, dynamics);
+        contact_middles(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics);
         between.closes = true;
         between.collider_count = collider_count;
     }

@@ -8,8 +8,8 @@
 
 #include <stdatomic.h>
 
-/// A collider at the two ends of a substep, and a box about it that turns with it: what is outside of it is not touched,
-/// whatever the shape. A plane's box is without end but along its normal.
+/// A collider at the two ends of a substep, and a box about it that turns with it: what is outside of it is not
+/// touched, whatever the shape. A plane's box is without end but along its normal.
 typedef struct MovingCollider {
     const Collider *collider;
     Pose before, after;
@@ -118,6 +118,14 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
 /// of contacts.
 uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end);
+
+/// Contact and friction of one place that was at `previous` when the substep began, at that offset from the surface;
+/// false where it touches nothing.
+bool contact_particle(const MovingCollider *collider, float offset, Vec previous, float *place);
+
+/// Contact of what lies between a cell's corners (middle.c).
+void contact_middles(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
+                     Pool *pool, float h, DynamicsState *dynamics);
 
 /// The same for all particles.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);

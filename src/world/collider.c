@@ -56,7 +56,8 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
         result = mesh_solid_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
                                    &collider->mesh, error);
     if (!result && def->kind == SINGE_COLLIDER_HEIGHTFIELD)
-        result = height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights, error);
+        result = height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights,
+                                     error);
     if (result) collider_free(memory, collider);
     return result;
 }

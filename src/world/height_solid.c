@@ -1,6 +1,6 @@
-// Signed distance from what lies below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y). Each
-// cell of the grid is two triangles, split from its node of least x and y to the opposite one. The rectangle's edges are
-// walls that go down without end.
+// Signed distance from what lies below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y).
+// Each cell of the grid is two triangles, split from its node of least x and y to the opposite one. The rectangle's
+// edges are walls that go down without end.
 //
 // The surface straight above or below is |z - h| away, so only cells that near can hold the foot; blocks of cells whose
 // heights do not come near enough are passed over.
@@ -28,7 +28,8 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
                                 const float size[2], HeightSolid *solid, SingeError *error) {
     *solid = (HeightSolid){.columns = columns, .rows = rows, .low = INFINITY, .high = -INFINITY};
     const char *what = NULL;
-    if (columns < 2 || rows < 2 || columns > 32768 || rows > 32768) what = "columns and rows must be between 2 and 32768";
+    if (columns < 2 || rows < 2 || columns > 32768 || rows > 32768)
+        what = "columns and rows must be between 2 and 32768";
     for (int d = 0; d < 2; d++)
         if (!(size[d] >= 1e-6f && size[d] <= 1e4f)) what = "size must be between 1e-6 and 10000 m";
     if (!heights) what = "heights are missing";
@@ -37,14 +38,16 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
     for (size_t k = 0; k < count; k++)
         if (!(fabsf(heights[k]) <= 1e4f))
             return error_set(error, SINGE_ERROR_ARGUMENT, "collider", (int64_t)k,
-                             "height %zu (column %zu, row %zu) is not finite or beyond 10 km", k, k % columns, k / columns);
+                             "height %zu (column %zu, row %zu) is not finite or beyond 10 km", k, k % columns,
+                             k / columns);
     const uint32_t n[2] = {columns, rows};
     for (int d = 0; d < 2; d++) {
         solid->half[d] = size[d] / 2;
         solid->step[d] = size[d] / (float)(n[d] - 1);
         solid->blocks[d] = (n[d] - 1 + HEIGHT_BLOCK - 1) / HEIGHT_BLOCK;
     }
-    if (!NEW(memory, solid->heights, count) || !NEW(memory, solid->ranges, (size_t)solid->blocks[0] * solid->blocks[1])) {
+    size_t blocks = (size_t)solid->blocks[0] * solid->blocks[1];
+    if (!NEW(memory, solid->heights, count) || !NEW(memory, solid->ranges, blocks)) {
         height_solid_free(memory, solid);
         return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the heights");
     }
@@ -122,7 +125,8 @@ static double height_box(const HeightSolid *solid, Vec p, const uint32_t first[2
 static void height_block(const HeightSolid *solid, Vec p, uint32_t bi, uint32_t bj, const uint32_t from[2],
                          const uint32_t to[2], HeightFoot *best) {
     uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
-    uint32_t end[2] = {least(first[0] + HEIGHT_BLOCK, solid->columns - 1), least(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
+    uint32_t end[2] = {least(first[0] + HEIGHT_BLOCK, solid->columns - 1),
+                       least(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
     if (height_box(solid, p, first, end, solid->ranges[bj * solid->blocks[0] + bi]) >= best->square) return;
     for (int d = 0; d < 2; d++) {
         if (first[d] < from[d]) first[d] = from[d];

@@ -116,8 +116,10 @@ static void mesh_turn(MeshSolid *solid) {
             Vec v = vec_sub(vec_load(solid->vertices[corner[i]]), o);
             p[i][0] = (double)v.x, p[i][1] = (double)v.y, p[i][2] = (double)v.z;
         }
-        volume += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) + p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-                  p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+        for (int i = 0; i < 3; i++) {
+            int e = (i + 1) % 3, f = (i + 2) % 3;
+            volume += p[0][i] * (p[1][e] * p[2][f] - p[1][f] * p[2][e]);
+        }
     }
     solid->turned = volume < 0;
     for (uint32_t t = 0; solid->turned && t < solid->triangle_count; t++) {

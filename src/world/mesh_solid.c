@@ -73,7 +73,8 @@ static Vec solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
 
 /// The distance that the nearest triangle gives.
 static float solid_signed(const MeshSolid *solid, Vec p, uint32_t t, Vec *normal) {
-    TriangleFoot foot = triangle_foot(p, solid_corner(solid, t, 0), solid_corner(solid, t, 1), solid_corner(solid, t, 2));
+    Vec a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
+    TriangleFoot foot = triangle_foot(p, a, b, c);
     Vec pseudo = solid_pseudonormal(solid, t, foot.feature);
     const double n[3] = {(double)pseudo.x, (double)pseudo.y, (double)pseudo.z};
     double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
@@ -91,7 +92,8 @@ static float solid_signed(const MeshSolid *solid, Vec p, uint32_t t, Vec *normal
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
     Vec size = vec_sub(solid->high, solid->low);
     double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_LEAST), GRID_MOST);
-    double longest = (double)fmaxf(size.x, fmaxf(size.y, size.z)), least = longest / 256; // flat ones: not all cells there
+    // a flat one is taken to be thicker: else all cells would lie in its plane
+    double least = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
     double side[3] = {fmax((double)size.x, least), fmax((double)size.y, least), fmax((double)size.z, least)};
     solid->cell = (float)cbrt(side[0] * side[1] * side[2] / wanted);
     size_t count = 1;
@@ -144,7 +146,8 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
 /// What the grid knows: *least of the distance's size, *most of it, and the sign where least is above 0.
 static float solid_look(const MeshSolid *solid, const int at[3], Vec p, float *least, float *most) {
     size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
-    float coarse = solid->coarse[index], way = 1.0001f * vec_length(vec_sub(p, solid_middle(solid, at[0], at[1], at[2])));
+    float coarse = solid->coarse[index];
+    float way = 1.0001f * vec_length(vec_sub(p, solid_middle(solid, at[0], at[1], at[2])));
     *least = fabsf(coarse) - way;
     *most = fabsf(coarse) + way;
     return coarse;

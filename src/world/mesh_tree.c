@@ -1,6 +1,6 @@
-// The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes and a leaf's triangles are looked
-// at in one go (Wald et al., Getting rid of packets, 2008, for rays). Halves of equal size along the longest axis of the
-// middles; a leaf is full but for the last, so that counts tell how many nodes there are.
+// The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes and a leaf's triangles are
+// looked at in one go (Wald et al., Getting rid of packets, 2008, for rays). Halves of equal size along the longest
+// axis of the middles; a leaf is full but for the last, so that counts tell how many nodes there are.
 #include "world/mesh_solid.h"
 
 #include <string.h>
@@ -83,7 +83,8 @@ static int32_t tree_leaf(TreeBuild *build, uint32_t first, uint32_t count) {
     uint32_t index = first / SOLID_WIDE;
     SolidLeaf *leaf = &build->solid->leaves[index];
     for (uint32_t lane = 0; lane < SOLID_WIDE; lane++) {
-        const uint32_t *corner = build->solid->triangles[build->solid->order[first + (lane < count ? lane : count - 1)]];
+        uint32_t slot = first + (lane < count ? lane : count - 1);
+        const uint32_t *corner = build->solid->triangles[build->solid->order[slot]];
         for (int i = 0; i < 3; i++) {
             float a = build->solid->vertices[corner[0]][i];
             leaf->a[i][lane] = a;

@@ -80,9 +80,9 @@ class Example(Case):
         self.assertEqual(max(row["inverted_cells"] for row in rows), 0)
         self.assertLessEqual(max(row["strain_mean"] for row in rows), 0.01)
 
-    def ash_left(self):
-        """Vertices of the last frame that have burnt to ash and are still there."""
-        name = f"{self.NAME}.{len(self.rows):04d}.ply"
+    def vertices(self, frame):
+        """What a frame's file says of each vertex, by name."""
+        name = f"{self.NAME}.{frame:04d}.ply"
         with open(self.path("whole", "ply", name), "rb") as file:
             header, _, data = file.read().partition(b"end_header\n")
         lines = header.decode().splitlines()
@@ -90,8 +90,11 @@ class Example(Case):
         kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
         names = [line.split()[2] for line in kept if line.startswith("property")]
         rows = struct.iter_unpack("<" + "f" * len(names), data[: 4 * len(names) * count])
-        burnt = names.index("char")
-        return sum(row[burnt] > 0.95 for row in rows)
+        return [dict(zip(names, row)) for row in rows]
+
+    def ash_left(self):
+        """Vertices of the last frame that have burnt to ash and are still there."""
+        return sum(vertex["char"] > 0.95 for vertex in self.vertices(len(self.rows)))
 
     def look(self, frames, creases=1.2, power=3.0):
         """What pictures are judged by, over some frames: an ember line of less than 3 mm, creases that do not follow the
@@ -243,6 +246,43 @@ class StackEdge(Example):
         self.told()
         # one sheet alone is a fifth
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.4)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+
+
+class HotIron(Example):
+    NAME = "hot-iron"
+
+    def parts(self, frame):
+        """Vertices well under the sole, and those well beside it; the iron is turned by 20 degrees."""
+        under, beside = [], []
+        for vertex in self.vertices(frame):
+            turned = complex(vertex["rest_x"], vertex["rest_y"]) * complex(math.cos(math.pi / 9), -math.sin(math.pi / 9))
+            x, y = 1e3 * abs(turned.real), 1e3 * abs(turned.imag)
+            if x < 40 and y < 15:
+                under.append(vertex)
+            elif x > 61 or y > 38:
+                beside.append(vertex)
+        return under, beside
+
+    def test_burns_its_shape(self):
+        self.common()
+        lifted = 63  # the last frame before
+        under, beside = self.parts(lifted)
+        heated = statistics.median(v["temperature"] for v in under) - ZERO_CELSIUS
+        warmest = max(v["temperature_peak"] for v in beside) - ZERO_CELSIUS
+        self.say["under the sole"] = f"{heated:.0f} C"
+        self.say["beside"] = f"{warmest:.0f} C at most"
+        self.say["heat"] = f"{self.rows[lifted - 1]['heat_in']:.0f} J"
+        last_under, last_beside = self.parts(len(self.rows))
+        burnt = sum(v["char"] for v in last_under) / len(last_under)
+        self.say["char at last"] = f"{burnt:.2f}"
+        self.told()
+        self.assertTrue(290 < heated < 335 and warmest < 80)
+        self.assertEqual(max(v["char"] for v in beside + last_beside), 0)
+        self.assertGreater(burnt, 0.5)
+        # what it stands on for two seconds does not burn before it is lifted
+        self.assertLess(self.rows[lifted - 1]["burnt_fraction"], 0.01)
+        self.assertGreater(self.rows[-1]["burnt_fraction"], 0.05)
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 

@@ -222,7 +222,8 @@ static void test_solids(void **state) {
     const uint8_t pixels[18] = {0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255};
     assert_int_equal(png_write(path, 3, 2, pixels, &error), SINGE_OK);
     const char *const good = SHEET "colliders:\n  - {kind: mesh, mesh: cube.obj, scale: 0.001, position: [0, 0, 1 m]}\n"
-                                   "  - {kind: heightfield, picture: heights.png, size: [30 cm, 20 cm], heights: [1 cm, 3 cm]}\n";
+                                   "  - {kind: heightfield, picture: heights.png, size: [30 cm, 20 cm],\n"
+                                   "     heights: [1 cm, 3 cm]}\n";
     const char *const bad = SHEET "colliders:\n  - {kind: plane}\n  - {kind: mesh, mesh: open.obj}\n";
     Scene *scene;
     SceneAssets assets;

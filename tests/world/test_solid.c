@@ -184,7 +184,8 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
     for (uint32_t j = 0; j + 1 < rows; j++)
         for (uint32_t i = 0; i + 1 < columns; i++) {
             uint32_t a = j * columns + i, b = a + 1, c = b + columns, d = a + columns;
-            const uint32_t new[12] = {a, b, c, a, c, d, a + nodes, c + nodes, b + nodes, a + nodes, d + nodes, c + nodes};
+            const uint32_t new[12] = {a, b, c, a, c, d, a + nodes, c + nodes, b + nodes,
+                                      a + nodes, d + nodes, c + nodes};
             memcpy(t, new, sizeof new), t += 12;
         }
     for (uint32_t side = 0; side < 4; side++) {
@@ -207,8 +208,8 @@ static void heights_are_those_of_their_triangles(void **unused) {
     static float heights[COLUMNS * ROWS];
     const float size[2] = {0.2f, 0.14f};
     for (int k = 0; k < COLUMNS * ROWS; k++)
-        heights[k] = hill(0.2f * ((float)(k % COLUMNS) / (COLUMNS - 1) - 0.5f), 0.14f * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) +
-                     any(0, 0.002f);
+        heights[k] = hill(size[0] * ((float)(k % COLUMNS) / (COLUMNS - 1) - 0.5f),
+                          size[1] * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) + any(0, 0.002f);
     Triangles mesh = column(COLUMNS, ROWS, heights, size, -1);
     SingeColliderDef def = singe_default_collider();
     def.kind = SINGE_COLLIDER_HEIGHTFIELD;
