@@ -278,6 +278,92 @@ static void small_spheres_hold(void **unused) {
     }
 }
 
+// ---- presses and swats
+
+/// m/s that the particles move at most, and how many are under the plane z = 0.
+static double fastest(const Bench *bench, int *under) {
+    double most = 0;
+    *under = 0;
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
+        most = fmax(most, (double)vec_length(vec_load(bench->state.dynamics.velocity[i])));
+        *under += bench->state.dynamics.position[i][2] < -1e-5f;
+    }
+    return most;
+}
+
+/// A block comes down on a sheet that lies on a plate, nearer than sheet and offsets are thick, and is lifted again.
+static void what_is_pressed_stays_and_rests(void **unused) {
+    (void)unused;
+    for (float gap = 2e-3f; gap > 0.2e-3f; gap /= 2) {
+        Bench bench;
+        SingeMaterialDef material = singe_default_material();
+        bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+        Triangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
+        SingeColliderDef def = triangles_def(&triangles), plate = singe_default_collider();
+        const float high = 0.005f + 0.006f, low = 0.005f + gap, x = 0.016f;
+        SingePoseKey keys[] = {{0, {x, x, high}, {0, 0, 0, 1}},       {0.05f, {x, x, low}, {0, 0, 0, 1}},
+                               {0.25f, {x, x, low}, {0, 0, 0, 1}},    {0.3f, {x, x, high}, {0, 0, 0, 1}},
+                               {0.31f, {x, x, 2 * high}, {0, 0, 0, 1}}};
+        add_collider(&bench, def, 5, keys);
+        Collider *both = calloc(2, sizeof *both);
+        both[0] = bench.colliders.items[0];
+        free(bench.colliders.items);
+        SingePoseKey key = {0, {x, x, -0.01f}, {0, 0, 0, 1}};
+        plate.kind = SINGE_COLLIDER_BOX, plate.half_size[2] = 0.01f, plate.path_count = 1, plate.path = &key;
+        assert_int_equal(collider_create(&bench.memory, &plate, &both[1], &bench.error), SINGE_OK);
+        both[1].generation = 2;
+        bench.colliders = (ColliderList){2, 2, both};
+        assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, 2));
+        const float none[4] = {0, 0, 0, 1};
+        place(&bench, none, vec(0, 0, plate.offset));
+        int under, ever = 0;
+        double most = 0;
+        for (int step = 0; step < 480; step++) {
+            bench_step(&bench, STEP);
+            most = fmax(most, fastest(&bench, &under));
+            ever += under;
+        }
+        double last = fastest(&bench, &under);
+        printf("pressed to %.2f mm: at most %.2f m/s, %.4f m/s after 1 s, %d times under the plate\n", 1e3 * (double)gap,
+               most, last, ever);
+        assert_true(ever == 0 && most < 2 && last < 0.02);
+        collider_free(&bench.memory, &both[1]);
+        close_all(&bench);
+        triangles_free(&triangles);
+    }
+}
+
+/// A plate that turns about its edge hits a sheet in flight: nothing gets through.
+static void a_swat_passes_nothing(void **unused) {
+    (void)unused;
+    Bench bench;
+    SingeMaterialDef material = plain();
+    bench_open(&bench, quads_grid(16, 16, 0.002f, 0.002f, false), &material, 1);
+    Triangles triangles = triangles_box(6, 0.1f, 0.1f, 0.0005f);
+    for (uint32_t v = 0; v < triangles.vertex_count; v++) triangles.vertices[3 * (size_t)v] += 0.06f; // about its edge
+    enum { KEYS = 40 };
+    SingePoseKey keys[KEYS];
+    for (int k = 0; k < KEYS; k++) { // 40 rad/s upwards about -y, from 0.6 rad below
+        float angle = -0.6f + 1.2f * (float)k / (KEYS - 1);
+        keys[k] = (SingePoseKey){0.03f * (float)k / (KEYS - 1), {0, 0, 0}, {0, -sinf(angle / 2), 0, cosf(angle / 2)}};
+    }
+    add_collider(&bench, triangles_def(&triangles), KEYS, keys);
+    const float none[4] = {0, 0, 0, 1};
+    place(&bench, none, vec(0.04f, -0.016f, 0.004f));
+    for (int step = 0; step < 15; step++) bench_step(&bench, STEP);
+    Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
+    int through = 0, hit = 0;
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
+        Vec local = pose_unapply(&pose, vec_load(bench.state.dynamics.position[i]));
+        through += local.z < 0 && local.x > 0.011f && local.x < 0.109f && fabsf(local.y) < 0.049f;
+        hit += bench.state.dynamics.velocity[i][2] > 1;
+    }
+    printf("swat: %d of %u particles hit, %d through\n", hit, bench.shell.particle_count, through);
+    assert_true(hit > 400 && through == 0);
+    triangles_free(&triangles);
+    close_all(&bench);
+}
+
 // ---- cost
 
 static double seconds(void) {
@@ -331,6 +417,8 @@ int main(void) {
         cmocka_unit_test(nothing_passes_thin_plates),     cmocka_unit_test(sheets_slip_above_the_angle_of_friction),
         cmocka_unit_test(what_lies_still_does_not_creep), cmocka_unit_test(a_belt_carries_what_friction_allows),
         cmocka_unit_test(sheets_rest_on_meshes_and_heights), cmocka_unit_test(small_spheres_hold),
+        cmocka_unit_test(what_is_pressed_stays_and_rests),
+        cmocka_unit_test(a_swat_passes_nothing),
         cmocka_unit_test(what_is_far_costs_next_to_nothing),
     };
     return cmocka_run_group_tests_name("contact", tests, NULL, NULL);
