@@ -22,6 +22,10 @@ static inline double triangle_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline void triangle_less(Vec b, Vec a, double out[3]) {
+    out[0] = (double)b.x - (double)a.x, out[1] = (double)b.y - (double)a.y, out[2] = (double)b.z - (double)a.z;
+}
+
 /// The foot a + s ab + t ac.
 static inline TriangleFoot triangle_foot_at(const double pa[3], const double ab[3], const double ac[3], double s,
                                             double t, int feature) {
@@ -32,9 +36,8 @@ static inline TriangleFoot triangle_foot_at(const double pa[3], const double ab[
 }
 
 static inline TriangleFoot triangle_foot(Vec p, Vec a, Vec b, Vec c) {
-    const double ab[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
-    const double ac[3] = {(double)c.x - a.x, (double)c.y - a.y, (double)c.z - a.z};
-    const double pa[3] = {(double)p.x - a.x, (double)p.y - a.y, (double)p.z - a.z};
+    double ab[3], ac[3], pa[3];
+    triangle_less(b, a, ab), triangle_less(c, a, ac), triangle_less(p, a, pa);
     const double bb = triangle_dot(ab, ab), cc = triangle_dot(ac, ac), bc = triangle_dot(ab, ac);
     const double d1 = triangle_dot(ab, pa), d2 = triangle_dot(ac, pa);
     if (d1 <= 0 && d2 <= 0) return triangle_foot_at(pa, ab, ac, 0, 0, TRIANGLE_CORNER + 0);

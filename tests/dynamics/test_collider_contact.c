@@ -421,5 +421,5 @@ int main(void) {
         cmocka_unit_test(a_swat_passes_nothing),
         cmocka_unit_test(what_is_far_costs_next_to_nothing),
     };
-    return cmocka_run_group_tests_name("contact", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("collider_contact", tests, NULL, NULL);
 }
