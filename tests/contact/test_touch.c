@@ -19,7 +19,7 @@ typedef struct Flat {
     float corner[3], u[3], v[3]; ///< m
 } Flat;
 
-static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float wave, const float velocity[3]) {
+static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick, float wave, const float velocity[3]) {
     uint32_t n = (uint32_t)flat->n, row = n + 1;
     float *x = malloc(3 * row * row * sizeof *x);
     uint32_t *cells = malloc(4 * n * n * sizeof *cells);
@@ -36,7 +36,7 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float wave, const 
         }
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
-    def.material.thickness = singe_param(0.6f * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] +
+    def.material.thickness = singe_param(cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] +
                                                       flat->u[2] * flat->u[2]) / (float)n);
     for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
     SingeSheetId id;
@@ -77,7 +77,7 @@ static long crossings(SingeSim *sim) {
 /// A sheet on edge that falls into folds.
 static SingeSim *heap(int threads, bool contact) {
     SingeSim *sim = new_sim(threads, contact);
-    add_flat(sim, &(Flat){24, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 4e-3f, NULL);
+    add_flat(sim, &(Flat){36, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 0.4f, 4e-3f, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
     return sim;
@@ -92,7 +92,8 @@ static void a_heap_does_not_cross(void **unused) {
         assert_int_equal(crossings(sim), 0);
         crossed += crossings(without);
     }
-    assert_true(crossed > 20); // it would
+    print_message("without contact: %ld crossings\n", crossed);
+    assert_true(crossed > 100); // it would
     SingeTimers timers = singe_sim_timers(sim);
     assert_int_equal(timers.contact_unresolved, 0);
     assert_int_equal(timers.contact_dropped, 0);
@@ -106,8 +107,8 @@ static void thrown_sheets_do_not_cross(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
-    add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 2e-3f, (float[3]){0, 6, 0});
-    add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 2e-3f, (float[3]){0, -6, 0});
+    add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, 6, 0});
+    add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, -6, 0});
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     for (int frame = 0; frame < 60; frame++) {
         steps(sim, 2);
@@ -122,7 +123,7 @@ static void layers_keep_their_thickness(void **unused) {
     SingeSim *sim = new_sim(1, true);
     for (int k = 0; k < 3; k++)
         add_flat(sim, &(Flat){12, {0.003f * (float)k, 0.002f * (float)k, 1.2e-3f + 2e-3f * (float)k}, {0.05f, 0, 0},
-                              {0, 0.05f, 0}}, 0, NULL);
+                              {0, 0.05f, 0}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
     steps(sim, 480);
@@ -143,8 +144,8 @@ static double slide(float friction) {
     SingeSim *sim;
     def.contact.enabled = true, def.contact.friction = friction, def.air_density = 0;
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
-    add_flat(sim, &(Flat){20, {0, 0, 1.01e-3f}, {0.1f, 0, 0}, {0, 0.1f, 0}}, 0, NULL);
-    add_flat(sim, &(Flat){8, {0.02f, 0.03f, 1.6e-3f}, {0.04f, 0, 0}, {0, 0.04f, 0}}, 0, (float[3]){0.2f, 0, 0});
+    add_flat(sim, &(Flat){20, {0, 0, 1.01e-3f}, {0.1f, 0, 0}, {0, 0.1f, 0}}, 0.6f, 0, NULL);
+    add_flat(sim, &(Flat){8, {0.02f, 0.03f, 1.6e-3f}, {0.04f, 0, 0}, {0, 0.04f, 0}}, 0.6f, 0, (float[3]){0.2f, 0, 0});
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
     SingeView view = singe_sim_view(sim);
@@ -168,8 +169,8 @@ static void sheets_rub(void **unused) {
 static void crossing_input_is_left_alone(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
-    add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0, NULL);
-    add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0, NULL);
+    add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     steps(sim, 1);
     assert_true(singe_sim_stats(sim).tangled_cells > 8);
