@@ -40,6 +40,8 @@ BenchFn bench_width;
 BenchFn bench_stability;
 /// How much the look hangs on time step, substeps and resolution.
 BenchFn bench_look;
+/// What a strip that was folded and let go keeps of the fold.
+BenchFn bench_fold;
 /// The spectrum of the wrinkles of a burning edge, and how much its peak hangs on time step and resolution.
 BenchFn bench_spectrum;
 

@@ -18,23 +18,24 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
     return setup;
 }
 
-SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float side, bool upright, SingeSheetId *id) {
-    uint32_t n = (uint32_t)cells, row = n + 1;
-    float *positions = malloc((size_t)3 * row * row * sizeof *positions);
-    uint32_t *corners = malloc((size_t)4 * n * n * sizeof *corners);
+SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2], const float sides[2], bool upright,
+                            SingeSheetId *id) {
+    uint32_t n = (uint32_t)cells[0], rows = (uint32_t)cells[1], row = n + 1, vertices = row * (rows + 1);
+    float *positions = malloc((size_t)3 * vertices * sizeof *positions);
+    uint32_t *corners = malloc((size_t)4 * n * rows * sizeof *corners);
     SingeResult result = SINGE_ERROR_MEMORY;
     if (positions && corners) {
-        for (uint32_t v = 0; v < row * row; v++) {
-            float across = side * (float)(v % row) / (float)n, along = side * (float)(v / row) / (float)n;
+        for (uint32_t v = 0; v < vertices; v++) {
+            float across = sides[0] * (float)(v % row) / (float)n, along = sides[1] * (float)(v / row) / (float)rows;
             float *x = positions + (size_t)3 * v;
             x[0] = across, x[1] = upright ? 0 : along, x[2] = upright ? along : 0;
         }
-        for (uint32_t c = 0; c < n * n; c++) {
+        for (uint32_t c = 0; c < n * rows; c++) {
             uint32_t v = c / n * row + c % n, *cell = corners + (size_t)4 * c;
             cell[0] = v, cell[1] = v + 1, cell[2] = v + row + 1, cell[3] = v + row;
         }
-        def->vertex_count = row * row, def->positions = positions;
-        def->cell_count = n * n, def->cells = corners;
+        def->vertex_count = vertices, def->positions = positions;
+        def->cell_count = n * rows, def->cells = corners;
         result = singe_sim_add_sheet(sim, def, id);
     }
     free(positions);
@@ -42,8 +43,11 @@ SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float side, 
     return result;
 }
 
-/// Nothing but the sheet's own weight acts, and no heat flows.
-static void material_inert(SingeMaterialDef *material) {
+SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float side, bool upright, SingeSheetId *id) {
+    return sheet_add_strip(sim, def, (const int[]){cells, cells}, (const float[]){side, side}, upright, id);
+}
+
+void sheet_inert(SingeMaterialDef *material) {
     material->grammage = singe_param(0.1f);
     material->reference_grammage = 0;
     material->diffusivity = material->layer_exchange = singe_param(0);
@@ -91,7 +95,7 @@ static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId
 static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
-    material_inert(&sheet.material);
+    sheet_inert(&sheet.material);
     sheet.material.thickness = singe_param(setup->thickness);
     if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
     sheet.material.damping = singe_param(setup->damping);

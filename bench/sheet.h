@@ -28,6 +28,13 @@ BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps)
 /// Adds the sheet alone, flat in the xy plane or upright in the xz plane, `cells` a side.
 SingeResult sheet_add(SingeSim *sim, SingeSheetDef *def, int cells, float size, bool upright, SingeSheetId *id);
 
+/// The same for a rectangle of cells[0] by cells[1] cells.
+SingeResult sheet_add_strip(SingeSim *sim, SingeSheetDef *def, const int cells[2], const float sides[2], bool upright,
+                            SingeSheetId *id);
+
+/// Nothing but the sheet's own weight acts on what is of this material, and no heat flows.
+void sheet_inert(SingeMaterialDef *material);
+
 /// Makes a simulation and commits it. On failure *sim is NULL.
 SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *error);
 

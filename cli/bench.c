@@ -61,6 +61,9 @@ static const struct {
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
          BENCH_BIT(QUICK) | SOLVER | OUTPUT,
      "Rest shape, sag and wrinkles at other time steps, substeps and resolutions."},
+    {"fold", "bench fold", bench_fold,
+     BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
+     "A strip is folded by 180 degrees and let go: the angle that stays, at other resolutions and time steps."},
     {"spectrum", "bench spectrum", bench_spectrum,
      BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(SUBSTEPS) | OUTPUT,

@@ -84,7 +84,9 @@ bool default_pin(SceneArena *arena, void *object) {
 
 void chosen_solver(void *object) {
     SingeSolverDef *solver = object;
+    const bool creases = solver->creases; // a key of the scene
     singe_init_solver_method(solver, sizeof *solver, solver->method);
+    solver->creases = creases;
 }
 
 bool default_grid(SceneArena *arena, void *object) {

@@ -211,6 +211,11 @@ static const SchemaRow material_rows[] = {
     PARAM("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
     PARAM("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
     PARAM("damping", damping, DIM_RATE, FROM(0), "of all motion"),
+    PARAM("crease_radius", crease_radius, DIM_LENGTH, FROM(0),
+          "with `creases`: of what is bent sharper than this a part stays; 0: never. It is the model's, whose thickness is "
+          "ten times the real sheet's, and so is the radius at which it creases"),
+    PARAM("crease_share", crease_share, DIM_FRACTION, WITHIN(0, 1),
+          "how much of the bend beyond that stays; char keeps less, ash nothing"),
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
      .sub = &schema_measured, .doc = "what sources say of its fire"},
 };
@@ -555,6 +560,9 @@ static const SchemaRow scene_rows[] = {
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},
+    {"creases", ROW_BOOL, DIM_NONE, AT(Scene, sim.solver.creases),
+     .doc = "yes: sharp bends stay, by the material's `crease_radius` and `crease_share` (solver `strand`); no: sheets "
+            "spring back, as in the paper"},
     {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},

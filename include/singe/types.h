@@ -134,6 +134,10 @@ typedef struct SingeMaterialDef {
     SingeParam char_weight;                ///< factor on the weight of what is burnt to m_min, 0 to 1
     SingeParam drag;                       ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
     SingeParam damping;                    ///< 1/s, of all velocities, >= 0
+    /// m, where solver.creases: of what is bent sharper than this radius a part stays, >= 0; 0: never. The model is
+    /// thicker than the real sheet, and creases at radii larger in proportion
+    SingeParam crease_radius;
+    SingeParam crease_share;               ///< of the curvature beyond that, what stays, 0 to 1
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);
@@ -328,6 +332,7 @@ typedef struct SingeSolverDef {
     float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
     float height_min;       ///< smallest height of a centre over its corners, in thicknesses; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
+    bool creases;           ///< bends sharper than the material's crease_radius stay (strand)
 } SingeSolverDef;
 
 /// Fills a Def with what suits SINGE_SOLVER_STRAND, and for another method with what the paper gives for it.

@@ -9,6 +9,12 @@
 
 #include <string.h>
 
+/// Blocks of what sums go over: particles, or green springs, which are more where a sheet has many handles.
+static int plan_partials(const Shell *shell) {
+    uint32_t particles = shell->particle_count, springs = shell->springs[SINGE_GREEN].count;
+    return pool_blocks((int)(particles > springs ? particles : springs));
+}
+
 static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory) {
     bool ok = NEW(memory, plan->inverse_mass, plan->particle_count) && NEW(memory, plan->drag, plan->particle_count) &&
               NEW(memory, plan->normal, plan->particle_count) && NEW(memory, plan->air, plan->particle_count) &&
@@ -16,7 +22,11 @@ static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory
               NEW(memory, plan->cell_normal, plan->cell_count) &&
               NEW(memory, plan->height_wait, height_wait_count(shell)) &&
               NEW(memory, plan->colliders, plan->collider_capacity) &&
-              NEW(memory, plan->partial, pool_blocks((int)plan->particle_count));
+              NEW(memory, plan->partial, plan_partials(shell));
+    if (ok && shell->creases && plan->settings.solver.method == SINGE_SOLVER_STRAND) {
+        ok = NEW(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
+        if (ok) creases_measure(shell, plan->hinges);
+    }
     return ok;
 }
 
@@ -65,7 +75,8 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->cell_normal, plan->cell_count);
     FREE(memory, plan->height_wait, height_wait_count(shell));
     FREE(memory, plan->colliders, plan->collider_capacity);
-    FREE(memory, plan->partial, pool_blocks((int)plan->particle_count));
+    FREE(memory, plan->partial, plan_partials(shell));
+    FREE(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
     strands_free(memory, &plan->strands);
     attach_free(memory, shell, &plan->attachments);
     FREE(memory, plan, 1);
@@ -179,6 +190,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;
+    dynamics_crease(plan, shell, state, pool, h, dynamics);
     if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
     return SINGE_OK;
 }

@@ -43,6 +43,15 @@ void strands_free(Memory *memory, Strands *strands);
 
 typedef struct Paper Paper;
 
+/// Where two cells meet that a green spring joins, as they lie at rest (crease.c).
+typedef struct Hinge {
+    uint8_t side[2]; ///< of the cell at each of the spring's ends
+    float arc;       ///< m, s, from middle to middle along the sheet
+    float angle;     ///< rad, theta_0
+    float most;      ///< rad, beta
+    float lean;      ///< rad, phi
+} Hinge;
+
 struct DynamicsPlan {
     DynamicsSettings settings;
     Paper *paper;            ///< of the methods other than strand, else NULL
@@ -58,11 +67,13 @@ struct DynamicsPlan {
     bool strands_written; ///< their weights and targets, in a step that was done
     Attachments attachments;
     TouchPlan *touch;        ///< NULL where sheets pass through each other
+    Hinge *hinges;        ///< [green springs], or NULL where no bend stays
+    bool creased;         ///< a crease has changed in the step before
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
-    double *partial;         ///< [pool_blocks(particles)]
+    double *partial;         ///< [pool_blocks(particles or green springs)]
     uint32_t particle_count, cell_count, spring_count[SINGE_COLOUR_COUNT];
 };
 
@@ -104,6 +115,19 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
 /// Puts centres that have gone through their corners back over them: the last pass of a step (order.c).
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
+
+/// What bends may stay at (crease.c).
+void creases_measure(const Shell *shell, Hinge *hinges);
+
+/// Lets what is bent too sharply keep a part of it, for the steps to come.
+void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                     DynamicsState *dynamics);
+
+/// Target length of a green spring with a crease of so many rad over that without.
+float crease_ratio(const Hinge *hinge, float angle);
+
+/// Share of its crease that burning has left to a green spring.
+float crease_kept(const Shell *shell, const State *state, uint32_t green);
 
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);

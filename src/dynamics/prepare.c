@@ -73,12 +73,17 @@ static void prepare_strands(void *task, int begin, int end) {
     const float *target = job->state->burn.spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const float *soft = job->plan->soft;
+    const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
+    const float *crease = job->state->dynamics.crease;
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
             set->weight[slot] = flags[k] & SINGE_ALIVE ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
+            if (!hinges || crease[k] == 0) continue;
+            float angle = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
+            set->length[slot] *= crease_ratio(&hinges[k], angle);
         }
     }
 }
@@ -92,7 +97,8 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state
     // nothing has burnt, so what was written for an earlier step is still right
     bool same = plan->strands_written && state->burn.mass_burnt == 0;
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
-    for (int colour = 0; !same && colour < SINGE_COLOUR_COUNT; colour++) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        if (same && !(plan->creased && colour == SINGE_GREEN)) continue;
         job.colour = (SingeColour)colour;
         const SpringSet *springs = &shell->springs[colour];
         int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));

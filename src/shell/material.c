@@ -71,6 +71,8 @@ static const ParamRule param_rules[] = {
     {FIELD(char_weight), PARAM_CHAR_WEIGHT, AT_BOTH, UP_TO_ONE},
     {FIELD(drag), PARAM_DRAG, AT_BOTH, NOT_NEGATIVE},
     {FIELD(damping), PARAM_DAMPING, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(crease_radius), PARAM_CREASE_RADIUS, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(crease_share), PARAM_CREASE_SHARE, AT_BOTH, UP_TO_ONE},
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 

@@ -45,6 +45,8 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_CHAR_WEIGHT] = &matter->char_weight,
         [PARAM_DRAG] = &matter->drag,
         [PARAM_DAMPING] = &matter->damping,
+        [PARAM_CREASE_RADIUS] = &matter->crease_radius,
+        [PARAM_CREASE_SHARE] = &matter->crease_share,
     };
     return fields[param];
 }

@@ -67,6 +67,8 @@ typedef struct Matter {
     Field char_weight;
     Field drag;
     Field damping;             ///< 1/s
+    Field crease_radius;       ///< m
+    Field crease_share;
     Field temperature;         ///< K, initial
     uint16_t *sheet;
 } Matter;
@@ -95,6 +97,7 @@ typedef struct Shell {
     uint32_t *cell_order;          ///< [cell_count] cells, family by family
     uint32_t *fan_first;           ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
     uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
+    bool creases;                  ///< bends may stay: a State has room for them
 } Shell;
 
 /// The parameters that vary over a sheet, in the order of SheetSource.value.
@@ -104,6 +107,7 @@ typedef enum ShellParam {
     PARAM_SHRINK, PARAM_FIBRE_ANGLE, PARAM_FIBRE_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE,
     PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
+    PARAM_CREASE_RADIUS, PARAM_CREASE_SHARE,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
     PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT
@@ -174,6 +178,8 @@ typedef struct DynamicsState {
     float (*position)[4]; ///< [particles + shell_nowhere_count] m; fourth: 1/kg, inverse mass in this step
     float (*velocity)[4]; ///< m/s
     uint8_t *pinned;      ///< [particles] number of pins that hold it
+    float *bend;          ///< [green springs] 1/m, curvature beyond rest and curl, through a low pass; NULL without
+    float *crease;        ///< [green springs] 1/m, what of it stays; NULL without
 } DynamicsState;
 
 /// What the gas does to the sheets, from one of its steps to the next. The arrays are the gas plan's, which has two of

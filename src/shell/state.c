@@ -42,6 +42,10 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->ablate.particle_flags, particles);
     TAKE(state->ablate.cell_flags, shell->cell_count);
     TAKE(state->dynamics.pinned, particles);
+    if (shell->creases) {
+        TAKE(state->dynamics.bend, shell->springs[SINGE_GREEN].count);
+        TAKE(state->dynamics.crease, shell->springs[SINGE_GREEN].count);
+    }
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->ablate.spring_flags[colour], shell->springs[colour].count);
     *basic = used;

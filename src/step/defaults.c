@@ -41,6 +41,8 @@ static SingeMaterialDef standard_material(void) {
         .char_weight = singe_param(0.8f),
         .drag = singe_param(1.3f),
         .damping = singe_param(0.5f),
+        .crease_radius = singe_param(15e-3f),
+        .crease_share = singe_param(0.7f),
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);

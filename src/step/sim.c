@@ -193,6 +193,7 @@ SingeResult sim_build(SingeSim *sim) {
     Memory *memory = &sim->memory;
     Shell *shell = &sim->shell;
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
+    shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
 
     // a particle ignites once, a hole has a cell of its own and so has every piece
     size_t events = shell->particle_count + 2 * (size_t)shell->cell_count;

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 5 };
+enum { SNAPSHOT_VERSION = 6 };
 
 typedef struct SnapshotHeader {
     char magic[8];      ///< "SINGESIM"

@@ -33,6 +33,7 @@ static void def_solver(Stream *stream, SingeSolverDef *solver) {
     STREAM(stream, solver->smoothing_length);
     STREAM(stream, solver->height_min);
     STREAM(stream, solver->height_gain);
+    def_bool(stream, &solver->creases);
 }
 
 static void def_gas(Stream *stream, SingeGasDef *gas) {

@@ -94,6 +94,8 @@ static const struct {
     {AT(char_weight), PARAM_CHAR_WEIGHT, BOTH, TO_1},
     {AT(drag), PARAM_DRAG, BOTH, FROM_0},
     {AT(damping), PARAM_DAMPING, BOTH, FROM_0},
+    {AT(crease_radius), PARAM_CREASE_RADIUS, BOTH, FROM_0},
+    {AT(crease_share), PARAM_CREASE_SHARE, BOTH, TO_1},
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 

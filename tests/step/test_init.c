@@ -12,7 +12,7 @@
 enum { UNTOUCHED = 0xA5, LONGER = 32, MAX = sizeof(SingeSheetDef) + sizeof(SingeSimDef) + LONGER };
 
 /// Without the padding at its end.
-enum { SOLVER_SIZE = offsetof(SingeSolverDef, height_gain) + sizeof(float) };
+enum { SOLVER_SIZE = offsetof(SingeSolverDef, creases) + sizeof(bool) };
 
 typedef union Bytes {
     unsigned char at[MAX];

@@ -1,0 +1,206 @@
+// Plastic creases: what is bent sharper than a radius keeps a part of the bend.
+//
+// Geometry. Two cells meet at an edge, their middles at the distances p and q from it along the sheet: the bend between
+// them is spread over the arc s = p + q. theta is the angle from one cell's normal n to the other's, positive where the
+// sheet folds away from the centres:
+//
+//   theta = atan2((n_1 x n_2) . e, n_1 . n_2),   e the unit edge, turned as it is in the first cell
+//
+// Centres at the thickness t over their cells are then apart by (p = q; alpha = theta/2)
+//
+//   l(theta) = s cos alpha + 2 t sin alpha = r cos(alpha - beta),   r^2 = s^2 + 4 t^2,   tan beta = 2 t/s
+//
+// so that a green spring of the target length l(theta_0 + theta_p), theta_0 the angle at rest, is at rest in a fold of
+// theta_p more: longer for folds away from the centres, shorter towards them. The other colours keep theirs. Eq 6
+// gives the green length for theta_0; times
+//
+//   f = cos(phi + theta_p/2)/cos phi,   phi = theta_0/2 - beta
+//
+// it has the crease. l is greatest at phi = 0: a mesh of cells s holds less than 2 beta = 2 atan(2 t/s) an edge away
+// from the centres, and less than pi - 2 beta towards them. What is asked beyond CREASE_HOLDS of that is held as that.
+//
+// Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. Elastic is what is neither crease nor
+// eq 6's own doing, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by
+// cos(phi + theta_6/2) = a/b cos phi. With k_y = 1/crease_radius, c = crease_share,
+//
+//   |k_e| > k_y + (1/c - 1)|k_p|:   k_p += c (|k_e| - k_y - (1/c - 1)|k_p|) sign k_e
+//
+// which is linear hardening: a sheet bent from flat to k keeps k_p = c (|k| - k_y), at once and at any step. A sheet let
+// go has |k_e| = 0 at k = k_p: only a bend by k_y the other way opens the crease again. k - k_6 is
+// taken through a low pass of CREASE_TIME: trembling does not crease.
+//
+// Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
+// and no more than that share of a bend comes to stay.
+#include "base/quad.h"
+#include "dynamics/plan.h"
+
+/// s, how long a bend must last.
+static const float CREASE_TIME = 0.02f;
+
+/// Share of the way to where l(theta) is flat or 0 that a crease is held to, so that it stays firm.
+static const float CREASE_HOLDS = 0.85f;
+
+static const float CREASE_PI = 3.14159265f;
+
+typedef struct Crease {
+    DynamicsPlan *plan;
+    const Shell *shell;
+    const State *state;
+    DynamicsState *dynamics;
+    float follows; ///< share of the way to the present bend that the low pass goes in this step
+    bool burning;  ///< something has burnt
+} Crease;
+
+// ---- once
+
+/// The side of a cell across which `other` lies.
+static uint8_t hinge_side(const Shell *shell, uint32_t cell, uint32_t other) {
+    uint8_t side = 0;
+    while (side < 3 && shell_neighbour(shell, cell, side) != other) side++;
+    return side;
+}
+
+static Vec hinge_normal(const float (*x)[4], const uint32_t *corner) {
+    return vec_unit(vec_cross(vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]])),
+                              vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]))));
+}
+
+static Vec hinge_middle(const float (*x)[4], const uint32_t *corner) {
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = vec_mad(sum, vec_load(x[corner[i]]), 0.25f);
+    return sum;
+}
+
+/// theta between unit normals; NAN where one of them is none.
+static inline float hinge_angle(Vec a, Vec b, Vec edge) {
+    float along = vec_dot(a, b), length = vec_length(edge);
+    if (!(length > 0 && vec_dot(a, a) > 0.5f && vec_dot(b, b) > 0.5f)) return NAN;
+    float across = vec_dot(vec_cross(a, b), edge) / length;
+    if (along < 0.9f) return atan2f(across, along);
+    float square = across * across; // asin, to 1e-4 of itself
+    return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
+}
+
+static Hinge hinge_measure(const Shell *shell, uint32_t green) {
+    const uint32_t *ends = shell->springs[SINGE_GREEN].ends[green];
+    const float(*x)[4] = (const float(*)[4])shell->rest_position;
+    uint32_t cell[2] = {ends[0] - shell->vertex_count, ends[1] - shell->vertex_count};
+    Hinge hinge = {.side = {hinge_side(shell, cell[0], cell[1]), hinge_side(shell, cell[1], cell[0])}};
+    const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
+    Vec from = vec_load(x[corner[hinge.side[0]]]), to = vec_load(x[corner[(hinge.side[0] + 1) & 3]]);
+    Vec edge = vec_sub(to, from), middle = vec_scale(vec_add(from, to), 0.5f);
+    hinge.arc = vec_length(vec_sub(hinge_middle(x, corner), middle)) +
+                vec_length(vec_sub(hinge_middle(x, other), middle));
+    float thickness = 0.5f * (field_at(shell->matter.thickness, ends[0]) + field_at(shell->matter.thickness, ends[1]));
+    float angle = hinge_angle(hinge_normal(x, corner), hinge_normal(x, other), edge);
+    hinge.angle = isnan(angle) ? 0 : angle;
+    hinge.most = atan2f(2 * thickness, hinge.arc);
+    // of what is folded into a point at rest no length is made
+    hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.most, 1.5f));
+    return hinge;
+}
+
+void creases_measure(const Shell *shell, Hinge *hinges) {
+    for (uint32_t k = 0; k < shell->springs[SINGE_GREEN].count; k++) hinges[k] = hinge_measure(shell, k);
+}
+
+// ---- a step
+
+float crease_ratio(const Hinge *hinge, float angle) {
+    float away = -(1 - CREASE_HOLDS) * hinge->most, towards = -CREASE_HOLDS * CREASE_PI / 2;
+    float lean = hinge->lean + 0.5f * angle;
+    if (angle > 0) lean = fminf(lean, fmaxf(away, hinge->lean));
+    else lean = fmaxf(lean, fminf(towards, hinge->lean));
+    return cosf(lean) / cosf(hinge->lean);
+}
+
+float crease_kept(const Shell *shell, const State *state, uint32_t green) {
+    const uint32_t *ends = shell->springs[SINGE_GREEN].ends[green];
+    float kept = 1;
+    for (int k = 0; k < 2; k++) {
+        float mass = state->burn.mass[ends[k]];
+        if (mass < 1) kept -= 0.5f * shell_burn_progress(mass, field_at(shell->matter.mass_min, ends[k]));
+    }
+    return kept;
+}
+
+/// Of the mesh along a green spring, over what it was at rest: the mean of its cells' four blue springs.
+static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
+    const float *length = job->state->burn.spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
+    float sum = 0;
+    for (int k = 0; k < 2; k++) {
+        const CellSprings *cell = &job->shell->cell_springs[ends[k] - job->shell->vertex_count];
+        for (int i = 1; i < 4; i += 2) {
+            uint32_t spring = cell->blue[(hinge->side[k] + i) & 3];
+            sum += 0.25f * length[spring] / rest[spring];
+        }
+    }
+    return sum;
+}
+
+/// The angle by which layers that have shrunk differently curl of themselves.
+static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
+    float green = job->state->burn.spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
+    float ratio = green / crease_blue_ratio(job, ends, hinge) * cosf(hinge->lean);
+    float lean = acosf(ratio < 1 ? ratio : 1);
+    return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
+}
+
+/// The angle of a fold now. Flat on itself it is the same to both sides: then it is on the side where it came from.
+static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *hinge, float last) {
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
+    const uint32_t *corner = job->shell->cells[first];
+    Vec edge = vec_sub(vec_load(x[corner[(hinge->side[0] + 1) & 3]]), vec_load(x[corner[hinge->side[0]]]));
+    const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
+    float angle = hinge_angle(vec_load(normal[first]), vec_load(normal[second]), edge);
+    if (angle - last > CREASE_PI) return CREASE_PI * -1 - hinge->angle;
+    if (angle - last < -CREASE_PI) return CREASE_PI - hinge->angle;
+    return angle - hinge->angle;
+}
+
+/// Returns whether the crease has changed.
+static bool crease_spring(const Crease *job, uint32_t k) {
+    const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
+    const Hinge *hinge = &job->plan->hinges[k];
+    const Matter *matter = &job->shell->matter;
+    float *bend = &job->dynamics->bend[k], *crease = &job->dynamics->crease[k];
+    float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
+    float curl = kept < 1 ? crease_curl(job, k, ends, hinge) : 0;
+    float angle = crease_angle(job, ends, hinge, *bend * hinge->arc + curl + hinge->angle);
+    if (isnan(angle)) return false;
+    *bend += job->follows * ((angle - curl) / hinge->arc - *bend);
+    float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
+    if (fabsf(*bend) * radius < 1 && *crease == 0) return false; // most are this
+    float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
+    if (!(radius > 0 && share > 0 && kept > 0)) return false;
+    float held = kept * *crease, elastic = *bend - held;
+    float excess = fabsf(elastic) - 1 / radius - (1 / share - 1) * fabsf(held);
+    if (!(excess > 0)) return false;
+    *crease += copysignf(kept * share * excess, elastic);
+    return true;
+}
+
+static double crease_springs(void *task, int begin, int end) {
+    const Crease *job = task;
+    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    double changed = 0;
+    for (int k = begin; k < end; k++)
+        if (flags[k] & SINGE_ALIVE) changed += crease_spring(job, (uint32_t)k);
+    return changed;
+}
+
+static void crease_normals(void *task, int begin, int end) {
+    const Crease *job = task;
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    for (int c = begin; c < end; c++) vec_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
+}
+
+void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                     DynamicsState *dynamics) {
+    if (!plan->hinges) return;
+    Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn.mass_burnt > 0};
+    pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
+    double changed = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);
+    plan->creased = changed > 0;
+}

@@ -1,0 +1,291 @@
+// Plastic creases: what a fold is, what of it stays, and what does not.
+#include "dynamics/plan.h"
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/// A shell with room for creases, and what the pass over them needs.
+typedef struct Rig {
+    Memory memory;
+    SheetSource source;
+    Shell shell;
+    State state;
+    DynamicsPlan *plan;
+    Pool *pool;
+} Rig;
+
+static void rig_open(Rig *rig, TestMesh mesh, const SingeMaterialDef *material, int threads) {
+    *rig = (Rig){.memory = memory_make((SingeAllocator){0})};
+    DynamicsSettings settings = {.solver = singe_default_solver(), .time_step = 1.0f / 480, .thread_count = threads};
+    SingeSheetDef def = test_sheet(&mesh);
+    SingeError error;
+    settings.solver.creases = true;
+    if (material) def.material = *material;
+    assert_int_equal(sheet_source_create(&rig->memory, &def, &rig->source, &error), SINGE_OK);
+    assert_int_equal(shell_create(&rig->memory, &rig->source, 1, &rig->shell, &error), SINGE_OK);
+    rig->shell.creases = true;
+    assert_int_equal(state_create(&rig->memory, &rig->shell, &rig->state), SINGE_OK);
+    assert_int_equal(dynamics_plan_create(&rig->memory, &rig->shell, &settings, &rig->plan), SINGE_OK);
+    assert_int_equal(pool_create(&rig->memory, (SingeTasks){0}, threads, &rig->pool), SINGE_OK);
+    test_mesh_free(&mesh);
+}
+
+static void rig_close(Rig *rig) {
+    pool_destroy(&rig->memory, rig->pool);
+    dynamics_plan_free(&rig->memory, &rig->shell, rig->plan);
+    state_free(&rig->memory, &rig->state);
+    shell_free(&rig->memory, &rig->shell);
+    sheet_source_free(&rig->memory, &rig->source);
+    assert_int_equal(rig->memory.held, 0);
+}
+
+/// Rolls a flat sheet of cells dx long about the y axis so that neighbouring cells along x meet at an angle, positive
+/// away from the centres, which stay upright over their cells.
+static void rig_roll(Rig *rig, double dx, double angle) {
+    const Shell *shell = &rig->shell;
+    float(*x)[4] = rig->state.dynamics.position;
+    const double radius = angle == 0 ? 0 : dx / 2 / sin(angle / 2);
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        double along = (double)shell->rest_position[i][0] / dx * angle, rest = (double)shell->rest_position[i][2];
+        bool centre = !shell_is_corner(shell, i);
+        double r = (centre ? radius * cos(angle / 2) : radius) + rest; // cells are chords
+        x[i][0] = (float)(angle == 0 ? (double)shell->rest_position[i][0] : r * sin(along));
+        x[i][1] = shell->rest_position[i][1];
+        x[i][2] = (float)(angle == 0 ? rest : r * cos(along) - radius);
+    }
+}
+
+static void rig_pass(Rig *rig, int steps) {
+    for (int s = 0; s < steps; s++)
+        dynamics_crease(rig->plan, &rig->shell, &rig->state, rig->pool, 1.0f / 480, &rig->state.dynamics);
+}
+
+/// Whether a green spring lies along x.
+static bool along_x(const Shell *shell, uint32_t k) {
+    const uint32_t *ends = shell->springs[SINGE_GREEN].ends[k];
+    return fabsf(shell->rest_position[ends[0]][1] - shell->rest_position[ends[1]][1]) < 1e-5f;
+}
+
+static double distance(const float *a, const float *b) {
+    return (double)vec_length(vec_sub(vec_load(b), vec_load(a)));
+}
+
+/// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
+static void test_lengths_of_a_fold(void **unused) {
+    (void)unused;
+    const double dx = 0.004, angles[] = {0.5, 0.2, -0.3, -0.9};
+    Rig rig;
+    rig_open(&rig, test_grid(12, 4, (float)dx, 0.003f), NULL, 1);
+    const SpringSet *green = &rig.shell.springs[SINGE_GREEN];
+    for (int a = 0; a < 4; a++) {
+        rig_roll(&rig, dx, angles[a]);
+        for (uint32_t k = 0; k < green->count; k++) {
+            const float(*x)[4] = (const float(*)[4])rig.state.dynamics.position;
+            double ratio = distance(x[green->ends[k][0]], x[green->ends[k][1]]) / (double)green->rest[k];
+            double expected = (double)crease_ratio(&rig.plan->hinges[k], along_x(&rig.shell, k) ? (float)angles[a] : 0);
+            assert_true(fabs(ratio - expected) < 1e-4);
+        }
+    }
+    rig_close(&rig);
+}
+
+/// The mesh holds no more than its greatest length, and at no crease a ratio of exactly 1, however it lies at rest.
+static void test_what_a_mesh_holds(void **unused) {
+    (void)unused;
+    const TestMesh meshes[] = {test_grid(6, 6, 0.004f, 0.004f), test_cylinder(24, 6, 0.02f, 0.03f),
+                               test_torus(24, 12, 0.05f, 0.015f)};
+    for (int m = 0; m < 3; m++) {
+        Rig rig;
+        rig_open(&rig, meshes[m], NULL, 1);
+        for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
+            const Hinge *hinge = &rig.plan->hinges[k];
+            float most = 1 / cosf(hinge->lean), before = crease_ratio(hinge, -3);
+            assert_true(crease_ratio(hinge, 0) == 1);
+            assert_true(before > 0.01f);
+            for (float angle = -2.9f; angle < 3; angle += 0.1f) {
+                float ratio = crease_ratio(hinge, angle);
+                assert_true(ratio >= before && ratio <= most);
+                before = ratio;
+            }
+        }
+        rig_close(&rig);
+    }
+}
+
+/// Bent to the curvature k, share (k - 1/radius) stays, to both sides and on every mesh; bent less, nothing does.
+static void test_share_stays(void **unused) {
+    (void)unused;
+    const SingeMaterialDef material = singe_default_material();
+    const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
+    const double bends[] = {150, -150, 0.95 * yield, -0.95 * yield};
+    for (int fine = 0; fine < 2; fine++)
+        for (int b = 0; b < 4; b++) {
+            const double dx = fine ? 0.002 : 0.004, angle = bends[b] * dx;
+            Rig rig;
+            rig_open(&rig, test_grid(fine ? 16 : 8, 4, (float)dx, 0.003f), NULL, 1);
+            rig_roll(&rig, dx, angle);
+            rig_pass(&rig, 200);
+            double expected = share * fmax(0, fabs(bends[b]) - yield);
+            for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
+                bool along = along_x(&rig.shell, k);
+                assert_true(fabs((double)rig.state.dynamics.bend[k] - (along ? bends[b] : 0)) < 0.3);
+                double crease = (double)rig.state.dynamics.crease[k], signed_as = along && bends[b] < 0 ? -1 : 1;
+                assert_true(fabs(signed_as * crease - (along ? expected : 0)) < 0.3);
+            }
+            // let go it keeps that; bent back a little less than it takes to yield again, too
+            float kept = rig.state.dynamics.crease[0];
+            rig_roll(&rig, dx, (double)kept * dx);
+            rig_pass(&rig, 200);
+            rig_roll(&rig, dx, ((double)kept - copysign(0.9 * yield, bends[b])) * dx);
+            rig_pass(&rig, 200);
+            assert_true(rig.state.dynamics.crease[0] == kept);
+            rig_close(&rig);
+        }
+}
+
+/// Sharp bends that last a step or two leave nothing.
+static void test_trembling_leaves_nothing(void **unused) {
+    (void)unused;
+    Rig rig;
+    rig_open(&rig, test_grid(8, 4, 0.004f, 0.003f), NULL, 1);
+    for (int s = 0; s < 400; s++) {
+        rig_roll(&rig, 0.004, s & 2 ? 0.7 : -0.7); // 175 1/m, by 60 Hz and more
+        rig_pass(&rig, 1);
+    }
+    for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++)
+        assert_true(rig.state.dynamics.crease[k] == 0);
+    rig_close(&rig);
+}
+
+/// Folded on itself a sheet may look folded to the other side: it stays on the side where it came from.
+static void test_folded_flat(void **unused) {
+    (void)unused;
+    for (int side = -1; side <= 1; side += 2) {
+        Rig rig;
+        rig_open(&rig, test_grid(2, 1, 0.004f, 0.004f), NULL, 1);
+        for (int s = 0; s <= 100; s++) {
+            rig_roll(&rig, 0.004, side * (s < 90 ? 3.0 * s / 90 : s & 1 ? 3.0 : 3.28));
+            rig_pass(&rig, 8);
+            assert_true(side * rig.state.dynamics.bend[0] >= 0 && side * rig.state.dynamics.crease[0] >= 0);
+        }
+        assert_true(side * rig.state.dynamics.bend[0] * 0.004f > 2.9f);
+        rig_close(&rig);
+    }
+}
+
+/// What burns forgets: half burnt half of its crease counts, ash has none and takes none.
+static void test_char_forgets(void **unused) {
+    (void)unused;
+    const double dx = 0.004;
+    for (int ash = 0; ash < 2; ash++) {
+        Rig rig;
+        rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
+        rig_roll(&rig, dx, 0.7);
+        if (!ash) rig_pass(&rig, 200);
+        float crease = rig.state.dynamics.crease[0], least = singe_default_material().mass_min.value;
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = least;
+        rig.state.burn.mass_burnt = 1;
+        assert_true(crease_kept(&rig.shell, &rig.state, 0) == 0);
+        rig_pass(&rig, 200);
+        assert_true(rig.state.dynamics.crease[0] == crease && (crease == 0) == (ash == 1));
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.5f * (1 + least);
+        assert_true(fabsf(crease_kept(&rig.shell, &rig.state, 0) - 0.5f) < 1e-6f);
+        rig_close(&rig);
+    }
+}
+
+/// A sheet that curls because its layers shrink differently is not bent: nothing of it stays.
+static void test_curl_is_no_bend(void **unused) {
+    (void)unused;
+    const double dx = 0.003, angle = -0.6; // 200 1/m
+    Rig rig;
+    rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
+    rig_roll(&rig, dx, angle);
+    for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++)
+        if (along_x(&rig.shell, k))
+            rig.state.burn.spring_length[SINGE_GREEN][k] *= crease_ratio(&rig.plan->hinges[k], (float)angle);
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.9f;
+    rig.state.burn.mass_burnt = 1;
+    rig_pass(&rig, 200);
+    for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) assert_true(rig.state.dynamics.crease[k] == 0);
+    rig_close(&rig);
+}
+
+/// A strip of 20 x 5 cells whose right half is turned over onto the left within 0.2 s.
+static SingeSim *folding(int threads, bool creases, SingePinId *right) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = threads, def.solver.creases = creases;
+    SingeSim *sim = test_sim(&def, test_grid(20, 5, 0.003f, 0.003f), NULL);
+    SingePinDef pin = singe_default_pin();
+    SingePoseKey path[9];
+    uint32_t vertices[2][6];
+    SingePinId left;
+    for (uint32_t j = 0; j < 6; j++) vertices[0][j] = 21 * j, vertices[1][j] = 21 * j + 20;
+    for (int k = 0; k < 9; k++) {
+        double turn = pi * k / 8;
+        path[k] = test_key(0.025f * (float)k, (float)(0.03 + 0.03 * cos(turn)), 0, (float)(0.03 * sin(turn)));
+        path[k].rotation[1] = (float)-sin(turn / 2), path[k].rotation[3] = (float)cos(turn / 2);
+    }
+    pin.sheet = (SingeSheetId){0, 1}, pin.vertex_count = 6, pin.vertices = vertices[0];
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &left));
+    pin.vertices = vertices[1], pin.path_count = 9, pin.path = path;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, right));
+    return sim;
+}
+
+static void test_same_for_any_threads_and_after_loading(void **unused) {
+    (void)unused;
+    SingePinId right, other;
+    SingeSim *one = folding(1, true, &right), *three = folding(3, true, &other), *elastic = folding(1, false, &other);
+    test_steps(one, 90), test_steps(three, 90), test_steps(elastic, 90);
+    test_assert_same(one, three);
+    SingeSim *copy;
+    test_ok(one, singe_sim_clone(one, &copy)); // by save and load, in mid-fold
+    test_steps(one, 60), test_steps(three, 60), test_steps(copy, 60), test_steps(elastic, 60);
+    test_assert_same(one, three);
+    test_assert_same(one, copy);
+    // and there were creases
+    SingeView creased = singe_sim_view(one), plain = singe_sim_view(elastic);
+    assert_true(memcmp(creased.position, plain.position, creased.particle_count * sizeof *creased.position) != 0);
+    singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(copy), singe_sim_destroy(elastic);
+}
+
+/// A step that fails leaves creases and lengths as they were.
+static void test_failed_step(void **unused) {
+    (void)unused;
+    SingePinId right;
+    SingeSim *sim = folding(1, true, &right), *twin;
+    test_steps(sim, 90);
+    float now = (float)singe_sim_view(sim).time;
+    const SingePoseKey away[2] = {test_key(now, 0, 0, 0), test_key(now + 1e-3f, 1e8f, 0, 0)};
+    const SingePoseKey still = test_key(0, 0.02f, 0, 0.02f);
+    test_ok(sim, singe_sim_clone(sim, &twin));
+    test_ok(sim, singe_sim_move_pin(sim, right, 2, away));
+    test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
+    test_ok(twin, singe_sim_move_pin(twin, right, 2, away));
+    test_ok(sim, singe_sim_move_pin(sim, right, 1, &still));
+    test_ok(twin, singe_sim_move_pin(twin, right, 1, &still));
+    test_assert_same(sim, twin);
+    test_steps(sim, 40), test_steps(twin, 40);
+    test_assert_same(sim, twin);
+    singe_sim_destroy(sim), singe_sim_destroy(twin);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lengths_of_a_fold),
+        cmocka_unit_test(test_what_a_mesh_holds),
+        cmocka_unit_test(test_share_stays),
+        cmocka_unit_test(test_trembling_leaves_nothing),
+        cmocka_unit_test(test_folded_flat),
+        cmocka_unit_test(test_char_forgets),
+        cmocka_unit_test(test_curl_is_no_bend),
+        cmocka_unit_test(test_same_for_any_threads_and_after_loading),
+        cmocka_unit_test(test_failed_step),
+    };
+    return cmocka_run_group_tests_name("crease", tests, NULL, NULL);
+}
