@@ -212,8 +212,8 @@ static const SchemaRow material_rows[] = {
     PARAM("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
     PARAM("damping", damping, DIM_RATE, FROM(0), "of all motion"),
     PARAM("crease_radius", crease_radius, DIM_LENGTH, FROM(0),
-          "with `creases`: of what is bent sharper than this a part stays; 0: never. It is the model's, whose thickness is "
-          "ten times the real sheet's, and so is the radius at which it creases"),
+          "with `creases`: of what is bent sharper than this a part stays; 0: never. It is the model's, which is ten "
+          "times as thick as the real sheet"),
     PARAM("crease_share", crease_share, DIM_FRACTION, WITHIN(0, 1),
           "how much of the bend beyond that stays; char keeps less, ash nothing"),
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),

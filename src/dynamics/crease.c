@@ -11,13 +11,19 @@
 //   l(theta) = s cos alpha + 2 t sin alpha = r cos(alpha - beta),   r^2 = s^2 + 4 t^2,   tan beta = 2 t/s
 //
 // so that a green spring of the target length l(theta_0 + theta_p), theta_0 the angle at rest, is at rest in a fold of
-// theta_p more: longer for folds away from the centres, shorter towards them. The other colours keep theirs. Eq 6
-// gives the green length for theta_0; times
+// theta_p more: longer for folds away from the centres, shorter towards them. The other colours keep theirs. As a
+// fraction of the length for theta_0, which eq 6 gives, that is cos(psi_p)/cos(phi) with
 //
-//   f = cos(phi + theta_p/2)/cos phi,   phi = theta_0/2 - beta
+//   phi = theta_0/2 - beta,   psi_p = phi + theta_p/2,   psi = phi + (present angle)/2
 //
-// it has the crease. l is greatest at phi = 0: a mesh of cells s holds less than 2 beta = 2 atan(2 t/s) an edge away
-// from the centres, and less than pi - 2 beta towards them. What is asked beyond CREASE_HOLDS of that is held as that.
+// Seen from other angles such a spring bends ever more softly the nearer psi is to 0, where l is greatest, and the
+// sheet would give way at one edge and spare its neighbours. What has a crease is therefore given the target from
+// which, where it is now, the moment (l - target) dl/dalpha is 4 t^2 times (psi - psi_p), as in a flat sheet:
+//
+//   f = (cos psi + sin^2 beta (psi - psi_p)/sin psi)/cos phi
+//
+// A mesh of cells s holds less than 2 beta = 2 atan(2 t/s) an edge away from the centres, and less than pi - 2 beta
+// towards them. Both angles are held to CREASE_HOLDS of the way there.
 //
 // Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. Elastic is what is neither crease nor
 // eq 6's own doing, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by
@@ -25,8 +31,8 @@
 //
 //   |k_e| > k_y + (1/c - 1)|k_p|:   k_p += c (|k_e| - k_y - (1/c - 1)|k_p|) sign k_e
 //
-// which is linear hardening: a sheet bent from flat to k keeps k_p = c (|k| - k_y), at once and at any step. A sheet let
-// go has |k_e| = 0 at k = k_p: only a bend by k_y the other way opens the crease again. k - k_6 is
+// which is linear hardening: a sheet bent from flat to k keeps k_p = c (|k| - k_y), at once and at any step. A sheet
+// let go has |k_e| = 0 at k = k_p: only a bend by k_y the other way opens the crease again. k - k_6 is
 // taken through a low pass of CREASE_TIME: trembling does not crease.
 //
 // Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
@@ -37,7 +43,7 @@
 /// s, how long a bend must last.
 static const float CREASE_TIME = 0.02f;
 
-/// Share of the way to where l(theta) is flat or 0 that a crease is held to, so that it stays firm.
+/// Share of the way to where l(theta) is flat or 0 that is left to a crease, so that it stays firm.
 static const float CREASE_HOLDS = 0.85f;
 
 static const float CREASE_PI = 3.14159265f;
@@ -106,12 +112,18 @@ void creases_measure(const Shell *shell, Hinge *hinges) {
 
 // ---- a step
 
-float crease_ratio(const Hinge *hinge, float angle) {
+/// phi + angle/2, as far as the mesh holds a crease.
+static float crease_lean(const Hinge *hinge, float angle) {
     float away = -(1 - CREASE_HOLDS) * hinge->most, towards = -CREASE_HOLDS * CREASE_PI / 2;
     float lean = hinge->lean + 0.5f * angle;
-    if (angle > 0) lean = fminf(lean, fmaxf(away, hinge->lean));
-    else lean = fmaxf(lean, fminf(towards, hinge->lean));
-    return cosf(lean) / cosf(hinge->lean);
+    if (angle > 0) return fminf(lean, fmaxf(away, hinge->lean));
+    return fmaxf(lean, fminf(towards, hinge->lean));
+}
+
+float crease_ratio(const Hinge *hinge, float stays, float now) {
+    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->most), at = sinf(lean);
+    float moment = at < -0.1f ? flat * flat * (lean - kept) / at : 0;
+    return fmaxf(cosf(lean) + moment, 0.05f) / cosf(hinge->lean);
 }
 
 float crease_kept(const Shell *shell, const State *state, uint32_t green) {
@@ -159,7 +171,7 @@ static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *
     return angle - hinge->angle;
 }
 
-/// Returns whether the crease has changed.
+/// Returns whether there is a crease.
 static bool crease_spring(const Crease *job, uint32_t k) {
     const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
     const Hinge *hinge = &job->plan->hinges[k];
@@ -168,26 +180,25 @@ static bool crease_spring(const Crease *job, uint32_t k) {
     float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
     float curl = kept < 1 ? crease_curl(job, k, ends, hinge) : 0;
     float angle = crease_angle(job, ends, hinge, *bend * hinge->arc + curl + hinge->angle);
-    if (isnan(angle)) return false;
+    if (isnan(angle)) return *crease != 0;
     *bend += job->follows * ((angle - curl) / hinge->arc - *bend);
     float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
     if (fabsf(*bend) * radius < 1 && *crease == 0) return false; // most are this
     float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
-    if (!(radius > 0 && share > 0 && kept > 0)) return false;
+    if (!(radius > 0 && share > 0 && kept > 0)) return *crease != 0;
     float held = kept * *crease, elastic = *bend - held;
     float excess = fabsf(elastic) - 1 / radius - (1 / share - 1) * fabsf(held);
-    if (!(excess > 0)) return false;
-    *crease += copysignf(kept * share * excess, elastic);
-    return true;
+    if (excess > 0) *crease += copysignf(kept * share * excess, elastic);
+    return *crease != 0;
 }
 
 static double crease_springs(void *task, int begin, int end) {
     const Crease *job = task;
     const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
-    double changed = 0;
+    double creased = 0;
     for (int k = begin; k < end; k++)
-        if (flags[k] & SINGE_ALIVE) changed += crease_spring(job, (uint32_t)k);
-    return changed;
+        if (flags[k] & SINGE_ALIVE) creased += crease_spring(job, (uint32_t)k);
+    return creased;
 }
 
 static void crease_normals(void *task, int begin, int end) {
@@ -201,6 +212,6 @@ void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state,
     if (!plan->hinges) return;
     Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn.mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
-    double changed = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);
-    plan->creased = changed > 0;
+    double creased = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);
+    plan->creased = creased > 0;
 }

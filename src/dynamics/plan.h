@@ -68,7 +68,7 @@ struct DynamicsPlan {
     Attachments attachments;
     TouchPlan *touch;        ///< NULL where sheets pass through each other
     Hinge *hinges;        ///< [green springs], or NULL where no bend stays
-    bool creased;         ///< a crease has changed in the step before
+    bool creased;         ///< there are creases after the step before
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
@@ -123,8 +123,8 @@ void creases_measure(const Shell *shell, Hinge *hinges);
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                      DynamicsState *dynamics);
 
-/// Target length of a green spring with a crease of so many rad over that without.
-float crease_ratio(const Hinge *hinge, float angle);
+/// Target length of a green spring of which a crease of so many rad stays, over that without, when it is bent to `now`.
+float crease_ratio(const Hinge *hinge, float stays, float now);
 
 /// Share of its crease that burning has left to a green spring.
 float crease_kept(const Shell *shell, const State *state, uint32_t green);

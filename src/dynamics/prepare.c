@@ -74,7 +74,7 @@ static void prepare_strands(void *task, int begin, int end) {
     const Field material = job->shell->matter.weight[job->colour];
     const float *soft = job->plan->soft;
     const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
-    const float *crease = job->state->dynamics.crease;
+    const float *crease = job->state->dynamics.crease, *bend = job->state->dynamics.bend;
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
@@ -82,8 +82,8 @@ static void prepare_strands(void *task, int begin, int end) {
             set->weight[slot] = flags[k] & SINGE_ALIVE ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
             if (!hinges || crease[k] == 0) continue;
-            float angle = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
-            set->length[slot] *= crease_ratio(&hinges[k], angle);
+            float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
+            set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
         }
     }
 }

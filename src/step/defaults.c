@@ -42,7 +42,7 @@ static SingeMaterialDef standard_material(void) {
         .drag = singe_param(1.3f),
         .damping = singe_param(0.5f),
         .crease_radius = singe_param(15e-3f),
-        .crease_share = singe_param(0.7f),
+        .crease_share = singe_param(0.8f),
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);
