@@ -401,7 +401,7 @@ static const SchemaRow solver_rows[] = {
     {"smoothing_length", ROW_FLOAT, DIM_LENGTH, AT(SingeSolverDef, smoothing_length), WITHIN(0, 1000),
      .doc = "distance of the places they are taken over, and over neighbours besides"},
     {"height_min", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, height_min), WITHIN(0, 1),
-     .doc = "smallest height of a cell's centre over its corners, in thicknesses; 0 is off"},
+     .doc = "smallest height of a cell's centre over its corners, in thicknesses; 0 is off, and cells may be inverted"},
     {"height_gain", ROW_FLOAT, DIM_FRACTION, AT(SingeSolverDef, height_gain), WITHIN(0, 1),
      .doc = "share of a height's error that is mended in a substep"},
 };

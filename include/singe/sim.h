@@ -156,7 +156,7 @@ typedef struct SingeStats {
     double mass_ledger_error;      ///< |initial - left - burnt - removed| / initial
     /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part.
     double strain_mean, strain_p99, strain_max;
-    uint32_t inverted_cells;       ///< whose centre has crossed to the other side of its corners
+    uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
     uint32_t tangled_cells;        ///< that crossed others as the simulation started, and are left alone until they part
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
