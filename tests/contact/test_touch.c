@@ -27,7 +27,8 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
         for (uint32_t i = 0; i <= n; i++) {
             float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
             for (int k = 0; k < 3; k++)
-                x[3 * (j * row + i) + (uint32_t)k] = flat->corner[k] + s * flat->u[k] + t * flat->v[k] + (k == 1 ? bend : 0);
+                x[3 * (j * row + i) + (uint32_t)k] =
+                    flat->corner[k] + s * flat->u[k] + t * flat->v[k] + (k == 1 ? bend : 0);
         }
     for (uint32_t j = 0; j < n; j++)
         for (uint32_t i = 0; i < n; i++) {
@@ -107,7 +108,8 @@ static void thrown_sheets_do_not_cross(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
-    add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, 6, 0});
+    add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
+             (float[3]){0, 6, 0});
     add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, -6, 0});
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     for (int frame = 0; frame < 60; frame++) {
