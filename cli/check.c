@@ -63,6 +63,17 @@ static SingeResult time_steps(const Job *job, SingeSim *sim, CheckTimes *times, 
     return result;
 }
 
+/// What was read and what was done to it, sheet by sheet.
+static void report_meshes(const Job *job) {
+    for (uint32_t i = 0; i < job->assets.sheet_count; i++) {
+        char text[200];
+        for (int line = 0; mesh_report_line(&job->assets.reports[i], line, text, sizeof text); line++) {
+            if (line) printf("              %s\n", text);
+            else printf("mesh          %s: %s\n", job->scene->sheets[i].mesh.name, text);
+        }
+    }
+}
+
 static void report_shell(const SingeCensus *c) {
     static const struct { const char *name; SingeColour colour; } rows[] = {
         {"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
@@ -141,6 +152,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         float thickening = singe_sim_stats(sim).thickening;
         CheckTimes times = {0};
         SingeError error = {0};
+        report_meshes(&job);
         report_shell(&census);
         report_materials(job.scene, thickening);
         if (time_steps(&job, sim, &times, &error)) {

@@ -35,6 +35,7 @@ static const uint64_t hash_start = 14695981039346656037u;
 
 static uint64_t hash_mesh(uint64_t hash, const Mesh *mesh) {
     hash = hash_bytes(hash, mesh->positions, sizeof(float) * 3 * mesh->vertex_count);
+    if (mesh->corner_uv) hash = hash_bytes(hash, mesh->corner_uv, sizeof(float) * 8 * mesh->cell_count);
     if (mesh->uv) hash = hash_bytes(hash, mesh->uv, sizeof(float) * 2 * mesh->vertex_count);
     hash = hash_bytes(hash, mesh->cells, sizeof(uint32_t) * 4 * mesh->cell_count);
     for (uint32_t i = 0; i < mesh->attribute_count; i++) {

@@ -24,25 +24,51 @@ SINGE_NODISCARD SingeResult file_write(const char *path, const void *data, size_
 
 // ---- meshes
 
-/// A quad mesh as read: vertices in the file's order.
+/// A mesh as a file has it: faces of three corners or more, in the file's order. What a sheet is made of comes from it
+/// by mesh_make (mesh/mesh.h).
+typedef struct Polygons {
+    uint32_t vertex_count, face_count, corner_count, attribute_count;
+    float *positions;  ///< [3 * vertex_count], file units
+    uint32_t *first;   ///< [face_count + 1] where a face's corners begin
+    uint32_t *corners; ///< [corner_count] vertices
+    float *uv;         ///< [2 * corner_count], of each corner, or NULL
+    uint32_t *lines;   ///< [face_count] the file's line of each, from 1 (OBJ), or NULL
+    SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
+    SingeAllocator allocator;
+} Polygons;
+
+/// Reads a mesh, by the ending of `name` (registry.c), from bytes. `name` is used in messages. Errors have
+/// the line (text formats) or byte offset in `element` and in the message: "letter.obj:17: ...". A face may name a
+/// vertex twice; indices are in range.
+SINGE_NODISCARD SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                          Polygons *polygons, SingeError *error);
+SINGE_NODISCARD SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Polygons *polygons, SingeError *error);
+SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Polygons *polygons, SingeError *error);
+/// glTF, GLB, STL, FBX, DAE and what else assimp reads, from a file in memory. Vertices are assimp's, faces as in the
+/// file; all of a scene's meshes with their nodes' transforms.
+SINGE_NODISCARD SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                        Polygons *polygons, SingeError *error);
+/// False in a program built without assimp, where assimp_read fails.
+bool assimp_available(void);
+void polygons_free(Polygons *polygons);
+
+/// A sheet's mesh: quads.
 typedef struct Mesh {
     uint32_t vertex_count, cell_count, attribute_count;
-    float *positions;  ///< [3 * vertex_count], file units
-    float *uv;         ///< [2 * vertex_count] or NULL
+    float *positions;  ///< [3 * vertex_count], m or file units
+    float *uv;         ///< [2 * vertex_count] or NULL; on a seam that of one of its charts
+    float *corner_uv;  ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
     uint32_t *cells;   ///< [4 * cell_count]
     uint32_t *cell_lines; ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
-    SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
+    uint32_t *cell_faces; ///< [cell_count] the file's face of each, or NULL where they are the same
+    int32_t *source;      ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    uint32_t source_count; ///< vertices of the file
+    SingeAttribute *attributes; ///< of the vertices
     SingeAllocator allocator;
 } Mesh;
 
-/// Reads a mesh, by the ending of `name` (registry.c), from bytes. `name` is used in messages. Errors have
-/// the line (text formats) or byte offset in `element` and in the message: "letter.obj:17: ...".
-SINGE_NODISCARD SingeResult mesh_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                                      Mesh *mesh, SingeError *error);
-SINGE_NODISCARD SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                                     Mesh *mesh, SingeError *error);
-SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                                     Mesh *mesh, SingeError *error);
 /// A flat grid of cells_x × cells_y cells of the given size (m), centred at the origin in the x-y plane,
 /// uv from (0,0) at (-x,-y) to (1,1).
 SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y,

@@ -6,9 +6,12 @@
 
 #include <string.h>
 
+typedef struct ObjCorner {
+    int32_t vertex, uv; // from 0; uv is -1 where none is given
+} ObjCorner;
+
 typedef struct ObjFace {
-    int32_t vertex[4], uv[4]; // from 0; uv is -1 where none is given
-    uint32_t line;
+    uint32_t first, line; // its first corner
 } ObjFace;
 
 typedef struct Obj {
@@ -19,7 +22,9 @@ typedef struct Obj {
     float (*positions)[3];
     float (*uvs)[2];
     ObjFace *faces;
+    ObjCorner *corners;
     size_t position_count, position_capacity, uv_count, uv_capacity, face_count, face_capacity;
+    size_t corner_count, corner_capacity;
 } Obj;
 
 static SingeResult obj_refuse_at(const Obj *obj, SingeResult code, int64_t line, const char *what) {
@@ -149,20 +154,21 @@ static SingeResult obj_face(Obj *obj) {
     if (obj->face_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many faces");
     if (!store_grow(obj->allocator, &obj->faces, &obj->face_capacity, obj->face_count + 1, sizeof *obj->faces))
         return refuse_memory(obj->error, "obj", obj->name);
-    ObjFace *face = &obj->faces[obj->face_count];
-    int corners = 0;
+    size_t first = obj->corner_count;
     int64_t line = obj->text.line;
-    for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), corners++) {
-        int32_t vertex, uv;
-        TRY(obj_corner(obj, &vertex, &uv));
-        if (corners < 4) face->vertex[corners] = vertex, face->uv[corners] = uv;
+    for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), obj->corner_count++) {
+        if (obj->corner_count >= MESH_COUNT_LIMIT) return obj_refuse(obj, SINGE_ERROR_LIMIT, "too many corners");
+        if (!store_grow(obj->allocator, &obj->corners, &obj->corner_capacity, obj->corner_count + 1,
+                        sizeof *obj->corners))
+            return refuse_memory(obj->error, "obj", obj->name);
+        ObjCorner *corner = &obj->corners[obj->corner_count];
+        TRY(obj_corner(obj, &corner->vertex, &corner->uv));
     }
-    if (corners != 4)
-        return refuse(obj->error, SINGE_ERROR_MESH, "obj", line,
-                      "%s:%lld: face has %d corner%s; Singe reads quads for now",
-                      short_name(obj->name), (long long)line, corners, corners == 1 ? "" : "s");
-    face->line = (uint32_t)line;
-    obj->face_count++;
+    size_t corners = obj->corner_count - first;
+    if (corners < 3)
+        return refuse(obj->error, SINGE_ERROR_MESH, "obj", line, "%s:%lld: face has %d corner%s; it needs three",
+                      short_name(obj->name), (long long)line, (int)corners, corners == 1 ? "" : "s");
+    obj->faces[obj->face_count++] = (ObjFace){(uint32_t)first, (uint32_t)line};
     return SINGE_OK;
 }
 
@@ -215,91 +221,71 @@ static SingeResult obj_parse(Obj *obj) {
 
 // ---- from the file's lists to the mesh
 
-static SingeResult obj_fill_cells(Obj *obj, Mesh *mesh) {
-    for (size_t f = 0; f < obj->face_count; f++) {
-        const ObjFace *face = &obj->faces[f];
-        uint32_t *cell = mesh->cells + 4 * f;
-        for (int k = 0; k < 4; k++) {
-            if ((size_t)face->vertex[k] >= obj->position_count ||
-                (face->uv[k] >= 0 && (size_t)face->uv[k] >= obj->uv_count))
-                return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line,
-                              "%s:%u: corner %d is out of range: there are %llu vertices, %llu texture coordinates",
-                              short_name(obj->name), face->line, k + 1, (unsigned long long)obj->position_count,
-                              (unsigned long long)obj->uv_count);
-            cell[k] = (uint32_t)face->vertex[k];
-        }
-        mesh->cell_lines[f] = face->line;
-        int repeat = mesh_cell_repeats(cell);
-        if (repeat >= 0)
-            return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line, "%s:%u: face uses vertex %u twice",
-                          short_name(obj->name), face->line, cell[repeat] + 1);
-    }
-    return SINGE_OK;
-}
-
-// Gives each vertex the one texture coordinate that its faces agree on.
-static SingeResult obj_fill_uv(Obj *obj, Mesh *mesh, int32_t *uv_of) {
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) uv_of[v] = -1;
-    for (size_t f = 0; f < obj->face_count; f++)
-        for (int k = 0; k < 4; k++) {
-            const ObjFace *face = &obj->faces[f];
-            int32_t vertex = face->vertex[k], uv = face->uv[k], old = uv_of[vertex];
-            if (uv < 0)
-                return obj_refuse_at(obj, SINGE_ERROR_MESH, face->line,
-                                     "a corner has no texture coordinate, though others have");
-            if (old >= 0 && (obj->uvs[old][0] != obj->uvs[uv][0] || obj->uvs[old][1] != obj->uvs[uv][1]))
-                return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line,
-                              "%s:%u: vertex %d has texture coordinate %d here and %d before; Singe needs one a "
-                              "vertex, so split the vertex or join the picture's pieces",
-                              short_name(obj->name), face->line, vertex + 1, uv + 1, old + 1);
-            if (old < 0) uv_of[vertex] = uv;
-        }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        mesh->uv[2 * v] = uv_of[v] < 0 ? 0 : obj->uvs[uv_of[v]][0];
-        mesh->uv[2 * v + 1] = uv_of[v] < 0 ? 0 : obj->uvs[uv_of[v]][1];
-    }
-    return SINGE_OK;
-}
-
 static bool obj_has_uv(const Obj *obj) {
-    for (size_t f = 0; f < obj->face_count; f++)
-        for (int k = 0; k < 4; k++)
-            if (obj->faces[f].uv[k] >= 0) return true;
+    for (size_t i = 0; i < obj->corner_count; i++)
+        if (obj->corners[i].uv >= 0) return true;
     return false;
 }
 
-static SingeResult obj_finish(Obj *obj, Mesh *mesh) {
-    mesh->allocator = obj->allocator;
-    mesh->cell_count = (uint32_t)obj->face_count;
-    mesh->cells = store_new(obj->allocator, obj->face_count, 4 * sizeof *mesh->cells);
-    mesh->cell_lines = store_new(obj->allocator, obj->face_count, sizeof *mesh->cell_lines);
-    if (!mesh->cells || !mesh->cell_lines) return refuse_memory(obj->error, "obj", obj->name);
-    TRY(obj_fill_cells(obj, mesh));
-    if (!store_trim(obj->allocator, &obj->positions, &obj->position_capacity, obj->position_count,
-                    sizeof *obj->positions))
-        return refuse_memory(obj->error, "obj", obj->name);
-    mesh->positions = (float *)obj->positions;
-    mesh->vertex_count = (uint32_t)obj->position_count;
-    obj->positions = NULL;
-    if (!obj_has_uv(obj)) return SINGE_OK;
-    mesh->uv = store_new(obj->allocator, mesh->vertex_count, 2 * sizeof *mesh->uv);
-    int32_t *uv_of = store_new(obj->allocator, mesh->vertex_count, sizeof *uv_of);
-    bool room = mesh->uv && uv_of;
-    SingeResult result = room ? obj_fill_uv(obj, mesh, uv_of) : refuse_memory(obj->error, "obj", obj->name);
-    store_free(obj->allocator, uv_of, mesh->vertex_count, sizeof *uv_of);
-    return result;
+static SingeResult obj_fill_corner(const Obj *obj, const ObjFace *face, size_t i, Polygons *polygons) {
+    ObjCorner corner = obj->corners[i];
+    if ((size_t)corner.vertex >= obj->position_count || (corner.uv >= 0 && (size_t)corner.uv >= obj->uv_count))
+        return refuse(obj->error, SINGE_ERROR_MESH, "obj", face->line,
+                      "%s:%u: corner %d is out of range: there are %llu vertices, %llu texture coordinates",
+                      short_name(obj->name), face->line, (int)(i - face->first) + 1,
+                      (unsigned long long)obj->position_count, (unsigned long long)obj->uv_count);
+    polygons->corners[i] = (uint32_t)corner.vertex;
+    if (!polygons->uv) return SINGE_OK;
+    if (corner.uv < 0)
+        return obj_refuse_at(obj, SINGE_ERROR_MESH, face->line,
+                             "a corner has no texture coordinate, though others have");
+    memcpy(polygons->uv + 2 * i, obj->uvs[corner.uv], 2 * sizeof *polygons->uv);
+    return SINGE_OK;
 }
 
-SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Mesh *mesh,
+static SingeResult obj_fill(const Obj *obj, Polygons *polygons) {
+    for (size_t f = 0; f < obj->face_count; f++) {
+        size_t end = f + 1 < obj->face_count ? obj->faces[f + 1].first : obj->corner_count;
+        polygons->first[f] = obj->faces[f].first;
+        polygons->lines[f] = obj->faces[f].line;
+        for (size_t i = obj->faces[f].first; i < end; i++) TRY(obj_fill_corner(obj, &obj->faces[f], i, polygons));
+    }
+    polygons->first[obj->face_count] = (uint32_t)obj->corner_count;
+    return SINGE_OK;
+}
+
+static SingeResult obj_finish(Obj *obj, Polygons *polygons) {
+    SingeAllocator allocator = obj->allocator;
+    bool uv = obj_has_uv(obj);
+    polygons->allocator = allocator;
+    polygons->face_count = (uint32_t)obj->face_count;
+    polygons->corner_count = (uint32_t)obj->corner_count;
+    polygons->first = store_new(allocator, obj->face_count + 1, sizeof *polygons->first);
+    polygons->corners = store_new(allocator, obj->corner_count, sizeof *polygons->corners);
+    polygons->lines = store_new(allocator, obj->face_count, sizeof *polygons->lines);
+    if (uv) polygons->uv = store_new(allocator, obj->corner_count, 2 * sizeof *polygons->uv);
+    if (!polygons->first || !polygons->corners || !polygons->lines || (uv && !polygons->uv))
+        return refuse_memory(obj->error, "obj", obj->name);
+    TRY(obj_fill(obj, polygons));
+    if (!store_trim(allocator, &obj->positions, &obj->position_capacity, obj->position_count, sizeof *obj->positions))
+        return refuse_memory(obj->error, "obj", obj->name);
+    polygons->positions = (float *)obj->positions;
+    polygons->vertex_count = (uint32_t)obj->position_count;
+    obj->positions = NULL;
+    return SINGE_OK;
+}
+
+SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *polygons,
                      SingeError *error) {
-    memset(mesh, 0, sizeof *mesh);
+    memset(polygons, 0, sizeof *polygons);
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "obj", 1, "%s: is empty", short_name(name));
     Obj obj = {.text = {bytes, bytes + size, 1}, .name = name, .allocator = allocator, .error = error};
     SingeResult result = obj_parse(&obj);
-    if (!result) result = obj_finish(&obj, mesh);
+    if (!result) result = obj_finish(&obj, polygons);
     store_free(allocator, obj.positions, obj.position_capacity, sizeof *obj.positions);
     store_free(allocator, obj.uvs, obj.uv_capacity, sizeof *obj.uvs);
     store_free(allocator, obj.faces, obj.face_capacity, sizeof *obj.faces);
-    if (result) mesh_free(mesh);
+    store_free(allocator, obj.corners, obj.corner_capacity, sizeof *obj.corners);
+    if (result) polygons_free(polygons);
     return result;
 }

@@ -161,7 +161,7 @@ static SingeResult ply_plan_attribute(Ply *ply, const PlyProperty *property, uin
     return SINGE_OK;
 }
 
-static SingeResult ply_plan_attributes(Ply *ply, const PlyElement *element, Mesh *mesh, PlyTarget *targets) {
+static SingeResult ply_plan_attributes(Ply *ply, const PlyElement *element, Polygons *mesh, PlyTarget *targets) {
     const PlyProperty *properties = ply->header.properties + element->first_property;
     uint32_t count = 0;
     for (size_t i = 0; i < element->property_count; i++) count += ply_is_attribute(&properties[i], &targets[i]);
@@ -177,7 +177,8 @@ static SingeResult ply_plan_attributes(Ply *ply, const PlyElement *element, Mesh
     return SINGE_OK;
 }
 
-static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Mesh *mesh, PlyTarget *targets) {
+static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygons *mesh, float **uv,
+                                     PlyTarget *targets) {
     static const char *const axes[] = {"x", "y", "z"};
     static const char *const uvs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
     size_t index, other;
@@ -188,12 +189,12 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Mesh *
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
         targets[index] = (PlyTarget){mesh->positions + i, 3, 1};
     }
-    for (int i = 0; i < 3 && !mesh->uv; i++) {
+    for (int i = 0; i < 3 && !*uv; i++) {
         if (!ply_scalar(ply, element, uvs[i][0], &index) || !ply_scalar(ply, element, uvs[i][1], &other)) continue;
-        mesh->uv = store_new(ply->allocator, mesh->vertex_count, 2 * sizeof *mesh->uv);
-        if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
-        targets[index] = (PlyTarget){mesh->uv, 2, 1};
-        targets[other] = (PlyTarget){mesh->uv + 1, 2, 1};
+        *uv = store_new(ply->allocator, mesh->vertex_count, 2 * sizeof **uv);
+        if (!*uv) return refuse_memory(ply->error, "ply", ply->name);
+        targets[index] = (PlyTarget){*uv, 2, 1};
+        targets[other] = (PlyTarget){*uv + 1, 2, 1};
     }
     return ply_plan_attributes(ply, element, mesh, targets);
 }
@@ -215,11 +216,11 @@ static SingeResult ply_read_vertex(Ply *ply, const PlyElement *element, const Pl
     return ply_end_row(ply);
 }
 
-static SingeResult ply_read_vertices(Ply *ply, const PlyElement *element, Mesh *mesh) {
+static SingeResult ply_read_vertices(Ply *ply, const PlyElement *element, Polygons *mesh, float **uv) {
     PlyTarget *targets = store_new(ply->allocator, element->property_count, sizeof *targets);
     if (!targets) return refuse_memory(ply->error, "ply", ply->name);
     for (size_t i = 0; i < element->property_count; i++) targets[i] = (PlyTarget){0};
-    SingeResult result = ply_plan_vertices(ply, element, mesh, targets);
+    SingeResult result = ply_plan_vertices(ply, element, mesh, uv, targets);
     for (uint32_t v = 0; !result && v < mesh->vertex_count; v++) result = ply_read_vertex(ply, element, targets, v);
     store_free(ply->allocator, targets, element->property_count, sizeof *targets);
     return result;
@@ -227,49 +228,120 @@ static SingeResult ply_read_vertices(Ply *ply, const PlyElement *element, Mesh *
 
 // ---- faces
 
-static SingeResult ply_read_corners(Ply *ply, const PlyProperty *property, uint32_t vertex_count, uint32_t cell[4]) {
+/// The faces that are being read.
+typedef struct PlyFaces {
+    Polygons *mesh;
+    const PlyProperty *corners, *uvs; ///< lists; uvs may be NULL
+    size_t corner_capacity, uv_capacity;
+} PlyFaces;
+
+static SingeResult ply_read_corners(Ply *ply, PlyFaces *faces) {
+    Polygons *mesh = faces->mesh;
     uint64_t count = 0;
-    TRY(ply_list_length(ply, property, &count));
-    if (count != 4)
-        return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; Singe reads quads for now",
-                          (unsigned long long)count, count == 1 ? "" : "s");
-    for (int k = 0; k < 4; k++) {
+    TRY(ply_list_length(ply, faces->corners, &count));
+    if (count < 3)
+        return ply_refuse(ply, SINGE_ERROR_MESH, "face has %llu corner%s; it needs three", (unsigned long long)count,
+                          count == 1 ? "" : "s");
+    for (; count; count--) {
         double value;
-        TRY(ply_value(ply, property->type, &value));
-        if (value < 0 || value >= vertex_count)
+        TRY(ply_value(ply, faces->corners->type, &value));
+        if (value < 0 || value >= mesh->vertex_count)
             return ply_refuse(ply, SINGE_ERROR_MESH, "vertex index %lld is out of range: the file has %u vertices",
-                              (long long)value, vertex_count);
-        cell[k] = (uint32_t)value;
+                              (long long)value, mesh->vertex_count);
+        if (mesh->corner_count >= MESH_COUNT_LIMIT) return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many corners");
+        if (!store_grow(ply->allocator, &mesh->corners, &faces->corner_capacity, (size_t)mesh->corner_count + 1,
+                        sizeof *mesh->corners))
+            return refuse_memory(ply->error, "ply", ply->name);
+        mesh->corners[mesh->corner_count++] = (uint32_t)value;
     }
-    int repeat = mesh_cell_repeats(cell);
-    if (repeat >= 0) return ply_refuse(ply, SINGE_ERROR_MESH, "face uses vertex %u twice", cell[repeat]);
     return SINGE_OK;
 }
 
-static bool ply_is_corners(const PlyProperty *property) {
-    return property->is_list && (text_word_is(property->name, property->name_end, "vertex_indices") ||
-                                 text_word_is(property->name, property->name_end, "vertex_index"));
+// A list of u and v of each corner. It may stand before the corners.
+static SingeResult ply_read_uvs(Ply *ply, PlyFaces *faces, size_t *uv_count) {
+    Polygons *mesh = faces->mesh;
+    uint64_t count = 0;
+    TRY(ply_list_length(ply, faces->uvs, &count));
+    for (; count; count--) {
+        double value;
+        TRY(ply_value(ply, faces->uvs->type, &value));
+        if (fabs(value) > 3.4028234663852886e38)
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "a value is too large for a float");
+        if (!store_grow(ply->allocator, &mesh->uv, &faces->uv_capacity, *uv_count + 1, sizeof *mesh->uv))
+            return refuse_memory(ply->error, "ply", ply->name);
+        mesh->uv[(*uv_count)++] = (float)value;
+    }
+    return SINGE_OK;
 }
 
-static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Mesh *mesh) {
+static bool ply_is_list(const PlyProperty *property, const char *name, const char *other) {
+    return property->is_list && (text_word_is(property->name, property->name_end, name) ||
+                                 text_word_is(property->name, property->name_end, other));
+}
+
+static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *faces, uint32_t f) {
     const PlyProperty *properties = ply->header.properties + element->first_property;
-    const PlyProperty *corners = NULL;
-    for (size_t i = 0; i < element->property_count; i++)
-        if (!corners && ply_is_corners(&properties[i])) corners = &properties[i];
-    if (!corners) return ply_refuse(ply, SINGE_ERROR_FORMAT, "faces have no list \"vertex_indices\"");
-    if (corners->type >= PLY_FLOAT32)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertex indices must have an integer type");
-    mesh->cells = store_new(ply->allocator, mesh->cell_count, 4 * sizeof *mesh->cells);
-    if (!mesh->cells) return refuse_memory(ply->error, "ply", ply->name);
-    for (uint32_t f = 0; f < element->count; f++) {
-        TRY(ply_begin_row(ply));
-        for (size_t i = 0; i < element->property_count; i++) {
-            if (&properties[i] == corners)
-                TRY(ply_read_corners(ply, corners, mesh->vertex_count, mesh->cells + 4 * (size_t)f));
-            else TRY(ply_skip_property(ply, &properties[i]));
-        }
-        TRY(ply_end_row(ply));
+    Polygons *mesh = faces->mesh;
+    size_t uvs = 2 * (size_t)mesh->corner_count;
+    mesh->first[f] = mesh->corner_count;
+    TRY(ply_begin_row(ply));
+    for (size_t i = 0; i < element->property_count; i++) {
+        if (&properties[i] == faces->corners) TRY(ply_read_corners(ply, faces));
+        else if (&properties[i] == faces->uvs) TRY(ply_read_uvs(ply, faces, &uvs));
+        else TRY(ply_skip_property(ply, &properties[i]));
     }
+    TRY(ply_end_row(ply));
+    if (faces->uvs && uvs != 2 * (size_t)mesh->corner_count)
+        return ply_refuse(ply, SINGE_ERROR_MESH, "a face needs u and v for each of its corners in \"texcoord\"");
+    return SINGE_OK;
+}
+
+// Arrays as polygons_free expects them: with their counts.
+static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
+    Polygons *mesh = faces->mesh;
+    bool good = store_trim(ply->allocator, &mesh->corners, &faces->corner_capacity, mesh->corner_count,
+                           sizeof *mesh->corners);
+    if (good && faces->uvs)
+        good = store_trim(ply->allocator, &mesh->uv, &faces->uv_capacity, 2 * (size_t)mesh->corner_count,
+                          sizeof *mesh->uv);
+    return good ? SINGE_OK : refuse_memory(ply->error, "ply", ply->name);
+}
+
+// What was read of faces that are not whole goes.
+static void ply_drop_faces(Ply *ply, PlyFaces *faces) {
+    store_free(ply->allocator, faces->mesh->corners, faces->corner_capacity, sizeof *faces->mesh->corners);
+    store_free(ply->allocator, faces->mesh->uv, faces->uv_capacity, sizeof *faces->mesh->uv);
+    faces->mesh->corners = NULL, faces->mesh->uv = NULL, faces->mesh->corner_count = 0;
+}
+
+static SingeResult ply_read_faces(Ply *ply, const PlyElement *element, Polygons *mesh) {
+    const PlyProperty *properties = ply->header.properties + element->first_property;
+    PlyFaces faces = {.mesh = mesh};
+    for (size_t i = 0; i < element->property_count; i++) {
+        if (!faces.corners && ply_is_list(&properties[i], "vertex_indices", "vertex_index"))
+            faces.corners = &properties[i];
+        if (!faces.uvs && ply_is_list(&properties[i], "texcoord", "texcoord")) faces.uvs = &properties[i];
+    }
+    if (!faces.corners) return ply_refuse(ply, SINGE_ERROR_FORMAT, "faces have no list \"vertex_indices\"");
+    if (faces.corners->type >= PLY_FLOAT32)
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertex indices must have an integer type");
+    mesh->first = store_new(ply->allocator, (size_t)mesh->face_count + 1, sizeof *mesh->first);
+    if (!mesh->first) return refuse_memory(ply->error, "ply", ply->name);
+    SingeResult result = SINGE_OK;
+    for (uint32_t f = 0; f < element->count && !result; f++) result = ply_read_face(ply, element, &faces, f);
+    if (!result) result = ply_trim_faces(ply, &faces);
+    if (result) ply_drop_faces(ply, &faces);
+    else mesh->first[mesh->face_count] = mesh->corner_count;
+    return result;
+}
+
+// uv of the vertices, if the corners have none of their own.
+static SingeResult ply_spread_uv(Ply *ply, const float *uv, Polygons *mesh) {
+    if (!uv || mesh->uv) return SINGE_OK;
+    mesh->uv = store_new(ply->allocator, mesh->corner_count, 2 * sizeof *mesh->uv);
+    if (!mesh->uv) return refuse_memory(ply->error, "ply", ply->name);
+    for (uint32_t i = 0; i < mesh->corner_count; i++)
+        for (size_t k = 0; k < 2; k++) mesh->uv[2 * (size_t)i + k] = uv[2 * (size_t)mesh->corners[i] + k];
     return SINGE_OK;
 }
 
@@ -284,30 +356,32 @@ static SingeResult ply_skip_element(Ply *ply, const PlyElement *element) {
     return SINGE_OK;
 }
 
-static SingeResult ply_read_body(Ply *ply, Mesh *mesh) {
+static SingeResult ply_read_body(Ply *ply, Polygons *mesh, float **uv) {
     const PlyElement *vertices = ply_element(ply, "vertex"), *faces = ply_element(ply, "face");
     if (!vertices || vertices->count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has no vertices");
     if (!faces || faces->count == 0) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file has no faces");
     mesh->vertex_count = vertices->count;
-    mesh->cell_count = faces->count;
+    mesh->face_count = faces->count;
     for (size_t i = 0; i < ply->header.element_count; i++) {
         const PlyElement *element = &ply->header.elements[i];
-        if (element == vertices) TRY(ply_read_vertices(ply, element, mesh));
+        if (element == vertices) TRY(ply_read_vertices(ply, element, mesh, uv));
         else if (element == faces) TRY(ply_read_faces(ply, element, mesh));
         else TRY(ply_skip_element(ply, element));
     }
-    return SINGE_OK;
+    return ply_spread_uv(ply, *uv, mesh);
 }
 
-SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Mesh *mesh,
+SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *mesh,
                      SingeError *error) {
     memset(mesh, 0, sizeof *mesh);
     mesh->allocator = allocator;
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "ply", 1, "%s: is empty", short_name(name));
     Ply ply = {.name = name, .begin = bytes, .text = {bytes, bytes + size, 1}, .allocator = allocator, .error = error};
     SingeResult result = ply_read_header(&ply);
-    if (!result) result = ply_read_body(&ply, mesh);
+    float *uv = NULL; // of the vertices
+    if (!result) result = ply_read_body(&ply, mesh, &uv);
+    store_free(allocator, uv, mesh->vertex_count, 2 * sizeof *uv);
     ply_header_free(&ply);
-    if (result) mesh_free(mesh);
+    if (result) polygons_free(mesh);
     return result;
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 typedef SingeResult MeshReader(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                               Mesh *mesh, SingeError *error);
+                               Polygons *polygons, SingeError *error);
 
 static const struct {
     const char *ending;
@@ -13,6 +13,14 @@ static const struct {
 } mesh_formats[] = {
     {".obj", obj_read},
     {".ply", ply_read},
+    {".gltf", assimp_read},
+    {".glb", assimp_read},
+    {".stl", assimp_read},
+    {".off", assimp_read},
+    {".fbx", assimp_read},
+    {".dae", assimp_read},
+    {".3ds", assimp_read},
+    {".x3d", assimp_read},
 };
 
 static bool ends_with(const char *name, const char *ending) {
@@ -25,14 +33,14 @@ static bool ends_with(const char *name, const char *ending) {
     return true;
 }
 
-SingeResult mesh_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Mesh *mesh,
-                      SingeError *error) {
-    memset(mesh, 0, sizeof *mesh);
+SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                          Polygons *polygons, SingeError *error) {
+    memset(polygons, 0, sizeof *polygons);
     enum { FORMATS = sizeof mesh_formats / sizeof *mesh_formats };
     for (size_t i = 0; i < FORMATS; i++)
         if (ends_with(name, mesh_formats[i].ending))
-            return mesh_formats[i].read(name, bytes, size, allocator, mesh, error);
-    char known[64] = "";
+            return mesh_formats[i].read(name, bytes, size, allocator, polygons, error);
+    char known[96] = "";
     for (size_t i = 0; i < FORMATS; i++) {
         if (i) strcat(known, ", ");
         strcat(known, mesh_formats[i].ending);
@@ -41,17 +49,35 @@ SingeResult mesh_read(const char *name, const uint8_t *bytes, size_t size, Singe
                   short_name(name), known);
 }
 
-void mesh_free(Mesh *mesh) {
-    size_t vertices = mesh->vertex_count;
-    for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        const SingeAttribute *attribute = &mesh->attributes[i];
-        if (attribute->name) store_free(mesh->allocator, (void *)attribute->name, strlen(attribute->name) + 1, 1);
-        store_free(mesh->allocator, (void *)attribute->values, vertices, sizeof *attribute->values);
+void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count) {
+    for (uint32_t i = 0; i < attribute_count; i++) {
+        const SingeAttribute *attribute = &attributes[i];
+        if (attribute->name) store_free(allocator, (void *)attribute->name, strlen(attribute->name) + 1, 1);
+        store_free(allocator, (void *)attribute->values, count, sizeof *attribute->values);
     }
-    store_free(mesh->allocator, mesh->attributes, mesh->attribute_count, sizeof *mesh->attributes);
+    store_free(allocator, attributes, attribute_count, sizeof *attributes);
+}
+
+void polygons_free(Polygons *polygons) {
+    size_t vertices = polygons->vertex_count, faces = polygons->face_count, corners = polygons->corner_count;
+    attributes_free(polygons->allocator, polygons->attributes, polygons->attribute_count, vertices);
+    store_free(polygons->allocator, polygons->positions, vertices, 3 * sizeof *polygons->positions);
+    store_free(polygons->allocator, polygons->first, faces + 1, sizeof *polygons->first);
+    store_free(polygons->allocator, polygons->corners, corners, sizeof *polygons->corners);
+    store_free(polygons->allocator, polygons->uv, corners, 2 * sizeof *polygons->uv);
+    store_free(polygons->allocator, polygons->lines, faces, sizeof *polygons->lines);
+    memset(polygons, 0, sizeof *polygons);
+}
+
+void mesh_free(Mesh *mesh) {
+    size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
+    attributes_free(mesh->allocator, mesh->attributes, mesh->attribute_count, vertices);
     store_free(mesh->allocator, mesh->positions, vertices, 3 * sizeof *mesh->positions);
     store_free(mesh->allocator, mesh->uv, vertices, 2 * sizeof *mesh->uv);
-    store_free(mesh->allocator, mesh->cells, mesh->cell_count, 4 * sizeof *mesh->cells);
-    store_free(mesh->allocator, mesh->cell_lines, mesh->cell_count, sizeof *mesh->cell_lines);
+    store_free(mesh->allocator, mesh->corner_uv, cells, 8 * sizeof *mesh->corner_uv);
+    store_free(mesh->allocator, mesh->cells, cells, 4 * sizeof *mesh->cells);
+    store_free(mesh->allocator, mesh->cell_lines, cells, sizeof *mesh->cell_lines);
+    store_free(mesh->allocator, mesh->cell_faces, cells, sizeof *mesh->cell_faces);
+    store_free(mesh->allocator, mesh->source, vertices, sizeof *mesh->source);
     memset(mesh, 0, sizeof *mesh);
 }

@@ -46,6 +46,9 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->cell_count = mesh->cell_count;
     def->cells = mesh->cells;
     def->uv = mesh->uv;
+    def->corner_uv = mesh->corner_uv;
+    def->source_vertex = mesh->source;
+    def->source_count = mesh->source ? mesh->source_count : 0;
     def->attribute_count = mesh->attribute_count;
     def->attributes = mesh->attributes;
     def->material = sheet->material.def;

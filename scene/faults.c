@@ -48,7 +48,7 @@ static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, con
     if (cell < mesh->cell_count && mesh->cell_lines)
         snprintf(face, sizeof face, ":%u", (unsigned)mesh->cell_lines[cell]);
     else if (cell < mesh->cell_count)
-        snprintf(face, sizeof face, ": face %u", (unsigned)cell + 1);
+        snprintf(face, sizeof face, ": face %u", (unsigned)(mesh->cell_faces ? mesh->cell_faces[cell] : cell) + 1);
     message_add(messages, scene->text, file->place, "%s%s: %s (cells and vertices counted from 0)", file->name, face,
                 what);
 }

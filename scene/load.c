@@ -46,15 +46,26 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *
 /// What lies farther out the simulation takes for a failure.
 static const float place_most = 1e4f;
 
-/// Scales, turns and moves the mesh. Returns whether all of it lies where it can be simulated.
-static bool transform(const SceneSheet *sheet, Mesh *mesh) {
+static double metres_per_unit(const SceneSheet *sheet) {
+    static const double units[] = {[SCENE_UNITS_M] = 1, [SCENE_UNITS_CM] = 0.01, [SCENE_UNITS_MM] = 0.001,
+                                   [SCENE_UNITS_IN] = 0.0254, [SCENE_UNITS_FT] = 0.3048};
+    return units[sheet->units] * (double)sheet->scale;
+}
+
+/// Scales, turns and moves positions. Returns whether all of it lies where it can be simulated.
+static bool transform(const SceneSheet *sheet, float *positions, uint32_t count) {
+    const double scale = metres_per_unit(sheet);
     double r[9];
     rotation_matrix(sheet->rotate, r);
     bool near = true;
     bool turned = sheet->rotate[0] != 0 || sheet->rotate[1] != 0 || sheet->rotate[2] != 0;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        float *p = mesh->positions + 3 * (size_t)v;
-        double x = (double)p[0] * sheet->scale, y = (double)p[1] * sheet->scale, z = (double)p[2] * sheet->scale;
+    for (uint32_t v = 0; v < count; v++) {
+        float *p = positions + 3 * (size_t)v;
+        double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
+        if (sheet->up == SCENE_UP_Y) {
+            double up = y;
+            y = -z, z = up;
+        }
         double q[3] = {x, y, z};
         for (int i = 0; i < 3 && turned; i++)
             q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
@@ -64,28 +75,47 @@ static bool transform(const SceneSheet *sheet, Mesh *mesh) {
     return near;
 }
 
-static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh) {
+static const char too_far[] = "the sheet reaches beyond 10 km from the origin";
+
+/// Reads polygons and makes quads of them.
+static SingeResult load_file(const SceneSheet *sheet, Mesh *mesh, MeshReport *report, SingeError *error) {
+    Bytes bytes = {0};
+    Polygons polygons = {0};
+    MeshOptions options = mesh_default_options();
+    options.weld = sheet->weld, options.quads = (MeshQuads)sheet->quads;
+    SingeResult result = file_read(sheet->mesh.path, (SingeAllocator){0}, &bytes, error);
+    if (!result)
+        result = polygons_read(sheet->mesh.path, bytes.data, bytes.size, (SingeAllocator){0}, &polygons, error);
+    bytes_free(&bytes);
+    if (!result && !transform(sheet, polygons.positions, polygons.vertex_count)) {
+        snprintf(error->message, sizeof error->message, "%s", too_far);
+        result = SINGE_ERROR_MESH;
+    }
+    if (!result)
+        result = mesh_make(sheet->mesh.path, &polygons, &options, (SingeAllocator){0}, mesh, report, error);
+    polygons_free(&polygons);
+    return result;
+}
+
+static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshReport *report) {
     SingeError error = {0};
     SceneFile file = sheet->mesh;
     SingeResult result;
+    bool near = true;
     if (file.name) {
-        Bytes bytes = {0};
-        result = file_read(file.path, (SingeAllocator){0}, &bytes, &error);
-        if (!result)
-            result = mesh_read(file.path, bytes.data, bytes.size, (SingeAllocator){0}, mesh, &error);
-        bytes_free(&bytes);
+        result = load_file(sheet, mesh, report, &error);
     } else {
         file.place = sheet->place;
         result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
                            (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
         if (!result)
             mesh_grid_wear(mesh, (uint32_t)sheet->grid.cells[0], (uint32_t)sheet->grid.cells[1], &sheet->grid.wear);
+        near = result || transform(sheet, mesh->positions, mesh->vertex_count);
     }
     if (result)
         loader_fail(loader, &file, result, error.message);
-    else if (!transform(sheet, mesh))
-        message_add(loader->messages, loader->scene->text, file.place,
-                    "the sheet reaches beyond 10 km from the origin");
+    else if (!near)
+        message_add(loader->messages, loader->scene->text, file.place, "%s", too_far);
 }
 
 static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
@@ -105,7 +135,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     const SceneSheet *sheet = &loader->scene->sheets[index];
     SceneAssets *assets = loader->assets;
     Mesh *mesh = &assets->meshes[index];
-    load_mesh(loader, sheet, mesh);
+    load_mesh(loader, sheet, mesh, &assets->reports[index]);
     memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
@@ -162,6 +192,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count,
                             .collider_count = scene->collider_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
+    assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
@@ -209,6 +240,7 @@ void scene_assets_free(SceneAssets *assets) {
     image_free(&assets->sky);
     free(assets->solids);
     free(assets->meshes);
+    free(assets->reports);
     free(assets->images);
     free(assets->pictures);
     free(assets->colours);

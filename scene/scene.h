@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "formats/formats.h"
+#include "mesh/mesh.h"
 #include "preview/preview.h"
 #include "singe/singe.h"
 
@@ -88,6 +89,10 @@ typedef struct SceneMaterial {
     SceneMeasured measured;
 } SceneMaterial;
 
+/// What a number in a mesh file is, and which of its axes points up.
+typedef enum SceneUnits { SCENE_UNITS_M, SCENE_UNITS_CM, SCENE_UNITS_MM, SCENE_UNITS_IN, SCENE_UNITS_FT } SceneUnits;
+typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
+
 typedef struct SceneSheet {
     ScenePlace place;
     char *name;
@@ -95,7 +100,11 @@ typedef struct SceneSheet {
     SceneGrid grid;
     SceneFile picture;    ///< drawn on both sides, may be absent
     float colour[3];      ///< linear tint
-    float scale;          ///< metres per unit of the mesh file
+    float scale;          ///< times what `units` says
+    int units;            ///< SceneUnits of the mesh file
+    int up;               ///< SceneUp of the mesh file
+    float weld;           ///< m, or 0 for MESH_WELD of the size
+    int quads;            ///< MeshQuads
     float rotate[3];      ///< radians about x, then y, then z, after the scaling
     float translate[3];   ///< m, after the rotation
     float velocity[3];    ///< m/s at the start
@@ -219,6 +228,7 @@ typedef struct SceneSolid {
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count;
     Mesh *meshes;                 ///< [sheet_count]
+    MeshReport *reports;          ///< [sheet_count] what was done to those of files
     Image *images;                ///< [sheet_count], zeroed where there is none
     const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
     float (*colours)[3];          ///< [sheet_count], for PreviewDef

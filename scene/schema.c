@@ -32,6 +32,11 @@ static const char *const sky_names[] = {
     [PREVIEW_SKY_EVEN] = "even", [PREVIEW_SKY_STUDIO] = "studio", [PREVIEW_SKY_OPEN] = "open", NULL};
 static const char *const ground_names[] = {
     [PREVIEW_GROUND_WOOD] = "wood", [PREVIEW_GROUND_STONE] = "stone", [PREVIEW_GROUND_PLAIN] = "plain", NULL};
+static const char *const units_names[] = {
+    [SCENE_UNITS_M] = "m", [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm", [SCENE_UNITS_IN] = "in",
+    [SCENE_UNITS_FT] = "ft", NULL};
+static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
+static const char *const quads_names[] = {[MESH_QUADS_PAIR] = "pair", [MESH_QUADS_SPLIT] = "split", NULL};
 static const char *const collider_names[] = {
     [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
     [SINGE_COLLIDER_CAPSULE] = "capsule", [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield", [SINGE_COLLIDER_MESH] = "mesh",
@@ -235,7 +240,8 @@ static ScenePlace *sheet_place(void *object) { return &((SceneSheet *)object)->p
 static const SchemaRow sheet_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
      .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
-    {"mesh", ROW_FILE, DIM_NONE, AT(SceneSheet, mesh), .doc = "a quad mesh, OBJ or PLY; this or `grid`"},
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneSheet, mesh), .doc = "a file of triangles, quads or polygons: OBJ, PLY, or what assimp reads ([meshes.md](meshes.md)); this or "
+            "`grid`"},
     {"grid", ROW_MAP, DIM_NONE, AT(SceneSheet, grid), EXTRA(SceneSheet, grid.given), .sub = &schema_grid,
      .doc = "a rectangle made by the program"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
@@ -243,9 +249,18 @@ static const SchemaRow sheet_rows[] = {
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
-     .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
+     .doc = "times `units`: how large the mesh file is made"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneSheet, units), .names = units_names,
+     .doc = "what a number in the mesh file is; `ft` is a foot"},
+    {"up", ROW_ENUM, DIM_NONE, AT(SceneSheet, up), .names = up_names,
+     .doc = "the mesh file's axis that points up; a file whose y is up is turned by 90 degrees about x"},
+    {"weld", ROW_FLOAT, DIM_LENGTH, AT(SceneSheet, weld), FROM(0),
+     .doc = "vertices on open edges of the mesh that are this near are one, whatever their uv; 0: 1/100000 of its size"},
+    {"quads", ROW_ENUM, DIM_NONE, AT(SceneSheet, quads), .names = quads_names,
+     .doc = "what becomes of triangles and polygons: `pair` joins triangles two by two; `split` makes n quads of every "
+            "face of n corners, with sides half as long"},
     {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
-     .doc = "about x, then y, then z, after the scaling"},
+     .doc = "about x, then y, then z, after the scaling and `up`"},
     {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
      .doc = "after the rotation; a sheet must lie within 10 km of the origin"},
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
@@ -255,7 +270,7 @@ static const SchemaRow sheet_rows[] = {
 };
 static const Schema schema_sheet = {
     .title = "a sheet", .size = sizeof(SceneSheet), ROWS(sheet_rows), .defaults = default_sheet, .finish = finish_sheet,
-    .place = sheet_place, .doc = "A piece of cloth or paper: a mesh of quads, or a grid, and a material."};
+    .place = sheet_place, .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
 
 // ---- sources, colliders, pins
 

@@ -8,10 +8,11 @@
 #   src/contact   base, shell; dynamics includes it too
 #   src/step      everything in src
 #   formats       formats
+#   mesh          mesh, formats
 #   preview       preview, formats
-#   scene         scene, formats, preview/preview.h
+#   scene         scene, formats, mesh/mesh.h, preview/preview.h
 #   bench         bench
-#   cli           cli, bench, scene, formats, preview/preview.h
+#   cli           cli, bench, scene, formats, mesh/mesh.h, preview/preview.h
 #
 # and the public headers for all. Only src and tests see src. include/singe sees itself alone.
 set -euo pipefail
@@ -47,9 +48,10 @@ done
 check src/dynamics 'singe/.*|(base|shell|world|contact|dynamics)/.*'
 check src/step 'singe/.*|(base|shell|world|contact|heat|burn|ablate|dynamics|gas|step)/.*'
 check formats 'singe/.*|formats/.*'
+check mesh 'singe/.*|formats/.*|mesh/.*'
 check preview 'singe/.*|formats/.*|preview/.*'
-check scene 'singe/.*|formats/.*|preview/preview\.h|scene/.*'
-check cli 'singe/.*|formats/.*|preview/preview\.h|scene/.*|bench/.*|cli/.*'
+check scene 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*'
+check cli 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*|bench/.*|cli/.*'
 check bench 'singe/.*|bench/.*'
 check examples 'singe/.*'
 check web 'singe/.*|web/.*'

@@ -3,7 +3,7 @@
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev libjpeg62-turbo-dev libembree-dev
-          libopenexr-dev libcmocka-dev ffmpeg python3 python3-openvdb valgrind)
+          libopenexr-dev libassimp-dev libcmocka-dev ffmpeg python3 python3-openvdb valgrind)
 if [ "${1:-}" = --check ]; then
     packages+=(clang libclang-rt-14-dev) # the fuzz targets
 fi

@@ -195,7 +195,7 @@ typedef struct SingeSurface {
     float *burn;               ///< char: burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
     float *time_ignited;       ///< s, -1 never
     int32_t *piece;            ///< id
-    int32_t *source_vertex;    ///< vertex of the input mesh (numbered over all sheets), -1 for a new one
+    int32_t *source_vertex;    ///< vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
     int32_t *sheet;            ///< index of the sheet, in the order added
     uint32_t (*triangles)[3];
     uint32_t vertex_capacity, triangle_capacity; ///< allocated

@@ -164,6 +164,11 @@ typedef struct SingeSheetDef {
     SingeMaterialDef material;
     float velocity[3];         ///< m/s at the start
     float drop_pieces_below;   ///< m2; loose pieces smaller than this vanish; 0 keeps all
+    /// [8 * cell_count] uv of each cell's corners, or NULL where those of the vertices hold. Vertices where cells differ
+    /// lie on a seam: they are drawn once for each uv, at one place. `uv` is still needed, for what is one a vertex.
+    const float *corner_uv;
+    const int32_t *source_vertex; ///< [vertex_count] what SingeSurface.source_vertex says: 0 up to source_count, or -1
+    uint32_t source_count;        ///< vertices of the mesh that this one was made from; 0 without source_vertex
 } SingeSheetDef;
 
 SINGE_API void singe_init_sheet(SingeSheetDef *def, size_t struct_size);

@@ -125,7 +125,7 @@ static void fill(const Fine *fine, uint32_t v) {
     surface->time_ignited[v] = blend_times(state->burn.time_ignited, particle, place->weight);
     surface->piece[v] = state->ablate.piece[particle[0]];
     surface->sheet[v] = shell->matter.sheet[centre];
-    surface->source_vertex[v] = vertex->source == SHELL_NONE ? -1 : (int32_t)vertex->source;
+    surface->source_vertex[v] = vertex->source == SHELL_NONE ? -1 : shell->source_vertex[vertex->source];
 }
 
 static void fill_range(void *context, int begin, int end) {

@@ -109,5 +109,5 @@ void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *sta
     surface->time_ignited[index] = sample.time_ignited;
     surface->piece[index] = sample.piece;
     surface->sheet[index] = sample.sheet;
-    surface->source_vertex[index] = key < plan->keys.centre ? (int32_t)key : -1;
+    surface->source_vertex[index] = key < plan->keys.centre ? shell->source_vertex[key] : -1;
 }

@@ -20,14 +20,15 @@
 enum { SHEET_LIMIT = UINT16_MAX };
 
 static SingeResult shell_count(const SheetSource *sources, uint32_t source_count, Shell *shell, SingeError *error) {
-    uint64_t vertices = 0, cells = 0;
+    uint64_t vertices = 0, cells = 0, numbers = 0;
     for (uint32_t i = 0; i < source_count; i++) {
         vertices += sources[i].sheet.vertex_count;
         cells += sources[i].sheet.cell_count;
+        numbers += sources[i].sheet.source_count;
     }
     // indices of particles and of the 4 N_c red springs are also counted in int; four times a particle's number, and
     // places in lanes, of which springs take some, in uint32_t
-    if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX / 4 || cells > INT32_MAX / 16)
+    if (source_count > SHEET_LIMIT || vertices + cells > INT32_MAX / 4 || numbers > INT32_MAX || cells > INT32_MAX / 16)
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1,
                          "%u sheets with %llu vertices and %llu cells are too many", source_count,
                          (unsigned long long)vertices, (unsigned long long)cells);
@@ -36,8 +37,15 @@ static SingeResult shell_count(const SheetSource *sources, uint32_t source_count
     return SINGE_OK;
 }
 
-static bool shell_alloc(Memory *memory, Shell *shell) {
-    return NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
+static bool any_seams(const SheetSource *sources, uint32_t source_count) {
+    for (uint32_t i = 0; i < source_count; i++)
+        if (sources[i].corner_uv) return true;
+    return false;
+}
+
+static bool shell_alloc(Memory *memory, bool seams, Shell *shell) {
+    if (seams && !NEW(memory, shell->corner_uv, shell->cell_count)) return false;
+    return NEW(memory, shell->source_vertex, shell->vertex_count) && NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
            NEW(memory, shell->rest_position, shell->particle_count) &&
            NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
            NEW(memory, shell->matter.sheet, shell->particle_count) &&
@@ -53,6 +61,8 @@ void shell_free(Memory *memory, Shell *shell) {
     FREE(memory, shell->cell_springs, shell->cell_count);
     FREE(memory, shell->rest_position, shell->particle_count);
     FREE(memory, shell->uv, shell->particle_count);
+    FREE(memory, shell->corner_uv, shell->cell_count);
+    FREE(memory, shell->source_vertex, shell->vertex_count);
     FREE(memory, shell->sheets, shell->sheet_count);
     FREE(memory, shell->matter.sheet, shell->particle_count);
     FREE(memory, shell->cell_order, shell->cell_count);
@@ -71,24 +81,30 @@ static void place_sheet(Shell *shell, uint32_t index, const SheetSource *source)
         for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
         for (int k = 0; k < 2; k++) shell->uv[p][k] = source->uv[v][k];
         shell->matter.sheet[p] = (uint16_t)index;
+        int32_t from = source->source_vertex ? source->source_vertex[v] : (int32_t)v;
+        shell->source_vertex[p] = from < 0 ? -1 : (int32_t)sheet->source_first + from;
     }
     for (uint32_t c = 0; c < sheet->cell_count; c++) {
         float *uv = shell->uv[centre + c];
         for (int i = 0; i < 4; i++) {
             uint32_t corner = sheet->vertex_first + source->cells[c][i];
             shell->cells[sheet->cell_first + c][i] = corner;
-            for (int k = 0; k < 2; k++) uv[k] += shell->uv[corner][k] / 4;
+            const float *corner_uv = sheet_corner_uv(source, c, i);
+            for (int k = 0; k < 2; k++) uv[k] += corner_uv[k] / 4;
+            if (shell->corner_uv) memcpy(shell->corner_uv[sheet->cell_first + c][i], corner_uv, 2 * sizeof *corner_uv);
         }
         shell->matter.sheet[centre + c] = (uint16_t)index;
     }
 }
 
 static void place_sheets(Shell *shell, const SheetSource *sources) {
-    uint32_t vertex = 0, cell = 0;
+    uint32_t vertex = 0, cell = 0, source = 0;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
         memcpy(&shell->sheets[i], &sources[i].sheet, sizeof shell->sheets[i]);
         shell->sheets[i].vertex_first = vertex;
         shell->sheets[i].cell_first = cell;
+        shell->sheets[i].source_first = source;
+        source += sources[i].sheet.source_count;
         place_sheet(shell, i, &sources[i]);
         vertex += sources[i].sheet.vertex_count;
         cell += sources[i].sheet.cell_count;
@@ -258,7 +274,7 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     *shell = (Shell){0};
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
-    if (!shell_alloc(memory, shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
+    if (!shell_alloc(memory, any_seams(sources, source_count), shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
         !matter_create(memory, shell, sources))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);

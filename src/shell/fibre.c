@@ -17,11 +17,12 @@ typedef struct FibreFrame {
 } FibreFrame;
 
 /// The direction in which u grows where v does not; the first side where there is none.
-static Vec fibre_along_u(const Shell *shell, const uint32_t *corner, Vec a, Vec b) {
+static Vec fibre_along_u(const Shell *shell, uint32_t cell, Vec a, Vec b) {
+    const uint32_t *corner = shell->cells[cell];
     float da[2], db[2];
     for (int k = 0; k < 2; k++) {
-        da[k] = shell->uv[corner[2]][k] - shell->uv[corner[0]][k];
-        db[k] = shell->uv[corner[3]][k] - shell->uv[corner[1]][k];
+        da[k] = shell_corner_uv(shell, cell, 2)[k] - shell_corner_uv(shell, cell, 0)[k];
+        db[k] = shell_corner_uv(shell, cell, 3)[k] - shell_corner_uv(shell, cell, 1)[k];
     }
     float turn = da[0] * db[1] - db[0] * da[1];
     if (turn == 0) return vec_sub(vec_load(shell->rest_position[corner[1]]), vec_load(shell->rest_position[corner[0]]));
@@ -34,7 +35,7 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     Vec p[4];
     for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
     Vec a = vec_sub(p[2], p[0]), b = vec_sub(p[3], p[1]), normal = vec_unit(vec_cross(a, b));
-    Vec along = fibre_along_u(shell, corner, a, b);
+    Vec along = fibre_along_u(shell, cell, a, b);
     Vec e1 = vec_unit(vec_mad(along, normal, -vec_dot(along, normal)));
     float angle = field_at(shell->matter.fibre_angle, shell_centre(shell, cell));
     return (FibreFrame){e1, vec_cross(normal, e1), cosf(2 * angle), sinf(2 * angle)};

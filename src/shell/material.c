@@ -158,14 +158,14 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
     }
 }
 
-/// The parameter at the mean of `count` vertices (1, or a cell's 4).
-static float field_value(const ParamField *field, const uint32_t *vertices, int count) {
+/// The parameter at the mean of `count` vertices: 1, or those of a cell, which has its own uv of them.
+static float field_value(const ParamField *field, const uint32_t *vertices, int count, uint32_t cell) {
     const SingeParam *param = field->param;
     if (param->field == SINGE_FIELD_NONE) return param->value;
     double uv[2] = {0}, place[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
-        for (int k = 0; k < 2; k++) uv[k] += (double)field->source->uv[v][k] / count;
+        for (int k = 0; k < 2; k++) uv[k] += (double)(count == 1 ? field->source->uv[v] : sheet_corner_uv(field->source, cell, i))[k] / count;
         for (int k = 0; k < 3; k++) place[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }
@@ -186,7 +186,7 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     for (uint32_t i = begin; i < end; i++) {
         bool corner = i < sheet->vertex_count;
         uint32_t element = corner ? i : i - sheet->vertex_count;
-        values[i] = corner ? field_value(field, &i, 1) : field_value(field, source->cells[element], 4);
+        values[i] = corner ? field_value(field, &i, 1, 0) : field_value(field, source->cells[element], 4, element);
         if (!inside(values[i], rule->low, rule->high, rule->low_open, rule->high_open))
             return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
                              "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name,

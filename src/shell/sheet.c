@@ -58,6 +58,9 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
         return error_set(error, SINGE_ERROR_LIMIT, "sheet", -1, "sheet '%s': %u vertices and %u cells are too many",
                          name, def->vertex_count, def->cell_count);
     if (!def->positions || !def->cells) return argument(name, "positions or cells are NULL", error);
+    if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv, too", error);
+    if (def->source_vertex && def->source_count > INT32_MAX)
+        return argument(name, "source_count is too large", error);
     if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
@@ -83,7 +86,12 @@ static SingeResult check_vertices(const SingeSheetDef *def, const char *name, Si
         for (size_t k = 0; k < 2 && def->uv; k++)
             if (!isfinite(def->uv[2 * (size_t)v + k]))
                 return element_fail(name, "vertex", v, "has a uv that is not finite", error);
+        if (def->source_vertex && (def->source_vertex[v] < -1 || def->source_vertex[v] >= (int64_t)def->source_count))
+            return element_fail(name, "vertex", v, "has a source_vertex that is not below source_count", error);
     }
+    for (size_t i = 0; i < 8 * (size_t)def->cell_count && def->corner_uv; i++)
+        if (!isfinite(def->corner_uv[i]))
+            return element_fail(name, "cell", (uint32_t)(i / 8), "has a uv that is not finite", error);
     return SINGE_OK;
 }
 
@@ -141,10 +149,12 @@ static SingeResult check_masses(const SheetSource *source, SingeError *error) {
     return SINGE_OK;
 }
 
-static bool source_alloc(Memory *memory, SheetSource *source) {
+static bool source_alloc(Memory *memory, const SingeSheetDef *def, SheetSource *source) {
     return NEW(memory, source->position, source->sheet.vertex_count) &&
            NEW(memory, source->cells, source->sheet.cell_count) &&
-           NEW(memory, source->uv, source->sheet.vertex_count);
+           NEW(memory, source->uv, source->sheet.vertex_count) &&
+           (!def->corner_uv || NEW(memory, source->corner_uv, source->sheet.cell_count)) &&
+           (!def->source_vertex || NEW(memory, source->source_vertex, source->sheet.vertex_count));
 }
 
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
@@ -161,10 +171,11 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     sheet->vertex_count = def.vertex_count;
     sheet->cell_count = def.cell_count;
     sheet->drop_pieces_below = def.drop_pieces_below;
+    sheet->source_count = def.source_vertex ? def.source_count : def.vertex_count;
     memcpy(sheet->velocity, def.velocity, sizeof sheet->velocity);
     memcpy(&sheet->material, &def.material, sizeof sheet->material);
     material_forget_fields(&sheet->material);
-    if (!source_alloc(memory, source)) {
+    if (!source_alloc(memory, &def, source)) {
         SingeResult result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", sheet->name);
         sheet_source_free(memory, source);
         return result;
@@ -172,6 +183,9 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     memcpy(source->position, def.positions, sizeof *source->position * def.vertex_count);
     memcpy(source->cells, def.cells, sizeof *source->cells * def.cell_count);
     if (def.uv) memcpy(source->uv, def.uv, sizeof *source->uv * def.vertex_count);
+    if (def.corner_uv) memcpy(source->corner_uv, def.corner_uv, sizeof *source->corner_uv * def.cell_count);
+    if (def.source_vertex)
+        memcpy(source->source_vertex, def.source_vertex, sizeof *source->source_vertex * def.vertex_count);
     SingeResult result = material_evaluate(memory, &def, source, error);
     if (result == SINGE_OK) result = check_masses(source, error);
     if (result != SINGE_OK) sheet_source_free(memory, source);
@@ -183,6 +197,8 @@ void sheet_source_free(Memory *memory, SheetSource *source) {
     FREE(memory, source->position, vertices);
     FREE(memory, source->cells, cells);
     FREE(memory, source->uv, vertices);
+    FREE(memory, source->corner_uv, cells);
+    FREE(memory, source->source_vertex, vertices);
     for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, source->values[p], vertices + cells);
     memset(source, 0, sizeof *source);
 }

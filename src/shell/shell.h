@@ -81,6 +81,7 @@ typedef struct Sheet {
     SingeMaterialDef material; ///< for what is one for the sheet; its pictures and attributes are gone
     float velocity[3];
     float drop_pieces_below;   ///< m2
+    uint32_t source_first, source_count; ///< numbers that its vertices have in the input
 } Sheet;
 
 typedef struct Shell {
@@ -89,6 +90,8 @@ typedef struct Shell {
     CellSprings *cell_springs;
     float (*rest_position)[4];
     float (*uv)[2];
+    float (*corner_uv)[4][2];      ///< [cell_count], or NULL where no sheet has seams
+    int32_t *source_vertex;        ///< [vertex_count] vertex of the input, numbered over all sheets, or -1
     SpringSet springs[SINGE_COLOUR_COUNT];
     Matter matter;
     Sheet *sheets;
@@ -120,9 +123,16 @@ typedef struct SheetSource {
     float (*position)[3];  ///< [vertex_count]
     uint32_t (*cells)[4];  ///< [cell_count], of this sheet's vertices
     float (*uv)[2];        ///< [vertex_count], zero without
+    float (*corner_uv)[4][2]; ///< [cell_count] or NULL
+    int32_t *source_vertex;   ///< [vertex_count] or NULL
     float value[PARAM_COUNT];   ///< each parameter, where it has one value for the sheet
     float *values[PARAM_COUNT]; ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
 } SheetSource;
+
+/// uv of corner i of a cell, as this cell has it.
+static inline const float *sheet_corner_uv(const SheetSource *source, uint32_t cell, int i) {
+    return source->corner_uv ? source->corner_uv[cell][i] : source->uv[source->cells[cell][i]];
+}
 
 /// A parameter at a particle of the sheet: its vertices, then its cells.
 static inline float sheet_param(const SheetSource *source, int param, uint32_t i) {
@@ -237,6 +247,9 @@ void state_copy(const Shell *shell, State *to, const State *from);
 
 /// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
+static inline const float *shell_corner_uv(const Shell *shell, uint32_t cell, int i) {
+    return shell->corner_uv ? shell->corner_uv[cell][i] : shell->uv[shell->cells[cell][i]];
+}
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
 
 /// The cell across side i, at the other end of the green spring; SHELL_NONE at the boundary.

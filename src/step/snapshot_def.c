@@ -96,6 +96,7 @@ void snapshot_sheet_def(Stream *stream, Sheet *sheet) {
     STREAM(stream, sheet->cell_count);
     STREAM(stream, sheet->velocity);
     STREAM(stream, sheet->drop_pieces_below);
+    STREAM(stream, sheet->source_count);
     def_material(stream, &sheet->material);
 }
 

@@ -2,17 +2,17 @@
 
 #include <math.h>
 
-static SingeResult parse_bytes(const void *data, size_t size, Mesh *mesh, SingeError *error) {
+static SingeResult parse_bytes(const void *data, size_t size, Polygons *mesh, SingeError *error) {
     memset(error, 0, sizeof *error);
     uint8_t *bytes = malloc(size ? size : 1);
     memcpy(bytes, data, size);
-    SingeResult result = mesh_read("a.ply", bytes, size, (SingeAllocator){0}, mesh, error);
+    SingeResult result = polygons_read("a.ply", bytes, size, (SingeAllocator){0}, mesh, error);
     free(bytes);
     return result;
 }
 
 static void expect_error(const char *text, SingeResult code, int64_t line, const char *part) {
-    Mesh mesh;
+    Polygons mesh;
     SingeError error;
     SingeResult result = parse_bytes(text, strlen(text), &mesh, &error);
     if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
@@ -46,24 +46,24 @@ static void reads_ascii(void **state) {
                                "0 0 5 6 1 1 51 -32768 0\r\n"
                                "0 0 7 8 0 0 102 0 0\r\n"
                                "9 4 3 2 1 0";
-    Mesh mesh;
+    Polygons mesh;
     SingeError error;
     if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
     static const float positions[] = {1, 2, 0.1f, 3, 4, -1e-3f, 5, 6, 0, 7, 8, 0};
-    static const float uv[] = {0.75f, 0.25f, 1, 0, 1, 1, 0, 0};
+    static const float uv[] = {0, 0, 1, 1, 1, 0, 0.75f, 0.25f}; // of the face's corners
     static const float red[] = {1, 0, 51 * (1 / 255.0f), 102 * (1 / 255.0f)}, wet[] = {-5, 32767, -32768, 0};
     static const uint32_t cells[] = {3, 2, 1, 0};
     assert_int_equal(mesh.vertex_count, 4);
-    assert_int_equal(mesh.cell_count, 1);
+    assert_int_equal(mesh.face_count, 1);
     assert_int_equal(mesh.attribute_count, 2);
     assert_memory_equal(mesh.positions, positions, sizeof positions);
     assert_memory_equal(mesh.uv, uv, sizeof uv);
-    assert_memory_equal(mesh.cells, cells, sizeof cells);
+    assert_memory_equal(mesh.corners, cells, sizeof cells);
     assert_string_equal(mesh.attributes[0].name, "red");
     assert_memory_equal(mesh.attributes[0].values, red, sizeof red);
     assert_string_equal(mesh.attributes[1].name, "wet");
     assert_memory_equal(mesh.attributes[1].values, wet, sizeof wet);
-    mesh_free(&mesh);
+    polygons_free(&mesh);
 }
 
 // ---- binary files made here, in either byte order
@@ -128,22 +128,22 @@ static void reads_binary_of_both_orders(void **state) {
     (void)state;
     for (int big = 0; big < 2; big++) {
         Maker maker = make_binary(big);
-        Mesh mesh;
+        Polygons mesh;
         SingeError error;
         if (parse_bytes(maker.bytes, maker.size, &mesh, &error)) fail_msg("%s", error.message);
         assert_int_equal(mesh.vertex_count, 4);
         assert_memory_equal(mesh.positions, corners, sizeof corners);
         static const uint32_t cells[] = {0, 1, 2, 3, 3, 2, 1, 0};
-        assert_int_equal(mesh.cell_count, 2);
-        assert_memory_equal(mesh.cells, cells, sizeof cells);
+        assert_int_equal(mesh.face_count, 2);
+        assert_memory_equal(mesh.corners, cells, sizeof cells);
         assert_int_equal(mesh.attribute_count, 6);
         static const float expected[6] = {-128, 128, -32767, 32769, -1, 4294967040.0f};
         for (int i = 0; i < 6; i++) {
             assert_int_equal(mesh.attributes[i].name[0], 'a' + i);
             assert_true(mesh.attributes[i].values[3] == expected[i]);
         }
-        assert_true(mesh.uv[6] == 0.75f && mesh.uv[7] == 1);
-        mesh_free(&mesh);
+        assert_true(mesh.uv[6] == 0.75f && mesh.uv[7] == 1 && mesh.uv[8] == 0.75f);
+        polygons_free(&mesh);
         // a cut anywhere is noticed
         for (size_t size = 0; size < maker.size; size++) {
             if (parse_bytes(maker.bytes, size, &mesh, &error) == SINGE_OK) fail_msg("cut to %d bytes", (int)size);
@@ -198,15 +198,12 @@ static void refuses_bad_bodies(void **state) {
     expect_error(HEADER "element vertex 4\n"
                  XYZ "element face 1\nproperty list uchar float vertex_indices\nend_header\n" SQUARE "4 0 1 2 3\n",
                  SINGE_ERROR_FORMAT, -1, "integer type");
-    expect_error(GOOD_HEADER SQUARE "3 0 1 2\n", SINGE_ERROR_MESH, 14,
-                 "a.ply:14: face has 3 corners; Singe reads quads for now");
-    expect_error(GOOD_HEADER SQUARE "5 0 1 2 3 0\n", SINGE_ERROR_MESH, 14, "face has 5 corners");
-    expect_error(GOOD_HEADER SQUARE "255 0 1 2 3 0\n", SINGE_ERROR_MESH, 14, "face has 255 corners");
+    expect_error(GOOD_HEADER SQUARE "2 0 1\n", SINGE_ERROR_MESH, 14, "a.ply:14: face has 2 corners; it needs three");
+    expect_error(GOOD_HEADER SQUARE "255 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "too few values");
     expect_error(GOOD_HEADER SQUARE "300 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "\"300\" is out of range");
     expect_error(GOOD_HEADER SQUARE "-4 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "out of range");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 4\n", SINGE_ERROR_MESH, 14, "index 4 is out of range");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 -1\n", SINGE_ERROR_MESH, 14, "index -1 is out of range");
-    expect_error(GOOD_HEADER SQUARE "4 0 1 2 1\n", SINGE_ERROR_MESH, 14, "uses vertex 1 twice");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2.5 3\n", SINGE_ERROR_FORMAT, 14, "\"2.5\" is not an integer");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2\n", SINGE_ERROR_FORMAT, 14, "too few values");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 3 4\n", SINGE_ERROR_FORMAT, 14, "too many values");
@@ -232,7 +229,7 @@ static void refuses_bad_binary_values(void **state) {
         size_t body = maker.size;
         put_double(&maker, bad[i]);
         for (int k = 0; k < 40; k++) put(&maker, 0, 1);
-        Mesh mesh;
+        Polygons mesh;
         SingeError error;
         assert_int_equal(parse_bytes(maker.bytes, maker.size, &mesh, &error), SINGE_ERROR_FORMAT);
         assert_true(error.element >= (int64_t)body && error.element <= (int64_t)body + 8);
@@ -257,7 +254,7 @@ static void large_claims_take_no_memory(void **state) {
     };
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         Counter counter = {0};
-        Mesh mesh;
+        Polygons mesh;
         SingeError error;
         assert_int_equal(ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), counter_allocator(&counter),
                                   &mesh, &error),
@@ -267,16 +264,35 @@ static void large_claims_take_no_memory(void **state) {
     }
 }
 
+// Triangles and polygons, and uv of each face's own (MeshLab), which may come before its corners.
+static void faces_have_uv_of_their_own(void **state) {
+    (void)state;
+    static const char text[] = HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
+                                      "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
+    Polygons mesh;
+    SingeError error;
+    if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
+    static const float uv[] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1, 0.5f, 0.5f};
+    static const uint32_t face_corners[] = {0, 1, 2, 0, 2, 3, 1}, first[] = {0, 3, 7};
+    assert_int_equal(mesh.face_count, 2);
+    assert_memory_equal(mesh.uv, uv, sizeof uv);
+    assert_memory_equal(mesh.corners, face_corners, sizeof face_corners);
+    assert_memory_equal(mesh.first, first, sizeof first);
+    polygons_free(&mesh);
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 1\nproperty list uchar float texcoord\n" FACES
+                        "end_header\n" SQUARE "4 0 0 1 0 3 0 1 2\n", SINGE_ERROR_MESH, -1, "u and v for each");
+}
+
 static void truncated_ascii(void **state) {
     (void)state;
     static const char text[] = GOOD_HEADER SQUARE "4 0 1 2 3\n";
-    Mesh mesh;
+    Polygons mesh;
     SingeError error;
     // only the last newline may be missing
     for (size_t size = 0; size + 2 < sizeof text; size++)
         assert_int_not_equal(parse_bytes(text, size, &mesh, &error), SINGE_OK);
     assert_int_equal(parse_bytes(text, sizeof text - 2, &mesh, &error), SINGE_OK);
-    mesh_free(&mesh);
+    polygons_free(&mesh);
 }
 
 static void allocation_failure_is_clean(void **state) {
@@ -284,10 +300,10 @@ static void allocation_failure_is_clean(void **state) {
     Maker maker = make_binary(false);
     for (long n = 1;; n++) {
         Counter counter = {.fail_at = n};
-        Mesh mesh;
+        Polygons mesh;
         SingeError error;
         SingeResult result = ply_read("a.ply", maker.bytes, maker.size, counter_allocator(&counter), &mesh, &error);
-        if (result == SINGE_OK) mesh_free(&mesh);
+        if (result == SINGE_OK) polygons_free(&mesh);
         else assert_int_equal(result, SINGE_ERROR_MEMORY);
         counter_check(&counter);
         if (result == SINGE_OK) {
@@ -305,6 +321,7 @@ int main(void) {
         cmocka_unit_test(refuses_bad_bodies),
         cmocka_unit_test(refuses_bad_binary_values),
         cmocka_unit_test(large_claims_take_no_memory),
+        cmocka_unit_test(faces_have_uv_of_their_own),
         cmocka_unit_test(truncated_ascii),
         cmocka_unit_test(allocation_failure_is_clean),
     };

@@ -1,10 +1,10 @@
 #include "fuzz_mesh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    Mesh mesh;
+    Polygons mesh;
     SingeError error;
-    if (obj_read("fuzz.obj", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK) demand_mesh(&mesh);
+    if (obj_read("fuzz.obj", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK) demand_mesh(&mesh), demand_quads(&mesh);
     else demand(error.code && error.message[0] && !mesh.positions);
-    mesh_free(&mesh);
+    polygons_free(&mesh);
     return 0;
 }

@@ -1,11 +1,11 @@
 #include "fuzz_mesh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    Mesh mesh;
+    Polygons mesh;
     SingeError error;
-    if (ply_read("fuzz.ply", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK) demand_mesh(&mesh);
+    if (ply_read("fuzz.ply", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK) demand_mesh(&mesh), demand_quads(&mesh);
     else demand(error.code && error.message[0] && !mesh.positions);
-    mesh_free(&mesh);
+    polygons_free(&mesh);
 
     SingeSurface surface;
     double time;

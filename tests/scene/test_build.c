@@ -95,7 +95,7 @@ static void test_bad_files(void **state) {
     snprintf(path, sizeof path, "%s/bad.obj", folder);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
-    fputs("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", file);
+    fputs("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n", file);
     fclose(file);
     static const char text[] = "sheets:\n  - mesh: bad.obj\n    picture: bad.obj\n"
                                "  - grid: {size: [1, 1], cells: [2, 2]}\n"
@@ -152,17 +152,17 @@ static void test_bad_meshes(void **state) {
     static const struct {
         const char *name, *text, *origin, *fault;
     } meshes[] = {
+        // three at an edge, which hang together by two triangles
         {"fan.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 -1 0\nv 0 -1 0\nv 1 0 1\nv 0 0 1\n# three at an edge\n"
-                    "f 1 2 3 4\nf 2 1 6 5\n\nf 1 2 7 8\n", "t.yaml:2:11",
-         "fan.obj:13: the edge from vertex 0 to 1 has more than two cells, the third of which is cell 2 "
-         "(cells and vertices counted from 0)"},
+                    "f 1 2 3 4\nf 2 1 6 5\n\nf 1 2 7 8\nf 2 3 7\nf 1 6 8\n", "t.yaml:2:11",
+         "fan.obj:10: has a side that is a side of two other faces of the same sheet, too"},
         {"flat.ply", "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
                      "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 0 0\n4 0 1 2 3\n4 1 4 5 2\n", "t.yaml:3:11",
-         "flat.ply: face 2: cell 1 has a side without length (cells and vertices counted from 0)"},
-        {"touch.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3 4\nf 3 5 6 7\n",
-         "t.yaml:4:11", "touch.obj:8: the 2 cells at vertex 2 meet only in that point, not in one fan "
-                        "(cells and vertices counted from 0)"},
+                     "0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n4 0 1 2 3\n4 1 4 5 2\n", "t.yaml:3:11",
+         "flat.ply: no face has an area"},
+        {"moebius.obj", "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
+                        "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n",
+         "t.yaml:4:11", "closes a surface that has only one side, as a Moebius strip; cut it there"},
     };
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
@@ -172,13 +172,13 @@ static void test_bad_meshes(void **state) {
     for (int reader = 0; reader < 2; reader++) { // without, and with, a mesh that cannot even be read
         char text[400];
         snprintf(text, sizeof text,
-                 "sheets:\n  - mesh: fan.obj\n  - mesh: flat.ply\n  - mesh: touch.obj\n"
+                 "sheets:\n  - mesh: fan.obj\n  - mesh: flat.ply\n  - mesh: moebius.obj\n"
                  "  - grid: {size: [1, 1], cells: [2, 2]}\n%s", reader ? "  - mesh: words.obj\n" : "");
         SceneMessages messages = refused(text, folder);
         assert_int_equal(messages.count, 3 + reader);
         for (int i = 0; i < 3; i++) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
-            assert_string_equal(messages.items[i].text, meshes[i].fault);
+            assert_non_null(strstr(messages.items[i].text, meshes[i].fault));
         }
         if (reader)
             assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
@@ -195,7 +195,7 @@ static void test_bad_meshes(void **state) {
     assert_int_equal(messages.count, 1);
     assert_non_null(strstr(messages.items[0].text, "beyond 10 km"));
     scene_messages_free(&messages);
-    static const char *const names[] = {"fan.obj", "flat.ply", "touch.obj", "words.obj"};
+    static const char *const names[] = {"fan.obj", "flat.ply", "moebius.obj", "words.obj"};
     for (int i = 0; i < 4; i++) {
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         unlink(path);

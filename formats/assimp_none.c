@@ -1,0 +1,15 @@
+// glTF and the like in a build without assimp: nothing is read.
+#include "formats.h"
+#include "support.h"
+
+#include <string.h>
+
+bool assimp_available(void) { return false; }
+
+SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                        Polygons *polygons, SingeError *error) {
+    (void)bytes, (void)size, (void)allocator;
+    memset(polygons, 0, sizeof *polygons);
+    return refuse(error, SINGE_ERROR_STATE, "mesh", -1, "%s: this singe was built without assimp; it reads OBJ and PLY",
+                  short_name(name));
+}

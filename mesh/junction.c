@@ -1,0 +1,157 @@
+// T-junctions: a vertex of an open edge that lies on another open edge belongs to that face, too, which gets it as a
+// corner, where that closes the gap.
+#include "mesh/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// How far beside a side a vertex may lie, as a share of it.
+static const double beside = 1e-5;
+
+typedef struct OnSide {
+    double t; ///< along it, 0 to 1
+    uint32_t vertex;
+} OnSide;
+
+enum { ON_SIDE_MOST = 256 };
+
+typedef struct Junctions {
+    Work *work;
+    Places places;
+    uint32_t *open_first, *open_to; ///< open edges by their ends
+    OnSide found[ON_SIDE_MOST + 2];
+    int count;
+} Junctions;
+
+static int by_place(const void *a, const void *b) {
+    const OnSide *x = a, *y = b;
+    return (x->t > y->t) - (x->t < y->t);
+}
+
+/// Adds the vertices of a box that lie on the side from a to b.
+static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[3]) {
+    const Work *work = j->work;
+    double d[3], e[3];
+    sub3(work->place[b], work->place[a], d);
+    const double square = dot3(d, d), most = fmax(work->weld, beside * sqrt(square));
+    for (uint32_t v = j->places.head[places_slot(&j->places, box)]; v != MESH_NONE; v = j->places.next[v]) {
+        bool known = v == a || v == b;
+        for (int i = 0; i < j->count && !known; i++) known = j->found[i].vertex == v;
+        if (known || j->count == ON_SIDE_MOST) continue;
+        sub3(work->place[v], work->place[a], e);
+        double t = dot3(e, d) / square, off[3];
+        for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
+        if (t * sqrt(square) <= most || (1 - t) * sqrt(square) <= most || dot3(off, off) > most * most) continue;
+        j->found[j->count++] = (OnSide){t, v};
+    }
+}
+
+/// Finds what lies on a side, in its order.
+static void look_along(Junctions *j, uint32_t a, uint32_t b) {
+    const Work *work = j->work;
+    const double length = distance3(work->place[a], work->place[b]);
+    const int steps = (int)fmin(1e4, ceil(length / j->places.size));
+    j->count = 0;
+    for (int s = 0; s <= steps && length > 0; s++) {
+        double at[3];
+        for (int k = 0; k < 3; k++) at[k] = work->place[a][k] + (work->place[b][k] - work->place[a][k]) * s / steps;
+        int64_t middle[3], box[3];
+        places_box(&j->places, at, middle);
+        for (int i = 0; i < 27; i++) {
+            box[0] = middle[0] + i % 3 - 1, box[1] = middle[1] + i / 3 % 3 - 1, box[2] = middle[2] + i / 9 - 1;
+            look_in_box(j, a, b, box);
+        }
+    }
+    qsort(j->found, (size_t)j->count, sizeof *j->found, by_place);
+}
+
+static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {
+    for (uint32_t i = j->open_first[a]; i < j->open_first[a + 1]; i++)
+        if (j->open_to[i] == b) return true;
+    return false;
+}
+
+/// Keeps those that an open edge joins to the one before or behind: the rest touch nothing.
+static void keep_joined(Junctions *j, uint32_t a, uint32_t b) {
+    int kept = 0;
+    uint32_t before = a;
+    for (int i = 0; i < j->count; i++) {
+        uint32_t v = j->found[i].vertex, next = i + 1 < j->count ? j->found[i + 1].vertex : b;
+        bool joined = open_edge(j, before, v) || open_edge(j, v, next);
+        before = v;
+        if (joined) j->found[kept++] = j->found[i];
+    }
+    j->count = kept;
+}
+
+static bool list_open(Junctions *j) {
+    Work *work = j->work;
+    const Faces *faces = &work->faces;
+    uint8_t *open = work_new(work, work->vertex_count, 1);
+    j->open_first = work_new(work, (size_t)work->vertex_count + 2, sizeof *j->open_first);
+    j->open_to = work_new(work, (size_t)2 * faces->corner_count, sizeof *j->open_to);
+    if (work->no_memory) return false;
+    double total = 0;
+    uint32_t count = 0;
+    for (int fill = 0; fill < 2; fill++) {
+        for (uint32_t h = 0; h < faces->corner_count; h++) {
+            if (work->twin[h] != MESH_NONE) continue;
+            uint32_t a = faces->corner[h], b = faces->corner[faces_next(faces, work->face, h)];
+            if (fill) {
+                j->open_to[j->open_first[a + 1]++] = b, j->open_to[j->open_first[b + 1]++] = a;
+                continue;
+            }
+            j->open_first[a + 2]++, j->open_first[b + 2]++;
+            total += distance3(work->place[a], work->place[b]);
+            count++;
+        }
+        for (uint32_t v = 0; !fill && v < work->vertex_count; v++) j->open_first[v + 2] += j->open_first[v + 1];
+    }
+    if (!count) return false;
+    work_mark_open(work, open);
+    j->places = places_make(work, fmax(total / count, 1e-12));
+    if (work->no_memory) return false;
+    for (uint32_t v = 0; v < work->vertex_count; v++)
+        if (open[v]) places_add(work, &j->places, v);
+    return true;
+}
+
+/// uv of a vertex on a side, straight between its ends.
+static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, uint32_t next) {
+    const Faces *old = &j->work->faces;
+    uint32_t at = out->corner_count;
+    faces_push(out, j->found[i].vertex, old, half);
+    for (int k = 0; out->uv && k < 2; k++)
+        out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
+}
+
+void mesh_junctions(Work *work) {
+    work_edges(work);
+    Junctions *j = work_new(work, 1, sizeof *j);
+    if (work->no_memory) return;
+    j->work = work;
+    if (!list_open(j)) return;
+    const Faces *old = &work->faces;
+    uint32_t added = 0;
+    for (int write = 0; write < 2; write++) {
+        Faces out = {0};
+        if (write && !added) return;
+        if (write) out = work_faces(work, old->count, old->corner_count + added);
+        if (work->no_memory) return;
+        for (uint32_t f = 0; f < old->count; f++) {
+            for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
+                uint32_t next = faces_next(old, work->face, h);
+                if (write) faces_push(&out, old->corner[h], old, h);
+                if (work->twin[h] != MESH_NONE) continue;
+                look_along(j, old->corner[h], old->corner[next]);
+                keep_joined(j, old->corner[h], old->corner[next]);
+                for (int i = 0; i < j->count && write; i++) push_on_side(j, &out, i, h, next);
+                if (write) work_did(work, MESH_JUNCTION, (uint32_t)j->count, work_face_name(work, old->origin[f]));
+                else added += (uint32_t)j->count;
+            }
+            if (write) faces_end(&out, old->origin[f]);
+        }
+        if (write) work->faces = out;
+    }
+}

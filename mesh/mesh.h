@@ -1,0 +1,61 @@
+// From the polygons of a file to the quads of a sheet (docs/meshes.md): vertices are welded, what is broken is repaired
+// or refused, and triangles and polygons become quads. The core knows quads alone.
+#ifndef MESH_MESH_H
+#define MESH_MESH_H
+
+#include "formats/formats.h"
+
+/// How faces that are not quads become quads.
+typedef enum MeshQuads {
+    MESH_QUADS_PAIR = 0, ///< triangles are joined two by two; cells are as large as the file's
+    MESH_QUADS_SPLIT,    ///< every face of n corners becomes n quads; the file's sides are halved
+} MeshQuads;
+
+typedef struct MeshOptions {
+    MeshQuads quads;
+    float weld;     ///< distance (as positions) at which vertices on open edges are one; 0: MESH_WELD of the size
+    float smallest; ///< faces all of whose sides are below this share of the median side shrink to a point
+} MeshOptions;
+
+#define MESH_WELD 1e-5f     ///< of the diagonal of the box around the mesh
+#define MESH_SMALLEST 1e-3f ///< of the median side
+
+/// What may be done to a mesh.
+typedef enum MeshRepair {
+    MESH_UNUSED,     ///< vertices of no face left out
+    MESH_WELDED,     ///< vertices joined to another one at their place
+    MESH_SHRUNK,     ///< tiny faces that shrank to a point
+    MESH_DEGENERATE, ///< faces without area left out
+    MESH_DUPLICATE,  ///< faces left out whose corners another face has
+    MESH_JUNCTION,   ///< vertices put into sides that they lie on
+    MESH_TURNED,     ///< faces wound against their neighbours turned over
+    MESH_INSIDE_OUT, ///< closed surfaces turned inside out
+    MESH_CUT,        ///< sides of more than two faces cut apart
+    MESH_BOW_TIE,    ///< copies of vertices whose faces met in that point alone
+    MESH_PAIRED,     ///< pairs of triangles that became a quad
+    MESH_HALVED,     ///< sides that got a vertex in their middle so that the triangles at them became quads
+    MESH_SPLIT,      ///< faces split into quads
+    MESH_REPAIRS
+} MeshRepair;
+
+typedef struct MeshReport {
+    uint32_t faces, vertices;       ///< of the file
+    uint32_t triangles, quads, polygons; ///< of its faces
+    uint32_t seam_vertices;         ///< with more than one uv
+    uint32_t components;
+    uint32_t count[MESH_REPAIRS];
+    uint32_t first[MESH_REPAIRS];   ///< line, or else number from 0, of the first face or vertex it was done to
+    bool lines;                     ///< faces are told by line
+} MeshReport;
+
+MeshOptions mesh_default_options(void);
+
+/// Makes the quads. `name` is the file's, for messages. A mesh of quads without faults keeps its vertices, cells and
+/// their order. SINGE_ERROR_MESH where the mesh cannot be repaired: the message has the line or number of the face.
+SINGE_NODISCARD SingeResult mesh_make(const char *name, const Polygons *polygons, const MeshOptions *options,
+                                      SingeAllocator allocator, Mesh *mesh, MeshReport *report, SingeError *error);
+
+/// Whether the index-th sentence about the mesh could be written to `text`: first what it is, then what was done.
+bool mesh_report_line(const MeshReport *report, int index, char *text, size_t size);
+
+#endif

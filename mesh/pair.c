@@ -1,0 +1,428 @@
+// Triangles joined to quads. Polygons of five corners and more are cut into triangles first, and quads of a mixed mesh
+// into pairs that are joined already.
+//
+// A pair of triangles costs, in degrees,
+//
+//   max |angle - 90| over the quad's four corners + the fold between the two triangles
+//
+// and less where the quad goes on the rows of one that is there: at an end of the side that both share, their angles add
+// up to 180 where the other sides run straight through. Pairs are made cheapest first, so rows grow from where they fit
+// best, and opposite sides run through many quads: strands are long. What stays alone is mended by match.c, which shifts
+// pairs along a way of triangles until two that are alone meet, or one comes to the sheet's border. A pair that would be
+// no good quad (an angle above 175 degrees, a sharp fold, a seam of the uv) shares its side with a new vertex in the
+// middle, by which both triangles are quads of their own; so does a triangle at the border.
+#include "mesh/work.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DEGREES (180 / 3.14159265358979323846)
+static const double angle_most = 175, fold_most = 60, straight_gain = 0.5, straight_within = 60;
+
+typedef struct HeapItem {
+    double cost;
+    uint32_t half;
+} HeapItem;
+
+typedef struct Pairs {
+    Work *work;
+    uint32_t *mate;    ///< [triangles]
+    uint32_t *whole;   ///< [triangles] the first corner of the quad that it is half of, in `before`; MESH_NONE
+    double *cost;      ///< [half-edges] of the pair across a side, the lower of its two numbers
+    uint8_t *good;     ///< [half-edges] it makes a quad
+    uint32_t *degree;  ///< [vertices] triangles
+    uint8_t *rim;      ///< [vertices] on an open edge
+    Faces before;      ///< the faces that the triangles come from
+    HeapItem *heap;
+    uint32_t heap_count, heap_capacity;
+} Pairs;
+
+// ---- into triangles
+
+/// Cosine of the angle at b.
+static double cosine_at(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
+    double p[3], q[3];
+    sub3(work->place[a], work->place[b], p), sub3(work->place[c], work->place[b], q);
+    double square = dot3(p, p) * dot3(q, q);
+    return square > 0 ? fmax(-1, fmin(1, dot3(p, q) / sqrt(square))) : 1;
+}
+static double angle_at(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
+    return DEGREES * acos(cosine_at(work, a, b, c));
+}
+
+/// How well a triangle can be cut off at corner k of a ring of n half-edges: its smallest angle, in degrees; negative
+/// where it is turned over.
+static double ear_of(const Work *work, const uint32_t *ring, uint32_t n, uint32_t k, const double normal[3]) {
+    const uint32_t *corner = work->faces.corner;
+    uint32_t a = corner[ring[(k + n - 1) % n]], b = corner[ring[k]], c = corner[ring[(k + 1) % n]];
+    double p[3], q[3], m[3];
+    sub3(work->place[b], work->place[a], p), sub3(work->place[c], work->place[b], q);
+    cross3(p, q, m);
+    double least = fmin(angle_at(work, a, b, c), fmin(angle_at(work, b, c, a), angle_at(work, c, a, b)));
+    return dot3(m, normal) > 0 ? least : -1 - least;
+}
+
+static void push_triangle(Faces *out, const Faces *old, uint32_t a, uint32_t b, uint32_t c, uint32_t origin) {
+    faces_push(out, old->corner[a], old, a);
+    faces_push(out, old->corner[b], old, b);
+    faces_push(out, old->corner[c], old, c);
+    faces_end(out, origin);
+}
+
+enum { BEST_CUT_MOST = 40 };
+
+/// The triangulation of a small ring whose worst triangle is best, by parts of the ring (Klincsek, 1980).
+static void cut_best(const Work *work, const uint32_t *ring, uint32_t n, const double normal[3], uint32_t origin,
+                     Faces *out) {
+    double worst[BEST_CUT_MOST][BEST_CUT_MOST];
+    uint8_t apex[BEST_CUT_MOST][BEST_CUT_MOST], stack[2 * BEST_CUT_MOST][2];
+    for (uint32_t span = 1; span < n; span++)
+        for (uint32_t i = 0; i + span < n; i++) {
+            uint32_t j = i + span;
+            worst[i][j] = span == 1 ? 180 : -1e9;
+            for (uint32_t k = i + 1; k < j; k++) {
+                const uint32_t three[3] = {ring[i], ring[k], ring[j]};
+                double value = fmin(ear_of(work, three, 3, 1, normal), fmin(worst[i][k], worst[k][j]));
+                if (value > worst[i][j]) worst[i][j] = value, apex[i][j] = (uint8_t)k;
+            }
+        }
+    uint32_t depth = 1;
+    stack[0][0] = 0, stack[0][1] = (uint8_t)(n - 1);
+    while (depth) {
+        uint32_t i = stack[--depth][0], j = stack[depth][1];
+        if (j - i < 2) continue;
+        uint32_t k = apex[i][j];
+        push_triangle(out, &work->faces, ring[i], ring[k], ring[j], origin);
+        stack[depth][0] = (uint8_t)i, stack[depth++][1] = (uint8_t)k;
+        stack[depth][0] = (uint8_t)k, stack[depth++][1] = (uint8_t)j;
+    }
+}
+
+/// Cuts off the best corner until the ring is small.
+static void cut_polygon(const Work *work, uint32_t face, uint32_t *ring, Faces *out) {
+    const Faces *old = &work->faces;
+    uint32_t n = old->first[face + 1] - old->first[face];
+    double normal[3];
+    face_area(work, face, normal);
+    for (uint32_t i = 0; i < n; i++) ring[i] = old->first[face] + i;
+    for (; n > BEST_CUT_MOST; n--) {
+        uint32_t best = 0;
+        double most = -1e9;
+        for (uint32_t k = 0; k < n; k++) {
+            double value = ear_of(work, ring, n, k, normal);
+            if (value > most) most = value, best = k;
+        }
+        push_triangle(out, old, ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n], old->origin[face]);
+        memmove(ring + best, ring + best + 1, (n - 1 - best) * sizeof *ring);
+    }
+    cut_best(work, ring, n, normal, old->origin[face], out);
+}
+
+/// Cuts a quad along the diagonal that leaves the better triangles; they are a pair from the start.
+static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
+    const Faces *old = &pairs->work->faces;
+    const uint32_t h = old->first[face], ring[4] = {h, h + 1, h + 2, h + 3};
+    double normal[3], value[2];
+    face_area(pairs->work, face, normal);
+    for (uint32_t k = 0; k < 2; k++)
+        value[k] = fmin(ear_of(pairs->work, ring, 4, k, normal), ear_of(pairs->work, ring, 4, k + 2, normal));
+    uint32_t s = value[1] >= value[0] ? 0 : 1, t = out->count; // the ears are at s + 1 and s + 3
+    push_triangle(out, old, h + s, h + s + 1, h + s + 2, old->origin[face]);
+    push_triangle(out, old, h + s, h + s + 2, h + (s + 3) % 4, old->origin[face]);
+    pairs->mate[t] = t + 1, pairs->mate[t + 1] = t;
+    pairs->whole[t] = pairs->whole[t + 1] = h;
+}
+
+static void cut_faces(Pairs *pairs) {
+    Work *work = pairs->work;
+    const Faces *old = &work->faces;
+    uint32_t triangles = old->corner_count - 2 * old->count;
+    Faces out = work_faces(work, triangles, 3 * triangles);
+    uint32_t *ring = work_new(work, old->corner_count, sizeof *ring);
+    pairs->mate = work_new(work, triangles, sizeof *pairs->mate);
+    pairs->whole = work_new(work, triangles, sizeof *pairs->whole);
+    if (work->no_memory) return;
+    memset(pairs->mate, 0xff, triangles * sizeof *pairs->mate);
+    memset(pairs->whole, 0xff, triangles * sizeof *pairs->whole);
+    for (uint32_t f = 0; f < old->count; f++) {
+        if (old->first[f + 1] - old->first[f] == 4) cut_quad(pairs, f, &out);
+        else cut_polygon(work, f, ring, &out);
+    }
+    pairs->before = *old;
+    work->faces = out;
+}
+
+// ---- what a pair costs
+
+static uint32_t next3(uint32_t half) { return half - half % 3 + (half + 1) % 3; }
+static uint32_t last3(uint32_t half) { return half - half % 3 + (half + 2) % 3; }
+static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
+    uint32_t twin = pairs->work->twin[half];
+    return twin < half ? twin : half;
+}
+
+/// The angle at the corner of a half-edge's triangle that it leaves.
+static double corner_angle(const Pairs *pairs, uint32_t half) {
+    const uint32_t *corner = pairs->work->faces.corner;
+    return angle_at(pairs->work, corner[last3(half)], corner[half], corner[next3(half)]);
+}
+
+static double fold_between(const Pairs *pairs, uint32_t a, uint32_t b) {
+    double n[3], m[3];
+    face_area(pairs->work, a, n), face_area(pairs->work, b, m);
+    double square = dot3(n, n) * dot3(m, m);
+    return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(n, m) / sqrt(square)))) : 180;
+}
+
+static bool is_seam(const Pairs *pairs, uint32_t half, uint32_t twin) {
+    float (*uv)[2] = pairs->work->faces.uv;
+    if (!uv) return false;
+    uint32_t a = next3(twin), b = next3(half);
+    return uv[half][0] != uv[a][0] || uv[half][1] != uv[a][1] || uv[b][0] != uv[twin][0] || uv[b][1] != uv[twin][1];
+}
+
+static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
+    const uint32_t *corner = pairs->work->faces.corner;
+    double angle[4] = {corner_angle(pairs, half) + corner_angle(pairs, next3(twin)),
+                       corner_angle(pairs, next3(half)) + corner_angle(pairs, twin), corner_angle(pairs, last3(half)),
+                       corner_angle(pairs, last3(twin))};
+    double worst = 0, most = 0, fold = fold_between(pairs, half / 3, twin / 3);
+    for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), most = fmax(most, angle[i]);
+    bool thin_fan = false; // a vertex inside must keep three cells
+    for (int i = 0; i < 2; i++) {
+        uint32_t v = corner[i ? next3(half) : half];
+        thin_fan = thin_fan || (!pairs->rim[v] && pairs->degree[v] <= 3);
+    }
+    pairs->cost[half] = worst + fold;
+    pairs->good[half] = most <= angle_most && fold <= fold_most && !thin_fan && !is_seam(pairs, half, twin);
+}
+
+static void cost_all(Pairs *pairs) {
+    Work *work = pairs->work;
+    const Faces *faces = &work->faces;
+    pairs->cost = work_new(work, faces->corner_count, sizeof *pairs->cost);
+    pairs->good = work_new(work, faces->corner_count, 1);
+    pairs->degree = work_new(work, work->vertex_count, sizeof *pairs->degree);
+    pairs->rim = work_new(work, work->vertex_count, 1);
+    if (work->no_memory) return;
+    work_mark_open(work, pairs->rim);
+    for (uint32_t h = 0; h < faces->corner_count; h++) pairs->degree[faces->corner[h]]++;
+    for (uint32_t h = 0; h < faces->corner_count; h++)
+        if (work->twin[h] != MESH_NONE && h < work->twin[h]) cost_pair(pairs, h, work->twin[h]);
+}
+
+// ---- the cheapest first
+
+static bool before(const HeapItem *a, const HeapItem *b) {
+    return a->cost < b->cost || (a->cost == b->cost && a->half < b->half);
+}
+
+static void heap_push(Pairs *pairs, HeapItem item) {
+    if (pairs->heap_count == pairs->heap_capacity) {
+        uint32_t capacity = 2 * pairs->heap_capacity + 64;
+        HeapItem *heap = work_new(pairs->work, capacity, sizeof *heap);
+        if (!heap) return;
+        if (pairs->heap_count) memcpy(heap, pairs->heap, pairs->heap_count * sizeof *heap);
+        pairs->heap = heap, pairs->heap_capacity = capacity;
+    }
+    uint32_t i = pairs->heap_count++;
+    for (; i > 0 && before(&item, &pairs->heap[(i - 1) / 2]); i = (i - 1) / 2) pairs->heap[i] = pairs->heap[(i - 1) / 2];
+    pairs->heap[i] = item;
+}
+
+static HeapItem heap_pop(Pairs *pairs) {
+    HeapItem top = pairs->heap[0], item = pairs->heap[--pairs->heap_count];
+    uint32_t i = 0, count = pairs->heap_count;
+    for (uint32_t child; (child = 2 * i + 1) < count; i = child) {
+        if (child + 1 < count && before(&pairs->heap[child + 1], &pairs->heap[child])) child++;
+        if (!before(&pairs->heap[child], &item)) break;
+        pairs->heap[i] = pairs->heap[child];
+    }
+    pairs->heap[i] = item;
+    return top;
+}
+
+/// The angle of the quad made of `side`'s triangle and its mate, at the corner that `side` leaves. `twin` is the half-edge
+/// of the mate along the side that both share, `half` its own.
+static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
+    double angle = corner_angle(pairs, corner_half);
+    if (corner_half == half) angle += corner_angle(pairs, next3(twin));
+    else if (corner_half == next3(half)) angle += corner_angle(pairs, twin);
+    return angle;
+}
+
+/// The half-edge that a triangle shares with its mate.
+static uint32_t shared_half(const Pairs *pairs, uint32_t triangle) {
+    uint32_t mate = pairs->mate[triangle];
+    for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++)
+        if (pairs->work->twin[h] != MESH_NONE && pairs->work->twin[h] / 3 == mate) return h;
+    return MESH_NONE;
+}
+
+/// What the pair across `half` gains by going on the rows of the quads around it.
+static double pair_gain(const Pairs *pairs, uint32_t half) {
+    const Work *work = pairs->work;
+    uint32_t twin = work->twin[half];
+    double gain = 0;
+    for (int i = 0; i < 4; i++) {
+        uint32_t inner = i < 2 ? half : twin, other = i < 2 ? twin : half;
+        uint32_t side = i & 1 ? next3(inner) : last3(inner), across = work->twin[side];
+        if (across == MESH_NONE || pairs->mate[across / 3] == MESH_NONE) continue;
+        uint32_t shared = shared_half(pairs, across / 3);
+        if (shared == MESH_NONE || shared == across) continue;
+        uint32_t shared_twin = work->twin[shared];
+        double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, next3(across), shared, shared_twin);
+        double to = quad_angle(pairs, next3(side), inner, other) + quad_angle(pairs, across, shared, shared_twin);
+        gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
+    }
+    return straight_gain * gain;
+}
+
+/// Offers the pairs of a triangle that is alone.
+static void offer(Pairs *pairs, uint32_t triangle) {
+    const Work *work = pairs->work;
+    for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
+        if (work->twin[h] == MESH_NONE || pairs->mate[work->twin[h] / 3] != MESH_NONE) continue;
+        uint32_t name = pair_name(pairs, h);
+        if (pairs->good[name]) heap_push(pairs, (HeapItem){pairs->cost[name] - pair_gain(pairs, name), name});
+    }
+}
+
+static void offer_around(Pairs *pairs, uint32_t triangle) {
+    for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
+        uint32_t across = pairs->work->twin[h];
+        if (across != MESH_NONE && pairs->mate[across / 3] == MESH_NONE) offer(pairs, across / 3);
+    }
+}
+
+static void join_cheapest(Pairs *pairs) {
+    const Work *work = pairs->work;
+    for (uint32_t t = 0; t < work->faces.count; t++)
+        if (pairs->mate[t] == MESH_NONE) offer(pairs, t);
+    while (pairs->heap_count && !work->no_memory) {
+        uint32_t half = heap_pop(pairs).half, a = half / 3, b = work->twin[half] / 3;
+        if (pairs->mate[a] != MESH_NONE || pairs->mate[b] != MESH_NONE) continue;
+        pairs->mate[a] = b, pairs->mate[b] = a;
+        offer_around(pairs, a);
+        offer_around(pairs, b);
+    }
+}
+
+// ---- what is left alone
+
+static bool any_alone(const Pairs *pairs) {
+    for (uint32_t t = 0; t < pairs->work->faces.count; t++)
+        if (pairs->mate[t] == MESH_NONE) return true;
+    return false;
+}
+
+/// Grows the pairs over the graph of good pairs or of all.
+static void grow(Pairs *pairs, bool all, const uint8_t *open) {
+    Work *work = pairs->work;
+    const uint32_t count = work->faces.count;
+    uint32_t *first = work_new(work, (size_t)count + 1, sizeof *first);
+    uint32_t *to = work_new(work, work->faces.corner_count, sizeof *to);
+    if (work->no_memory || !any_alone(pairs)) return;
+    for (uint32_t t = 0, total = 0; t < count; t++) {
+        for (uint32_t h = 3 * t; h < 3 * t + 3; h++)
+            if (work->twin[h] != MESH_NONE && (all || pairs->good[pair_name(pairs, h)])) to[total++] = work->twin[h] / 3;
+        first[t + 1] = total;
+    }
+    match_grow(work, count, first, to, open, pairs->mate);
+}
+
+/// The open side of a triangle that is best cut in two, the longest.
+static uint32_t open_side(const Pairs *pairs, uint32_t triangle) {
+    const Work *work = pairs->work;
+    uint32_t best = MESH_NONE;
+    double most = -1;
+    for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
+        if (work->twin[h] != MESH_NONE) continue;
+        double length = distance3(work->place[work->faces.corner[h]], work->place[work->faces.corner[next3(h)]]);
+        if (length > most) most = length, best = h;
+    }
+    return best;
+}
+
+static bool find_mates(Pairs *pairs) {
+    Work *work = pairs->work;
+    uint8_t *open = work_new(work, work->faces.count, 1);
+    if (work->no_memory) return true;
+    for (uint32_t h = 0; h < work->faces.corner_count; h++) open[h / 3] |= work->twin[h] == MESH_NONE;
+    join_cheapest(pairs);
+    grow(pairs, false, NULL);
+    grow(pairs, false, open);
+    grow(pairs, true, open);
+    for (uint32_t t = 0; t < work->faces.count && !work->no_memory; t++)
+        if (pairs->mate[t] == MESH_NONE && !open[t]) return false;
+    return true;
+}
+
+// ---- quads
+
+/// The triangle of `half` with a vertex in the middle of that side.
+static void push_halved(const Faces *old, uint32_t half, uint32_t middle, Faces *out) {
+    faces_push(out, old->corner[half], old, half);
+    faces_push_between(out, middle, old, half, next3(half));
+    faces_push(out, old->corner[next3(half)], old, next3(half));
+    faces_push(out, old->corner[last3(half)], old, last3(half));
+    faces_end(out, old->origin[half / 3]);
+}
+
+static void halve(Pairs *pairs, uint32_t half, Faces *out) {
+    Work *work = pairs->work;
+    const Faces *old = &work->faces;
+    const uint32_t ends[2] = {old->corner[half], old->corner[next3(half)]};
+    uint32_t middle = work_vertex(work, ends, 2);
+    push_halved(old, half, middle, out);
+    if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], middle, out);
+    work_did(work, MESH_HALVED, 1, work_face_name(work, old->origin[half / 3]));
+}
+
+/// A pair as a quad; one that was a quad of the file as it was.
+static void push_quad(Pairs *pairs, uint32_t half, Faces *out) {
+    Work *work = pairs->work;
+    const Faces *old = &work->faces;
+    const uint32_t twin = work->twin[half], whole = pairs->whole[half / 3];
+    if (whole != MESH_NONE && pairs->whole[twin / 3] == whole) {
+        for (uint32_t i = 0; i < 4; i++) faces_push(out, pairs->before.corner[whole + i], &pairs->before, whole + i);
+    } else {
+        const uint32_t ring[4] = {half, last3(twin), next3(half), last3(half)};
+        for (int i = 0; i < 4; i++) faces_push(out, old->corner[ring[i]], old, ring[i]);
+        work_did(work, MESH_PAIRED, 1, work_face_name(work, old->origin[half / 3]));
+    }
+    faces_end(out, old->origin[half / 3]);
+}
+
+static void emit(Pairs *pairs) {
+    Work *work = pairs->work;
+    const uint32_t count = work->faces.count;
+    Faces out = work_faces(work, count, 4 * count);
+    for (uint32_t t = 0; t < count && !work->no_memory; t++) {
+        if (pairs->mate[t] == MESH_NONE) {
+            halve(pairs, open_side(pairs, t), &out);
+            continue;
+        }
+        if (pairs->mate[t] < t) continue;
+        uint32_t half = shared_half(pairs, t), whole = pairs->whole[t];
+        bool was_quad = whole != MESH_NONE && pairs->whole[pairs->mate[t]] == whole;
+        if (was_quad || pairs->good[pair_name(pairs, half)]) push_quad(pairs, half, &out);
+        else halve(pairs, half, &out);
+    }
+    work->faces = out;
+}
+
+bool mesh_pair(Work *work) {
+    Pairs *pairs = work_new(work, 1, sizeof *pairs);
+    if (!pairs) return true;
+    pairs->work = work;
+    cut_faces(pairs);
+    if (!work->no_memory) work_edges(work);
+    if (!work->no_memory) cost_all(pairs);
+    if (work->no_memory) return true;
+    bool found = find_mates(pairs);
+    if (work->no_memory) return true;
+    if (found) emit(pairs);
+    else work->faces = pairs->before;
+    return found;
+}

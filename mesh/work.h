@@ -1,0 +1,143 @@
+// A mesh while it is repaired: what the files of this folder share.
+#ifndef MESH_WORK_H
+#define MESH_WORK_H
+
+#include "mesh/mesh.h"
+
+#define MESH_NONE UINT32_MAX
+
+/// Memory that goes all at once.
+typedef struct WorkBlock {
+    struct WorkBlock *next;
+} WorkBlock;
+
+/// Faces, whose corners lie one after the other. A half-edge has the number of the corner that it leaves.
+typedef struct Faces {
+    uint32_t count, corner_count;
+    uint32_t *first;   ///< [count + 1]
+    uint32_t *corner;  ///< [corner_count] vertex
+    float (*uv)[2];    ///< [corner_count] or NULL
+    uint32_t *origin;  ///< [count] face of the file
+} Faces;
+
+typedef struct Work {
+    const char *name;
+    const Polygons *file;
+    MeshReport *report;
+    SingeError *error;
+    WorkBlock *blocks;
+    bool no_memory;
+    uint32_t vertex_count, vertex_capacity, attribute_count;
+    double (*place)[3];
+    int32_t *source;      ///< vertex of the file, -1 for a new one
+    float *attributes;    ///< [vertex_capacity * attribute_count]
+    Faces faces;
+    uint32_t *face;       ///< [corner_count] whose corner it is (work_edges)
+    uint32_t *twin;       ///< [corner_count] the same side in the other face; MESH_NONE (work_edges)
+    double weld;          ///< distance at which vertices are one
+    double smallest;      ///< faces with sides below it shrink
+} Work;
+
+/// Zeroed memory; NULL and work->no_memory when there is none.
+void *work_new(Work *work, size_t count, size_t size);
+void work_free(Work *work);
+
+/// Empty faces with room; their uv only where the mesh has it.
+Faces work_faces(Work *work, uint32_t faces, uint32_t corners);
+/// Appends a corner to the face that is being made, with the uv of corner `from` of `old`.
+void faces_push(Faces *faces, uint32_t vertex, const Faces *old, uint32_t from);
+/// Appends a corner with the uv between those of corners `a` and `b` of `old`.
+void faces_push_between(Faces *faces, uint32_t vertex, const Faces *old, uint32_t a, uint32_t b);
+/// Ends the face that is being made.
+void faces_end(Faces *faces, uint32_t origin);
+
+/// A new vertex in the mean of others; MESH_NONE when there is no memory.
+uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count);
+/// A copy of a vertex, with its number in the file.
+uint32_t work_copy(Work *work, uint32_t vertex);
+
+static inline uint32_t faces_next(const Faces *faces, const uint32_t *face, uint32_t half) {
+    return half + 1 < faces->first[face[half] + 1] ? half + 1 : faces->first[face[half]];
+}
+static inline uint32_t faces_previous(const Faces *faces, const uint32_t *face, uint32_t half) {
+    return half > faces->first[face[half]] ? half - 1 : faces->first[face[half] + 1] - 1;
+}
+
+/// Half-edges in the order of their lower and then their higher end, those of an edge in their own order.
+uint32_t *work_sorted_edges(Work *work);
+/// How many half-edges of `order` from `at` on are the same edge.
+uint32_t work_edge_size(const Work *work, const uint32_t *order, uint32_t at);
+/// Fills work->face and twin; an edge of more than two faces has no twins.
+void work_edges(Work *work);
+
+/// Notes that something was done to a face or vertex of the file.
+void work_did(Work *work, MeshRepair repair, uint32_t count, uint32_t first);
+/// The line of a face of the file, or its number.
+uint32_t work_face_name(const Work *work, uint32_t origin);
+/// Fails at a face of the file.
+SingeResult work_refuse(const Work *work, uint32_t origin, const char *what);
+
+static inline uint32_t sets_find(uint32_t *set, uint32_t i) {
+    while (set[i] != i) i = set[i] = set[set[i]];
+    return i;
+}
+/// The smaller number stays.
+static inline bool sets_join(uint32_t *set, uint32_t a, uint32_t b) {
+    a = sets_find(set, a), b = sets_find(set, b);
+    if (a < b) set[b] = a;
+    else set[a] = b;
+    return a != b;
+}
+uint32_t *work_sets(Work *work, uint32_t count);
+
+static inline double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline void sub3(const double *a, const double *b, double *out) {
+    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
+}
+static inline void cross3(const double *a, const double *b, double *out) {
+    out[0] = a[1] * b[2] - a[2] * b[1], out[1] = a[2] * b[0] - a[0] * b[2], out[2] = a[0] * b[1] - a[1] * b[0];
+}
+double distance3(const double *a, const double *b);
+/// Twice the area times the normal.
+void face_area(const Work *work, uint32_t face, double normal[3]);
+
+/// Marks the vertices on open edges; work->twin is filled.
+void work_mark_open(const Work *work, uint8_t *open);
+
+/// Vertices by the box of a grid in which they lie, by a hash (weld.c).
+typedef struct Places {
+    double size;
+    uint32_t slots;
+    uint32_t *head, *next; ///< [slots] and [vertices], MESH_NONE at the end
+} Places;
+
+Places places_make(Work *work, double size);
+void places_add(const Work *work, Places *places, uint32_t vertex);
+void places_box(const Places *places, const double *place, int64_t box[3]);
+uint32_t places_slot(const Places *places, const int64_t box[3]);
+
+// ---- the steps, each of which leaves new faces
+
+/// Joins vertices on open edges that are as near as work->weld (weld.c).
+void mesh_weld(Work *work);
+/// Shrinks tiny faces (weld.c).
+void mesh_shrink(Work *work);
+/// Leaves out what has no area and what is there twice; faces that touch themselves fall apart (clean.c).
+void mesh_clean(Work *work);
+/// Puts vertices into the open sides that they lie on (junction.c).
+void mesh_junctions(Work *work);
+/// Cuts edges of more than two faces, turns faces one way, closed surfaces outside out, and gives every fan of faces a
+/// vertex of its own (manifold.c).
+SingeResult mesh_manifold(Work *work);
+/// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False when some triangle stays alone.
+bool mesh_pair(Work *work);
+/// Every face of n corners into n quads (split.c).
+void mesh_split(Work *work);
+
+/// Pairs of a graph's nodes: a largest set of edges that share no node, grown from `mate` (match.c). Node v's edges are
+/// arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE where a node is alone. `open` nodes may stay alone,
+/// and do so rather than others.
+void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uint32_t *arc_to, const uint8_t *open,
+                uint32_t *mate);
+
+#endif
