@@ -10,6 +10,8 @@ typedef SingeResult BenchFn(const BenchOptions *options, BenchTable *table, Sing
 
 /// A sheet falls from the horizontal and swings, held at corner points: cost, strain and motion.
 BenchFn bench_swing;
+/// The swinging sheet made of triangles, as mesh_make makes quads of them: cells, strands, strain and motion.
+BenchFn bench_mesh;
 /// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
 BenchFn bench_hang_and_shrink;
 

@@ -100,7 +100,14 @@ static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
     if (setup->state == BENCH_SHRINK) material_shrinks(&sheet.material, setup->shrink);
     sheet.material.damping = singe_param(setup->damping);
     for (int c = 0; setup->rigid && c < SINGE_COLOUR_COUNT; c++) sheet.material.compliance[c] = singe_param(0);
-    SingeResult result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
+    SingeResult result;
+    if (setup->shape) {
+        sheet.vertex_count = setup->shape->vertex_count, sheet.positions = setup->shape->positions;
+        sheet.cell_count = setup->shape->cell_count, sheet.cells = setup->shape->cells;
+        result = singe_sim_add_sheet(sim, &sheet, &id);
+    } else {
+        result = sheet_add(sim, &sheet, setup->cells, size, setup->state != BENCH_SWING, &id);
+    }
     if (!result) result = singe_sim_commit(sim);
     return result ? result : pins_add(sim, setup, id);
 }

@@ -17,6 +17,7 @@ typedef struct BenchSetup {
     int threads;
     SingeInstructions instructions;
     SingeSolverDef solver;
+    const SingeSheetDef *shape; ///< whose vertices and cells are taken, in the xy plane; NULL: the grid
 } BenchSetup;
 
 /// Frames a second at which trajectories are sampled.

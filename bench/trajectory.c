@@ -58,6 +58,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
     } else {
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_clear(&trajectory->strain[colour]);
         for (int m = 0; m < TRAJECTORY_MARKS; m++) trajectory->fall[m] = NAN;
+        trajectory->strand_length = singe_sim_census(sim).mean_strand_length;
         follow(trajectory, sim, frames, steps, budget);
     }
     singe_sim_destroy(sim);

@@ -18,6 +18,7 @@ typedef struct Trajectory {
     double speed_max;        ///< m/s, the largest met at the end of any frame
     Strain strain[SINGE_COLOUR_COUNT]; ///< over all frames
     double inverted;         ///< cells whose centre is not in front of their corners, the most after any step
+    double strand_length;    ///< mean, springs
     bool diverged;           ///< a step failed, or a position or speed is not finite
 } Trajectory;
 

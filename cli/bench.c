@@ -27,6 +27,8 @@ static const struct {
 } measurements[] = {
     {"swing", "bench swing", bench_swing, TRAJECTORY,
      "A sheet of 1 m x 1 m falls from the horizontal, held at corners: cost of a frame, strain, motion."},
+    {"mesh", "bench mesh", bench_mesh, TRAJECTORY | BENCH_BIT(QUICK),
+     "The swinging sheet made of triangles, which become quads: cells, strands, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers."},
     {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),

@@ -11,7 +11,7 @@
 #   mesh          mesh, formats
 #   preview       preview, formats
 #   scene         scene, formats, mesh/mesh.h, preview/preview.h
-#   bench         bench
+#   bench         bench, mesh/mesh.h
 #   cli           cli, bench, scene, formats, mesh/mesh.h, preview/preview.h
 #
 # and the public headers for all. Only src and tests see src. include/singe sees itself alone.
@@ -52,7 +52,7 @@ check mesh 'singe/.*|formats/.*|mesh/.*'
 check preview 'singe/.*|formats/.*|preview/.*'
 check scene 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*'
 check cli 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*|bench/.*|cli/.*'
-check bench 'singe/.*|bench/.*'
+check bench 'singe/.*|mesh/mesh\.h|bench/.*'
 check examples 'singe/.*'
 check web 'singe/.*|web/.*'
 

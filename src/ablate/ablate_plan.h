@@ -67,6 +67,15 @@ void piece_update(Removal *removal, EventList *events);
 SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error);
 SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
 
+/// Room for so many vertices in all; those that are there stay. On failure the surface is empty.
+SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeError *error);
+/// Vertex `to` becomes what vertex `from` is.
+void surface_copy_vertex(SingeSurface *surface, uint32_t from, uint32_t to);
+
+/// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. What it
+/// needs comes from the surface's allocator and goes back. On failure the surface is empty (surface_seams.c).
+SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error);
+
 /// Empties a surface but for its allocator.
 void surface_clear(SingeSurface *surface);
 

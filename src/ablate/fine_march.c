@@ -176,11 +176,14 @@ static void march_fine(Marching *march, uint32_t cell) {
 static void march_cells(Marching *march) {
     const Fine *fine = march->fine;
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
+        if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         uint32_t before = fine->surface->triangle_count;
         if (!fine_is_split(fine, c)) march_coarse(march, c);
         else march_fine(march, c), fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
+    if (fine->cell_triangle && march->drawing)
+        fine->cell_triangle[fine->shell->cell_count] = fine->surface->triangle_count;
 }
 
 /// Lays out the cuts on the cells' sides: one where neither cell is split.

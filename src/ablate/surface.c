@@ -46,9 +46,11 @@ static Polygon clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, i
 }
 
 /// Draws the cells with keys for vertices, which it marks in plan->output.
-static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface) {
+static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
+                       SingeSurface *surface) {
     memset(plan->output, 0, plan->keys.count * sizeof *plan->output);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (cell_first) cell_first[c + 1] = surface->triangle_count;
         if (!(state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         for (int side = 0; side < 4; side++) {
             Polygon polygon = clip(plan, shell, c, side);
@@ -58,6 +60,7 @@ static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state,
                 for (int i = 0; i < 3; i++) plan->output[triangle[i]] = 1;
             }
         }
+        if (cell_first) cell_first[c + 1] = surface->triangle_count;
     }
 }
 
@@ -112,14 +115,29 @@ void surface_normals(SingeSurface *surface) {
     }
 }
 
+static SingeResult draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
+                        SingeSurface *surface, SingeError *error) {
+    TRY(surface_reserve_triangles(surface, most_triangles(plan, shell, state), error));
+    draw_cells(plan, shell, state, cell_first, surface);
+    TRY(surface_reserve_vertices(surface, count_vertices(plan), error));
+    fill_vertices(plan, shell, state, surface);
+    if (surface->vertex_count) surface_normals(surface);
+    return cell_first ? surface_seams(shell, cell_first, surface, error) : SINGE_OK;
+}
+
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
                            SingeError *error) {
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
-    TRY(surface_reserve_triangles(surface, most_triangles(plan, shell, state), error));
-    draw_cells(plan, shell, state, surface);
-    TRY(surface_reserve_vertices(surface, count_vertices(plan), error));
-    fill_vertices(plan, shell, state, surface);
-    if (surface->vertex_count) surface_normals(surface);
-    return SINGE_OK;
+    if (!shell->corner_uv) return draw(plan, shell, state, NULL, surface, error);
+    Memory memory = memory_make(surface->allocator);
+    uint32_t *cell_first;
+    size_t cells = (size_t)shell->cell_count + 1;
+    if (!NEW(&memory, cell_first, cells)) {
+        surface_clear(surface);
+        return error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
+    }
+    SingeResult result = draw(plan, shell, state, cell_first, surface, error);
+    FREE(&memory, cell_first, cells);
+    return result;
 }

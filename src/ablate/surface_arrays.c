@@ -67,3 +67,38 @@ SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, Sin
 SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
     return reserve(surface, vertex_arrays, VERTEX_ARRAYS, &surface->vertex_capacity, count, error);
 }
+
+SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
+    if (count > INT32_MAX) return fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
+    if (count <= surface->vertex_capacity) return SINGE_OK;
+    Memory memory = memory_make(surface->allocator);
+    SingeSurface grown = {.vertex_capacity = (uint32_t)(count + count / 4), .allocator = surface->allocator};
+    bool good = true;
+    for (int i = 0; i < VERTEX_ARRAYS && good; i++) {
+        const SurfaceArray *array = &vertex_arrays[i];
+        void *from, *to;
+        good = obtain(&memory, &grown, array, grown.vertex_capacity);
+        memcpy(&from, (char *)surface + array->offset, sizeof from);
+        memcpy(&to, (char *)&grown + array->offset, sizeof to);
+        if (good && from) memcpy(to, from, surface->vertex_count * array->element_size);
+    }
+    for (int i = 0; i < VERTEX_ARRAYS; i++) { // the old ones go, or on failure the new ones
+        const SurfaceArray *array = &vertex_arrays[i];
+        void *to;
+        memcpy(&to, (char *)&grown + array->offset, sizeof to);
+        release(&memory, good ? surface : &grown, array, good ? surface->vertex_capacity : grown.vertex_capacity);
+        if (good) memcpy((char *)surface + array->offset, &to, sizeof to);
+    }
+    if (!good) return fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
+    surface->vertex_capacity = grown.vertex_capacity;
+    return SINGE_OK;
+}
+
+void surface_copy_vertex(SingeSurface *surface, uint32_t from, uint32_t to) {
+    for (int i = 0; i < VERTEX_ARRAYS; i++) {
+        char *array;
+        memcpy(&array, (char *)surface + vertex_arrays[i].offset, sizeof array);
+        memcpy(array + to * vertex_arrays[i].element_size, array + from * vertex_arrays[i].element_size,
+               vertex_arrays[i].element_size);
+    }
+}

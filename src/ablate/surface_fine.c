@@ -25,7 +25,8 @@ static bool allocate(Fine *fine) {
     const Shell *shell = fine->shell;
     Memory *memory = fine->memory;
     size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
-    bool good = NEW(memory, fine->sheets, shell->sheet_count) && NEW(memory, fine->raw_level, shell->particle_count);
+    bool good = !shell->corner_uv || NEW(memory, fine->cell_triangle, cells + 1);
+    good = good && NEW(memory, fine->sheets, shell->sheet_count) && NEW(memory, fine->raw_level, shell->particle_count);
     for (int f = 0; f < SPLINE_COUNT; f++)
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
@@ -40,6 +41,7 @@ static void release(Fine *fine) {
     const Shell *shell = fine->shell;
     Memory *memory = fine->memory;
     size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
+    FREE(memory, fine->cell_triangle, cells + 1);
     FREE(memory, fine->sheets, shell->sheet_count);
     FREE(memory, fine->raw_level, shell->particle_count);
     for (int f = 0; f < SPLINE_COUNT; f++) {
@@ -101,6 +103,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
     TRY(fine_march(fine, error));
     TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
     fine_vertices(fine);
+    if (fine->cell_triangle) TRY(surface_seams(fine->shell, fine->cell_triangle, fine->surface, error));
     return SINGE_OK;
 }
 

@@ -84,6 +84,7 @@ typedef struct Fine {
     float (*centre)[3];      ///< [cells] m, where the virtual centre is drawn
     FineVertex *vertices;    ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
+    uint32_t *cell_triangle; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
     SingeSurface *surface;
 } Fine;
 

@@ -1,0 +1,441 @@
+// Welding, repairs, and quads out of triangles.
+#include "meshes.h"
+
+static Text text;
+
+
+static uint32_t vertex_at(const Mesh *mesh, float x, float y, float z) {
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * v;
+        if (fabsf(p[0] - x) + fabsf(p[1] - y) + fabsf(p[2] - z) < 1e-6f) return v;
+    }
+    return UINT32_MAX;
+}
+
+/// Every cell is a square of the grid, front upwards.
+static void assert_squares(const Mesh *mesh, float side) {
+    for (uint32_t c = 0; c < mesh->cell_count; c++)
+        for (int k = 0; k < 4; k++) {
+            const float *p = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)k];
+            const float *q = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)(k + 1) % 4];
+            const float *r = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)(k + 2) % 4];
+            float ax = q[0] - p[0], ay = q[1] - p[1], bx = r[0] - q[0], by = r[1] - q[1];
+            assert_float_equal(hypotf(ax, ay), side, 1e-6f);
+            assert_float_equal(ax * by - ay * bx, side * side, 1e-7f);
+        }
+}
+
+static void quads_stay_as_they_are(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 4, 3), text_cells(&text, 4, 3, WHOLE);
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 20);
+    assert_int_equal(made.mesh.cell_count, 12);
+    assert_null(made.mesh.source);
+    assert_null(made.mesh.cell_faces);
+    assert_null(made.mesh.uv);
+    static const uint32_t first[4] = {0, 1, 6, 5};
+    assert_memory_equal(made.mesh.cells, first, sizeof first);
+    assert_int_equal(made.mesh.cell_lines[0], 21);
+    for (int i = 0; i < MESH_REPAIRS; i++) assert_int_equal(made.report.count[i], 0);
+    mesh_free(&made.mesh);
+}
+
+static void triangulated_grids_give_back_their_quads(void **state) {
+    (void)state;
+    for (Diagonals d = REGULAR; d <= RANDOM; d++) {
+        text.size = 0;
+        text_grid(&text, 17, 12), text_cells(&text, 17, 12, d);
+        Made made = make(&text);
+        assert_int_equal(made.mesh.cell_count, 17 * 12);
+        assert_int_equal(made.mesh.vertex_count, 18 * 13);
+        assert_null(made.mesh.source);
+        assert_squares(&made.mesh, 0.01f);
+        assert_int_equal(made.report.count[MESH_PAIRED], 17 * 12);
+        assert_int_equal(made.report.count[MESH_HALVED], 0);
+        mesh_free(&made.mesh);
+    }
+}
+
+/// Inner vertices of other than four cells.
+static int irregular(const Mesh *mesh) {
+    int *cells = calloc(mesh->vertex_count, sizeof *cells), *sides = calloc(mesh->vertex_count, sizeof *sides), count = 0;
+    for (uint32_t i = 0; i < 4 * mesh->cell_count; i++) cells[mesh->cells[i]]++;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * v;
+        bool inside = p[0] > 0.016f && p[0] < 0.184f && p[1] > 0.001f && p[1] < 0.17f;
+        count += inside && cells[v] != 4;
+    }
+    free(cells), free(sides);
+    return count;
+}
+
+// Where all pairs are as good, as in a mesh of equilateral triangles, quads go on each other's rows.
+static void rows_go_on(void **state) {
+    (void)state;
+    text.size = 0;
+    const int n = 20;
+    for (int j = 0; j <= n; j++)
+        for (int i = 0; i <= n; i++) text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
+    text_cells(&text, n, n, REGULAR);
+    // rows lean the other way on odd rows: take the diagonal that makes equilateral triangles
+    text.size = 0;
+    for (int j = 0; j <= n; j++)
+        for (int i = 0; i <= n; i++) text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            int a = j * (n + 1) + i + 1, b = a + 1, c = b + n + 1, d = a + n + 1;
+            if (j % 2) text_add(&text, "f %d %d %d\nf %d %d %d\n", a, b, c, a, c, d);
+            else text_add(&text, "f %d %d %d\nf %d %d %d\n", a, b, d, b, c, d);
+        }
+    Made made = make(&text);
+    assert_int_equal(made.mesh.cell_count, n * n);
+    assert_true(irregular(&made.mesh) <= n * n / 50);
+    mesh_free(&made.mesh);
+}
+
+static void lone_triangles_are_halved(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    Made made = make(&text);
+    assert_int_equal(made.mesh.cell_count, 1);
+    assert_int_equal(made.mesh.vertex_count, 4);
+    assert_int_equal(made.mesh.source[3], -1);
+    assert_int_equal(made.mesh.source_count, 3);
+    uint32_t middle = vertex_at(&made.mesh, 1, 0.5f, 0); // of the longest side
+    assert_int_equal(middle, 3);
+    mesh_free(&made.mesh);
+    // a tetrahedron: closed, pairs would leave vertices of two cells
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    made = make(&text);
+    assert_int_equal(made.mesh.cell_count, 4);
+    assert_int_equal(made.report.count[MESH_HALVED], 2);
+    mesh_free(&made.mesh);
+}
+
+static void polygons_become_quads(void **state) {
+    (void)state;
+    for (int n = 5; n <= 90; n += 17) {
+        text.size = 0;
+        for (int i = 0; i < n; i++) text_add(&text, "v %.7g %.7g 0\n", cos(6.2831853 * i / n), sin(6.2831853 * i / n));
+        text_add(&text, "f");
+        for (int i = 0; i < n; i++) text_add(&text, " %d", i + 1);
+        Made made = make(&text);
+        double area = 0;
+        for (uint32_t c = 0; c < made.mesh.cell_count; c++) {
+            const float *p[4];
+            for (uint32_t k = 0; k < 4; k++) p[k] = made.mesh.positions + 3 * made.mesh.cells[4 * c + k];
+            area += 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
+        }
+        assert_float_equal(area, 0.5 * n * sin(6.2831853 / n), 1e-5);
+        mesh_free(&made.mesh);
+    }
+}
+
+static void split_makes_n_quads_of_n_corners(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
+    MeshOptions options = mesh_default_options();
+    options.quads = MESH_QUADS_SPLIT;
+    Made made = make_with(&text, options);
+    assert_int_equal(made.result, SINGE_OK);
+    assert_int_equal(made.mesh.cell_count, 7);
+    assert_int_equal(made.mesh.vertex_count, 5 + 6 + 2);
+    for (int v = 0; v < 13; v++) assert_int_equal(made.mesh.source[v], v < 5 ? v : -1);
+    assert_int_not_equal(vertex_at(&made.mesh, 0.5f, 0.5f, 0), UINT32_MAX);
+    mesh_free(&made.mesh);
+}
+
+static void soup_is_welded(void **state) {
+    (void)state;
+    text.size = 0;
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 6; i++) {
+            float x = 0.01f * (float)i, y = 0.01f * (float)j, noise = (i * 7 + j * 3) % 5 * 1e-8f, s = 0.01f;
+            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x + noise, y, x + s, y + noise, x + s, y + s);
+            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x, y, x + s, y + s, x, y + s + noise);
+            text_add(&text, "f -6 -5 -4\nf -3 -2 -1\n");
+        }
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 42);
+    assert_int_equal(made.mesh.cell_count, 30);
+    assert_int_equal(made.report.count[MESH_WELDED], 180 - 42);
+    assert_int_equal(made.report.components, 1);
+    mesh_free(&made.mesh);
+}
+
+// Layers that touch inside stay two; a seam farther apart than the tolerance stays open until that is raised.
+static void weld_keeps_layers_apart(void **state) {
+    (void)state;
+    text.size = 0;
+    for (int layer = 0; layer < 2; layer++)
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++) {
+                bool middle = i == 1 && j == 1;
+                text_add(&text, "v %d %d %g\n", i, j, layer && !middle ? 0.3 : 0);
+            }
+    for (int layer = 0; layer < 2; layer++)
+        for (int c = 0; c < 4; c++) {
+            int a = 9 * layer + c / 2 * 3 + c % 2 + 1;
+            text_add(&text, "f %d %d %d %d\n", a, a + 1, a + 4, a + 3);
+        }
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 18);
+    assert_int_equal(made.report.components, 2);
+    mesh_free(&made.mesh);
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.001 0 0\nv 2 0 0\nv 2 1 0\nv 1.001 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
+    made = make(&text);
+    assert_int_equal(made.report.components, 2);
+    mesh_free(&made.mesh);
+    MeshOptions options = mesh_default_options();
+    options.weld = 0.002f;
+    made = make_with(&text, options);
+    assert_int_equal(made.report.components, 1);
+    assert_int_equal(made.mesh.vertex_count, 6);
+    mesh_free(&made.mesh);
+}
+
+static void t_junctions_are_closed(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 .5 0\nv 2 0 0\nv 2 .5 0\nv 2 1 0\n"
+                    "f 1 2 3 4\nf 2 6 7 5\nf 5 7 8 3\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_JUNCTION], 1);
+    assert_int_equal(made.report.first[MESH_JUNCTION], 9);
+    assert_int_equal(made.report.components, 1);
+    // a vertex that lies on a side but belongs to what hangs on a point there is no junction
+    mesh_free(&made.mesh);
+}
+
+static void faults_are_repaired_and_said(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 3, 3); // lines 1 to 16
+    text_add(&text, "v 9 9 9\n");
+    text_cells(&text, 3, 3, WHOLE);                  // lines 18 to 26
+    text_add(&text, "f 1 5 6 2\nf 1 2 3\nf 4 4 8\n"); // there already, the other way round; flat; two corners
+    Made made = make(&text);
+    assert_int_equal(made.mesh.cell_count, 9);
+    assert_int_equal(made.mesh.vertex_count, 16);
+    assert_int_equal(made.report.count[MESH_UNUSED], 1);
+    assert_int_equal(made.report.first[MESH_UNUSED], 16);
+    assert_int_equal(made.report.count[MESH_DUPLICATE], 1);
+    assert_int_equal(made.report.first[MESH_DUPLICATE], 27);
+    assert_int_equal(made.report.count[MESH_DEGENERATE], 2);
+    char line[200];
+    bool said = false;
+    for (int i = 0; mesh_report_line(&made.report, i, line, sizeof line); i++)
+        said = said || strstr(line, "2 faces without area left out (line 28)");
+    assert_true(said);
+    mesh_free(&made.mesh);
+}
+
+static void faces_are_turned_one_way(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 3, 1);
+    text_add(&text, "f 1 2 6 5\nf 2 6 7 3\nf 3 4 8 7\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_TURNED], 1);
+    assert_int_equal(made.report.first[MESH_TURNED], 10);
+    assert_squares(&made.mesh, 0.01f);
+    mesh_free(&made.mesh);
+}
+
+static void add_cube(float x, bool inside_out, int base) {
+    static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
+    for (int i = 0; i < 8; i++)
+        text_add(&text, "v %g %d %d\n", (double)x + ((i & 3) == 1 || (i & 3) == 2), (i & 3) >= 2, i >= 4);
+    for (int f = 0; f < 6; f++) {
+        text_add(&text, "f");
+        for (int k = 0; k < 4; k++) text_add(&text, " %d", base + faces[f][inside_out ? 3 - k : k]);
+        text_add(&text, "\n");
+    }
+}
+
+static double volume(const Mesh *mesh) {
+    double sum = 0;
+    for (uint32_t c = 0; c < mesh->cell_count; c++)
+        for (uint32_t k = 1; k < 3; k++) {
+            const float *a = mesh->positions + 3 * mesh->cells[4 * c], *b = mesh->positions + 3 * mesh->cells[4 * c + k];
+            const float *d = mesh->positions + 3 * mesh->cells[4 * c + k + 1];
+            sum += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) +
+                    a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+        }
+    return sum;
+}
+
+static void closed_surfaces_have_their_front_outside(void **state) {
+    (void)state;
+    for (int inside_out = 0; inside_out < 2; inside_out++) {
+        text.size = 0;
+        add_cube(0, inside_out, 0);
+        Made made = make(&text);
+        assert_int_equal(made.report.count[MESH_INSIDE_OUT], inside_out);
+        assert_float_equal(volume(&made.mesh), 1, 1e-6);
+        mesh_free(&made.mesh);
+    }
+}
+
+// Two cubes that share an edge come apart; so does a fin from the sheet that it stands on, which stays whole.
+static void edges_of_many_faces_are_cut(void **state) {
+    (void)state;
+    text.size = 0;
+    add_cube(0, false, 0);
+    for (int i = 0; i < 8; i++) text_add(&text, "v %d %d %d\n", 1 + ((i & 3) == 1 || (i & 3) == 2), 1 + ((i & 3) >= 2), i >= 4);
+    static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
+    for (int f = 0; f < 6; f++) { // corners 1 and 5 of the second are 3 and 7 of the first
+        text_add(&text, "f");
+        for (int k = 0; k < 4; k++) {
+            int v = faces[f][k];
+            text_add(&text, " %d", v == 1 ? 3 : v == 5 ? 7 : 8 + v);
+        }
+        text_add(&text, "\n");
+    }
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_CUT], 1);
+    assert_int_equal(made.report.components, 2);
+    assert_int_equal(made.mesh.vertex_count, 16);
+    mesh_free(&made.mesh);
+    text.size = 0;
+    text_grid(&text, 2, 2);
+    text_add(&text, "v .01 0 .01\nv .01 .01 .01\nv .01 .02 .01\n");
+    text_cells(&text, 2, 2, WHOLE);
+    text_add(&text, "f 2 5 11 10\nf 5 8 12 11\n");
+    made = make(&text);
+    assert_int_equal(made.report.count[MESH_CUT], 2);
+    assert_int_equal(made.report.components, 2);
+    assert_int_equal(made.mesh.vertex_count, 12 + 3);
+    int copies = 0;
+    for (uint32_t v = 0; v < made.mesh.vertex_count; v++) copies += made.mesh.source[v] == 4;
+    assert_int_equal(copies, 2); // both are the file's vertex
+    mesh_free(&made.mesh);
+}
+
+static void bow_ties_are_parted(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3 4\nf 3 5 6 7\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_BOW_TIE], 1);
+    assert_int_equal(made.mesh.vertex_count, 8);
+    assert_int_equal(made.mesh.source[7], 2);
+    mesh_free(&made.mesh);
+}
+
+static void what_cannot_be_repaired_is_refused(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
+                    "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
+    Made made = make_with(&text, mesh_default_options());
+    assert_int_equal(made.result, SINGE_ERROR_MESH);
+    assert_non_null(strstr(made.error.message, "a.obj:"));
+    assert_non_null(strstr(made.error.message, "Moebius"));
+    assert_null(made.mesh.positions);
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    made = make_with(&text, mesh_default_options());
+    assert_int_equal(made.result, SINGE_ERROR_MESH);
+    assert_non_null(strstr(made.error.message, "no face has an area"));
+}
+
+static void tiny_faces_shrink(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 4, 4);
+    text_add(&text, "v .010003 .010003 0\n");
+    text_cells(&text, 4, 4, REGULAR);
+    // a face of a thousandth: one corner of a cell is three vertices
+    text_add(&text, "v .02 .05 0\nv .020001 .05 0\nv .02 .050001 0\nf -3 -2 -1\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_SHRUNK], 1);
+    assert_int_equal(made.mesh.cell_count, 16);
+    mesh_free(&made.mesh);
+}
+
+static void attributes_and_ids_follow_their_vertices(void **state) {
+    (void)state;
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                              "property float wet\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                              "9 9 9 7\n0 0 0 1\n2 0 0 3\n0 1 0 5\n8 8 8 8\n3 1 2 3\n";
+    Polygons polygons;
+    Made made;
+    MeshOptions options = mesh_default_options();
+    assert_int_equal(ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons, &made.error),
+                     SINGE_OK);
+    assert_int_equal(mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report, &made.error),
+                     SINGE_OK);
+    static const int32_t source[] = {1, 2, 3, -1};
+    static const float wet[] = {1, 3, 5, 4};
+    assert_memory_equal(made.mesh.source, source, sizeof source);
+    assert_int_equal(made.mesh.attribute_count, 1);
+    assert_memory_equal(made.mesh.attributes[0].values, wet, sizeof wet);
+    assert_int_equal(made.mesh.source_count, 5);
+    mesh_free(&made.mesh);
+    polygons_free(&polygons);
+}
+
+static void other_formats_come_by_assimp(void **state) {
+    (void)state;
+    static const char stl[] = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
+                              "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
+                              "endfacet\nendsolid a\n";
+    Polygons polygons;
+    SingeError error;
+    SingeResult result = polygons_read("a.stl", (const uint8_t *)stl, sizeof stl - 1, (SingeAllocator){0}, &polygons, &error);
+    if (!assimp_available()) {
+        assert_int_equal(result, SINGE_ERROR_STATE);
+        assert_non_null(strstr(error.message, "without assimp"));
+        skip();
+    }
+    if (result) fail_msg("%s", error.message);
+    assert_int_equal(polygons.face_count, 2);
+    Mesh mesh;
+    MeshReport report;
+    MeshOptions options = mesh_default_options();
+    assert_int_equal(mesh_make("a.stl", &polygons, &options, (SingeAllocator){0}, &mesh, &report, &error), SINGE_OK);
+    assert_int_equal(mesh.cell_count, 1);
+    assert_int_equal(mesh.vertex_count, 4);
+    mesh_free(&mesh);
+    polygons_free(&polygons);
+    static const char off[] = "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 .5 0\n4 0 1 2 3\n3 1 4 2\n";
+    result = polygons_read("a.off", (const uint8_t *)off, sizeof off - 1, (SingeAllocator){0}, &polygons, &error);
+    if (result) fail_msg("%s", error.message);
+    assert_int_equal(polygons.face_count, 2);
+    assert_int_equal(polygons.corner_count, 7); // quads stay quads
+    polygons_free(&polygons);
+    assert_int_equal(polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons, &error),
+                     SINGE_ERROR_FORMAT);
+    assert_non_null(strstr(error.message, "a.glb"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quads_stay_as_they_are),
+        cmocka_unit_test(triangulated_grids_give_back_their_quads),
+        cmocka_unit_test(rows_go_on),
+        cmocka_unit_test(lone_triangles_are_halved),
+        cmocka_unit_test(polygons_become_quads),
+        cmocka_unit_test(split_makes_n_quads_of_n_corners),
+        cmocka_unit_test(soup_is_welded),
+        cmocka_unit_test(weld_keeps_layers_apart),
+        cmocka_unit_test(t_junctions_are_closed),
+        cmocka_unit_test(faults_are_repaired_and_said),
+        cmocka_unit_test(faces_are_turned_one_way),
+        cmocka_unit_test(closed_surfaces_have_their_front_outside),
+        cmocka_unit_test(edges_of_many_faces_are_cut),
+        cmocka_unit_test(bow_ties_are_parted),
+        cmocka_unit_test(what_cannot_be_repaired_is_refused),
+        cmocka_unit_test(tiny_faces_shrink),
+        cmocka_unit_test(attributes_and_ids_follow_their_vertices),
+        cmocka_unit_test(other_formats_come_by_assimp),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
