@@ -34,6 +34,7 @@ static void take_vertices(Work *work) {
     work->vertex_capacity = work->vertex_count = count;
     work->place = work_new(work, count, sizeof *work->place);
     work->source = work_new(work, count, sizeof *work->source);
+    work->became = work_sets(work, count);
     work->attributes = work_new(work, count * attributes, sizeof *work->attributes);
     for (uint32_t v = 0; v < count && !work->no_memory; v++) {
         for (size_t k = 0; k < 3; k++) work->place[v][k] = (double)file->positions[3 * (size_t)v + k];
@@ -130,9 +131,10 @@ static bool give_arrays(Work *work, Mesh *mesh) {
     const size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
     mesh->positions = store_new(a, vertices, 3 * sizeof *mesh->positions);
     mesh->source = store_new(a, vertices, sizeof *mesh->source);
+    mesh->became = store_new(a, mesh->source_count, sizeof *mesh->became);
     mesh->cells = store_new(a, cells, 4 * sizeof *mesh->cells);
     mesh->cell_faces = store_new(a, cells, sizeof *mesh->cell_faces);
-    bool good = mesh->positions && mesh->source && mesh->cells && mesh->cell_faces;
+    bool good = mesh->positions && mesh->source && mesh->became && mesh->cells && mesh->cell_faces;
     if (work->file->lines) good = (mesh->cell_lines = store_new(a, cells, sizeof *mesh->cell_lines)) && good;
     if (!work->file->uv) return good;
     mesh->uv = store_new(a, vertices, 2 * sizeof *mesh->uv);
@@ -152,6 +154,7 @@ static bool give(Work *work, Mesh *mesh) {
         for (size_t k = 0; k < 3; k++) mesh->positions[3 * (size_t)number[v] + k] = (float)work->place[v][k];
         mesh->source[number[v]] = work->source[v];
     }
+    for (uint32_t v = 0; v < mesh->source_count; v++) mesh->became[v] = number[work->became[v]];
     for (uint32_t h = 0; h < faces->corner_count; h++) mesh->cells[h] = number[faces->corner[h]];
     memcpy(mesh->cell_faces, faces->origin, faces->count * sizeof *mesh->cell_faces);
     for (uint32_t c = 0; c < faces->count && mesh->cell_lines; c++)
@@ -168,6 +171,8 @@ static void simplify(const Work *work, Mesh *mesh) {
     if (same) {
         store_free(mesh->allocator, mesh->source, mesh->vertex_count, sizeof *mesh->source);
         mesh->source = NULL;
+        store_free(mesh->allocator, mesh->became, mesh->source_count, sizeof *mesh->became);
+        mesh->became = NULL;
     }
     if (faces) {
         store_free(mesh->allocator, mesh->cell_faces, mesh->cell_count, sizeof *mesh->cell_faces);

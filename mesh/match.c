@@ -5,7 +5,10 @@
 
 #include <string.h>
 
-enum { MATCH_REACH = 6000 }; ///< nodes that a search may look at
+enum {
+    MATCH_REACH = 6000,     ///< nodes that a search may look at, where there are many searches
+    MATCH_WORK = 20000000,  ///< and that all searches may
+};
 
 typedef struct Match {
     const uint32_t *arc_first, *arc_to;
@@ -17,7 +20,7 @@ typedef struct Match {
     uint32_t queued, touched_count;
     uint8_t *is_touched;
     uint32_t *on_path; ///< stamp
-    uint32_t stamp;
+    uint32_t stamp, reach;
 } Match;
 
 static void touch(Match *m, uint32_t v) {
@@ -87,7 +90,7 @@ static bool search(Match *m, uint32_t root) {
     touch(m, root);
     m->outer[root] = 1;
     m->queue[m->queued++] = root;
-    for (uint32_t at = 0; at < m->queued && m->touched_count < MATCH_REACH; at++) {
+    for (uint32_t at = 0; at < m->queued && m->touched_count < m->reach; at++) {
         uint32_t v = m->queue[at];
         for (uint32_t i = m->arc_first[v]; i < m->arc_first[v + 1]; i++) {
             uint32_t u = m->arc_to[i];
@@ -126,6 +129,9 @@ void match_grow(Work *work, uint32_t count, const uint32_t *arc_first, const uin
     m.on_path = work_new(work, count, sizeof *m.on_path);
     if (work->no_memory) return;
     memset(m.parent, 0xff, count * sizeof *m.parent);
+    uint32_t alone = 1;
+    for (uint32_t v = 0; v < count; v++) alone += mate[v] == MESH_NONE && !(open && open[v]);
+    m.reach = MATCH_WORK / alone > MATCH_REACH ? MATCH_WORK / alone : MATCH_REACH;
     for (uint32_t v = 0; v < count; v++) {
         if (mate[v] != MESH_NONE || (open && open[v])) continue;
         (void)search(&m, v);

@@ -55,6 +55,7 @@ void work_mark_open(const Work *work, uint8_t *open) {
 /// Renames the corners.
 static void rename_corners(Work *work, const uint32_t *to) {
     for (uint32_t h = 0; h < work->faces.corner_count; h++) work->faces.corner[h] = to[work->faces.corner[h]];
+    for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = to[work->became[v]];
 }
 
 void mesh_weld(Work *work) {

@@ -30,6 +30,7 @@ typedef struct Work {
     uint32_t vertex_count, vertex_capacity, attribute_count;
     double (*place)[3];
     int32_t *source;      ///< vertex of the file, -1 for a new one
+    uint32_t *became;     ///< [file's vertices] the vertex that it is now
     float *attributes;    ///< [vertex_capacity * attribute_count]
     Faces faces;
     uint32_t *face;       ///< [corner_count] whose corner it is (work_edges)

@@ -114,6 +114,48 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     return result ? build_fail(builder, result, collider->place, singe_sim_error(builder->sim)) : SINGE_OK;
 }
 
+/// The sheet's vertices that those of the file have become, with the copies of one that was parted. NULL when out of
+/// memory; *bad is set to a number that no face of the file has.
+static uint32_t *sheet_vertices(const Mesh *mesh, const ScenePin *pin, uint32_t *found, uint32_t *bad) {
+    uint8_t *held = calloc((size_t)mesh->source_count + 1, 1);
+    uint32_t *list = malloc(((size_t)mesh->vertex_count + 1) * sizeof *list);
+    *found = 0;
+    for (uint32_t i = 0; i < pin->vertex_count && held && list; i++) {
+        uint32_t v = pin->vertices[i], now = v < mesh->source_count ? mesh->became[v] : UINT32_MAX;
+        if (now == UINT32_MAX)
+            *bad = v;
+        else
+            held[mesh->source[now]] = 1;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count && held && list; v++)
+        if (mesh->source[v] >= 0 && held[mesh->source[v]])
+            list[(*found)++] = v;
+    if (!held) {
+        free(list);
+        list = NULL;
+    }
+    free(held);
+    return list;
+}
+
+/// Adds a pin by numbers of vertices of a mesh that has others than its file.
+static SingeResult pin_by_file(SceneBuilder *builder, const ScenePin *pin, SingePinDef *def) {
+    uint32_t bad = UINT32_MAX;
+    SingePinId id;
+    uint32_t *vertices = sheet_vertices(&builder->assets->meshes[pin->sheet_index], pin, &def->vertex_count, &bad);
+    if (!vertices)
+        return no_memory(builder, pin->place);
+    SingeResult result = SINGE_ERROR_ARGUMENT;
+    def->vertices = vertices;
+    if (bad != UINT32_MAX)
+        message_add(builder->messages, builder->scene->text, pin->place,
+                    "pin: vertex %u is out of range or of no face of the mesh", (unsigned)bad);
+    else if ((result = singe_sim_add_pin(builder->sim, def, &id)))
+        build_fail(builder, result, pin->place, singe_sim_error(builder->sim));
+    free(vertices);
+    return result;
+}
+
 static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     const ScenePin *pin = &builder->scene->pins[index];
     SingePinDef def = singe_default_pin();
@@ -129,6 +171,11 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     def.path_count = pin->key_count;
     def.path = path;
     SingePinId id;
+    if (pin->vertex_count && builder->assets->meshes[pin->sheet_index].became) {
+        SingeResult by_file = pin_by_file(builder, pin, &def);
+        free(path);
+        return by_file;
+    }
     SingeResult result = singe_sim_add_pin(builder->sim, &def, &id);
     free(path);
     return result ? build_fail(builder, result, pin->place, singe_sim_error(builder->sim)) : SINGE_OK;
