@@ -1,6 +1,6 @@
 // The swinging sheet made of triangles: what mesh_make makes of them, and whether it is held as the sheet of quads is.
 //
-// Triangles are those of a grid with its diagonals in order, in turns or at random; rows of nearly equilateral ones; and
+// Triangles are those of a grid with its diagonals in order, in turns or at random; the same with all numbers shuffled; rows of nearly equilateral ones; and
 // the Delaunay triangles of a grid whose vertices are moved by up to a third of a cell; beside these the quads of the
 // same vertices, which show what is the vertices' doing. The right motion and the bars are those of `swing`.
 #include "mesh/mesh.h"
@@ -12,8 +12,8 @@
 #include "bench/bench.h"
 #include "bench/trajectory.h"
 
-typedef enum Triangles { QUADS, MOVED, ORDERED, TURNS, RANDOM, EQUILATERAL, DELAUNAY, TRIANGLES } Triangles;
-static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", "turns", "random", "equilateral",
+typedef enum Triangles { QUADS, MOVED, ORDERED, TURNS, RANDOM, SHUFFLED, EQUILATERAL, DELAUNAY, TRIANGLES } Triangles;
+static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", "turns", "random", "shuffled", "equilateral",
                                              "delaunay"};
 
 enum { SUBSTEPS = 60 };
@@ -150,6 +150,31 @@ static bool make_delaunay(Plane *plane) {
     return true;
 }
 
+/// Numbers vertices and triangles at random.
+static bool shuffle(Plane *plane, uint32_t *state) {
+    uint32_t *to = malloc(plane->vertex_count * sizeof *to);
+    float (*place)[3] = malloc(plane->vertex_count * sizeof *place);
+    if (to && place) {
+        for (uint32_t v = 0; v < plane->vertex_count; v++) {
+            uint32_t other = random_next(state) % (v + 1);
+            to[v] = to[other], to[other] = v;
+        }
+        for (uint32_t v = 0; v < plane->vertex_count; v++) memcpy(place[to[v]], plane->place[v], sizeof *place);
+        memcpy(plane->place, place, plane->vertex_count * sizeof *place);
+        for (uint32_t t = 0; t < plane->triangle_count; t++) {
+            uint32_t other = random_next(state) % (t + 1), corner[3];
+            for (int k = 0; k < 3; k++) plane->corner[t][k] = to[plane->corner[t][k]];
+            memcpy(corner, plane->corner[t], sizeof corner);
+            memcpy(plane->corner[t], plane->corner[other], sizeof corner);
+            memcpy(plane->corner[other], corner, sizeof corner);
+        }
+    }
+    bool good = to && place;
+    free(to);
+    free(place);
+    return good;
+}
+
 static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     uint32_t state = 7;
     *plane = (Plane){.vertex_count = (n + 1) * (n + 1), .triangle_count = 2 * n * n};
@@ -159,6 +184,7 @@ static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     if (!plane->place || !plane->corner || !plane->twin) return false;
     place_vertices(plane, kind, n, &state);
     place_triangles(plane, kind, n, &state);
+    if (kind == SHUFFLED) return shuffle(plane, &state);
     return kind != DELAUNAY || make_delaunay(plane);
 }
 

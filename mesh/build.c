@@ -212,6 +212,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     bool pair = options->quads == MESH_QUADS_PAIR;
     if (pair && !all_quads(&work->faces)) pair = mesh_pair(work);
     if (!pair && !work->no_memory) mesh_split(work);
+    if (!work->no_memory) mesh_order(work);
     return SINGE_OK;
 }
 

@@ -135,6 +135,13 @@ bool mesh_pair(Work *work);
 /// Every face of n corners into n quads (split.c).
 void mesh_split(Work *work);
 
+/// Share of sides between consecutive numbers from which on a mesh keeps its order.
+#define MESH_IN_ORDER 0.25
+/// Cells below which a mesh keeps its order.
+#define MESH_ORDER_LEAST 256
+/// Numbers vertices and quads row by row, unless they are (order.c).
+void mesh_order(Work *work);
+
 /// Pairs of a graph's nodes: a largest set of edges that share no node, grown from `mate` (match.c). Node v's edges are
 /// arc_to[arc_first[v]] up to arc_first[v + 1]; mate is MESH_NONE where a node is alone. `open` nodes may stay alone,
 /// and do so rather than others.

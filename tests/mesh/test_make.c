@@ -382,6 +382,46 @@ static void attributes_and_ids_follow_their_vertices(void **state) {
     polygons_free(&polygons);
 }
 
+// A mesh numbered at random is numbered row by row, and keeps the file's numbers beside.
+static void shuffled_meshes_are_put_in_order(void **state) {
+    (void)state;
+    enum { N = 24, VERTICES = (N + 1) * (N + 1) };
+    static int to[VERTICES], from[VERTICES];
+    uint32_t random = 99;
+    for (int v = 0; v < VERTICES; v++) {
+        random = random * 1664525u + 1013904223u;
+        int other = (int)((random >> 8) % (uint32_t)(v + 1));
+        to[v] = to[other], to[other] = v;
+    }
+    for (int v = 0; v < VERTICES; v++) from[to[v]] = v;
+    text.size = 0;
+    for (int v = 0; v < VERTICES; v++)
+        text_add(&text, "v %.6g %.6g 0\n", 0.01 * (from[v] % (N + 1)), 0.01 * (from[v] / (N + 1)));
+    for (int c = 0; c < N * N; c++) {
+        int cell = c * 7 % (N * N), a = cell / N * (N + 1) + cell % N;
+        text_add(&text, "f %d %d %d\n", to[a] + 1, to[a + 1] + 1, to[a + N + 2] + 1);
+        text_add(&text, "f %d %d %d\n", to[a] + 1, to[a + N + 2] + 1, to[a + N + 1] + 1);
+    }
+    Made made = make(&text);
+    const Mesh *mesh = &made.mesh;
+    assert_int_equal(mesh->cell_count, N * N);
+    assert_squares(mesh, 0.01f);
+    uint32_t beside = 0;
+    for (uint32_t i = 0; i < 4 * mesh->cell_count; i++) {
+        uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
+        beside += a + 1 == b || b + 1 == a;
+    }
+    assert_int_equal(beside, 2 * N * N); // every row's sides
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * v;
+        int file = mesh->source[v];
+        assert_float_equal(p[0], 0.01 * (from[file] % (N + 1)), 1e-6);
+        assert_float_equal(p[1], 0.01 * (from[file] / (N + 1)), 1e-6);
+        assert_int_equal(mesh->became[file], v);
+    }
+    mesh_free(&made.mesh);
+}
+
 static void other_formats_come_by_assimp(void **state) {
     (void)state;
     static const char stl[] = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
@@ -435,6 +475,7 @@ int main(void) {
         cmocka_unit_test(what_cannot_be_repaired_is_refused),
         cmocka_unit_test(tiny_faces_shrink),
         cmocka_unit_test(attributes_and_ids_follow_their_vertices),
+        cmocka_unit_test(shuffled_meshes_are_put_in_order),
         cmocka_unit_test(other_formats_come_by_assimp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
