@@ -8,6 +8,8 @@
 
 MeshOptions mesh_default_options(void) { return (MeshOptions){.quads = MESH_QUADS_PAIR, .smallest = MESH_SMALLEST}; }
 
+enum { FACE_CORNERS_MOST = 4096 };
+
 // ---- in
 
 static void take_faces(Work *work) {
@@ -63,6 +65,9 @@ static SingeResult check_values(const Work *work) {
             return refuse(work->error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 3),
                           "%s: vertex %llu (from 0) has a position that is not finite", short_name(work->name),
                           (unsigned long long)(i / 3));
+    for (uint32_t f = 0; f < file->face_count; f++)
+        if (file->first[f + 1] - file->first[f] > FACE_CORNERS_MOST)
+            return work_refuse(work, f, "has more than 4096 corners");
     for (uint32_t i = 0; i < file->corner_count; i++)
         if (file->corners[i] >= file->vertex_count)
             return refuse(work->error, SINGE_ERROR_MESH, "mesh", i, "%s: a face uses vertex %u of %u",
@@ -192,7 +197,43 @@ static bool all_quads(const Faces *faces) {
     return true;
 }
 
+/// Whether no side has more than two quads, which the ways through polygons may bring about.
+static bool sides_are_simple(Work *work) {
+    uint32_t *order = work_sorted_edges(work);
+    for (uint32_t k = 0, size; order && k < work->faces.corner_count; k += size)
+        if ((size = work_edge_size(work, order, k)) > 2) return false;
+    return true;
+}
+
+/// A quad that lacks one of its four corners or an area; MESH_NONE where there is none.
+static uint32_t unsound_quad(const Work *work) {
+    const Faces *faces = &work->faces;
+    for (uint32_t f = 0; f < faces->count; f++) {
+        const uint32_t *at = faces->corner + 4 * (size_t)f;
+        double normal[3], longest = 0;
+        for (int i = 0; i < 4; i++) {
+            for (int k = 0; k < i; k++)
+                if (at[i] == at[k]) return f;
+            longest = fmax(longest, distance3(work->place[at[i]], work->place[at[(i + 1) & 3]]));
+        }
+        face_area(work, f, normal);
+        if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest)) return f;
+    }
+    return MESH_NONE;
+}
+
+/// Joins triangles to quads. False, and all as it was, where that leads to no sheet.
+static bool pair_faces(Work *work) {
+    const Faces faces = work->faces;
+    if (mesh_pair(work) && !work->no_memory && sides_are_simple(work) && unsound_quad(work) == MESH_NONE) return true;
+    work->faces = faces;
+    work->report->count[MESH_PAIRED] = work->report->count[MESH_HALVED] = 0;
+    return work->no_memory;
+}
+
 static SingeResult run_steps(Work *work, const MeshOptions *options) {
+    *work->report = (MeshReport){.faces = work->file->face_count, .vertices = work->file->vertex_count,
+                                 .lines = work->file->lines != NULL};
     SingeResult result = check_values(work);
     if (result) return result;
     take_vertices(work);
@@ -210,8 +251,12 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     if (!work->no_memory) result = mesh_manifold(work);
     if (result || work->no_memory) return result;
     bool pair = options->quads == MESH_QUADS_PAIR;
-    if (pair && !all_quads(&work->faces)) pair = mesh_pair(work);
+    if (pair && !all_quads(&work->faces)) pair = pair_faces(work);
     if (!pair && !work->no_memory) mesh_split(work);
+    if (work->no_memory) return SINGE_OK;
+    uint32_t unsound = unsound_quad(work);
+    if (unsound != MESH_NONE)
+        return work_refuse(work, work->faces.origin[unsound], "is crossed or bent so that it cannot be cut into quads");
     if (!work->no_memory) mesh_order(work);
     return SINGE_OK;
 }
@@ -222,9 +267,14 @@ SingeResult mesh_make(const char *name, const Polygons *polygons, const MeshOpti
     Work work = {.name = name, .file = polygons, .report = report ? report : &ignored, .error = error};
     memset(mesh, 0, sizeof *mesh);
     mesh->allocator = allocator;
-    *work.report = (MeshReport){.faces = polygons->face_count, .vertices = polygons->vertex_count,
-                                .lines = polygons->lines != NULL};
     SingeResult result = run_steps(&work, options);
+    if (result == SINGE_ERROR_MESH && work.report->count[MESH_SHRUNK]) { // it may be the shrinking's doing
+        MeshOptions kept = *options;
+        kept.smallest = 0;
+        work_free(&work);
+        work = (Work){.name = name, .file = polygons, .report = work.report, .error = error};
+        result = run_steps(&work, &kept);
+    }
     if (!result && (work.no_memory || !give(&work, mesh))) result = refuse_memory(error, "mesh", name);
     if (!result) simplify(&work, mesh);
     work_free(&work);

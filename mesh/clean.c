@@ -4,10 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/// A face is degenerate when twice its area is this small beside the square of its longest side; the core refuses half
-/// of it (src/shell/sheet.c).
-static const double thin = 4e-6;
-
 /// The corners of a face while it falls apart.
 typedef struct Loop {
     uint32_t *corner;
@@ -30,7 +26,7 @@ static bool loop_end(Work *work, const Loop *loop, uint32_t from, uint32_t origi
         cross3(p, q, n);
         for (int k = 0; k < 3; k++) normal[k] += n[k];
     }
-    if (!(sqrt(dot3(normal, normal)) > thin * longest * longest)) return false;
+    if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest)) return false;
     for (uint32_t i = 0; i < count; i++) faces_push(out, old->corner[loop->corner[from + i]], old, loop->corner[from + i]);
     faces_end(out, origin);
     return true;

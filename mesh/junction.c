@@ -20,6 +20,7 @@ typedef struct Junctions {
     Work *work;
     Places places;
     uint32_t *open_first, *open_to; ///< open edges by their ends
+    uint32_t face; ///< whose side is looked along
     OnSide found[ON_SIDE_MOST + 2];
     int count;
 } Junctions;
@@ -36,7 +37,9 @@ static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[
     sub3(work->place[b], work->place[a], d);
     const double square = dot3(d, d), most = fmax(work->weld, beside * sqrt(square));
     for (uint32_t v = j->places.head[places_slot(&j->places, box)]; v != MESH_NONE; v = j->places.next[v]) {
-        bool known = v == a || v == b;
+        bool known = false; // also a corner that its own face has already
+        for (uint32_t h = work->faces.first[j->face]; h < work->faces.first[j->face + 1]; h++)
+            known = known || work->faces.corner[h] == v;
         for (int i = 0; i < j->count && !known; i++) known = j->found[i].vertex == v;
         if (known || j->count == ON_SIDE_MOST) continue;
         sub3(work->place[v], work->place[a], e);
@@ -144,6 +147,7 @@ void mesh_junctions(Work *work) {
                 uint32_t next = faces_next(old, work->face, h);
                 if (write) faces_push(&out, old->corner[h], old, h);
                 if (work->twin[h] != MESH_NONE) continue;
+                j->face = f;
                 look_along(j, old->corner[h], old->corner[next]);
                 keep_joined(j, old->corner[h], old->corner[next]);
                 for (int i = 0; i < j->count && write; i++) push_on_side(j, &out, i, h, next);
@@ -154,4 +158,5 @@ void mesh_junctions(Work *work) {
         }
         if (write) work->faces = out;
     }
+    mesh_clean(work); // a vertex may lie on two sides of one face
 }

@@ -14,17 +14,17 @@ typedef enum MeshQuads {
 typedef struct MeshOptions {
     MeshQuads quads;
     float weld;     ///< distance (as positions) at which vertices on open edges are one; 0: MESH_WELD of the size
-    float smallest; ///< faces all of whose sides are below this share of the median side shrink to a point
+    float smallest; ///< sides below this share of the median side shrink to a point; 0: none
 } MeshOptions;
 
 #define MESH_WELD 1e-5f     ///< of the diagonal of the box around the mesh
-#define MESH_SMALLEST 1e-3f ///< of the median side
+#define MESH_SMALLEST 0.02f ///< of the median side
 
 /// What may be done to a mesh.
 typedef enum MeshRepair {
     MESH_UNUSED,     ///< vertices of no face left out
     MESH_WELDED,     ///< vertices joined to another one at their place
-    MESH_SHRUNK,     ///< tiny faces that shrank to a point
+    MESH_SHRUNK,     ///< very short sides whose ends became one vertex
     MESH_DEGENERATE, ///< faces without area left out
     MESH_DUPLICATE,  ///< faces left out whose corners another face has
     MESH_JUNCTION,   ///< vertices put into sides that they lie on

@@ -33,6 +33,8 @@ typedef struct Pairs {
     uint32_t *degree;  ///< [vertices] triangles
     uint8_t *rim;      ///< [vertices] on an open edge
     Faces before;      ///< the faces that the triangles come from
+    uint32_t *before_face, *before_twin; ///< [their corners]
+    uint32_t *from;    ///< [half-edges] the corner in `before` that it leaves
     HeapItem *heap;
     uint32_t heap_count, heap_capacity;
 } Pairs;
@@ -62,7 +64,11 @@ static double ear_of(const Work *work, const uint32_t *ring, uint32_t n, uint32_
     return dot3(m, normal) > 0 ? least : -1 - least;
 }
 
-static void push_triangle(Faces *out, const Faces *old, uint32_t a, uint32_t b, uint32_t c, uint32_t origin) {
+/// Corners are those of the faces before.
+static void push_triangle(Pairs *pairs, Faces *out, uint32_t a, uint32_t b, uint32_t c, uint32_t origin) {
+    const Faces *old = &pairs->before;
+    uint32_t *from = pairs->from + out->corner_count;
+    from[0] = a, from[1] = b, from[2] = c;
     faces_push(out, old->corner[a], old, a);
     faces_push(out, old->corner[b], old, b);
     faces_push(out, old->corner[c], old, c);
@@ -72,8 +78,9 @@ static void push_triangle(Faces *out, const Faces *old, uint32_t a, uint32_t b, 
 enum { BEST_CUT_MOST = 40 };
 
 /// The triangulation of a small ring whose worst triangle is best, by parts of the ring (Klincsek, 1980).
-static void cut_best(const Work *work, const uint32_t *ring, uint32_t n, const double normal[3], uint32_t origin,
+static void cut_best(Pairs *pairs, const uint32_t *ring, uint32_t n, const double normal[3], uint32_t origin,
                      Faces *out) {
+    const Work *work = pairs->work;
     double worst[BEST_CUT_MOST][BEST_CUT_MOST];
     uint8_t apex[BEST_CUT_MOST][BEST_CUT_MOST], stack[2 * BEST_CUT_MOST][2];
     for (uint32_t span = 1; span < n; span++)
@@ -92,14 +99,15 @@ static void cut_best(const Work *work, const uint32_t *ring, uint32_t n, const d
         uint32_t i = stack[--depth][0], j = stack[depth][1];
         if (j - i < 2) continue;
         uint32_t k = apex[i][j];
-        push_triangle(out, &work->faces, ring[i], ring[k], ring[j], origin);
+        push_triangle(pairs, out, ring[i], ring[k], ring[j], origin);
         stack[depth][0] = (uint8_t)i, stack[depth++][1] = (uint8_t)k;
         stack[depth][0] = (uint8_t)k, stack[depth++][1] = (uint8_t)j;
     }
 }
 
 /// Cuts off the best corner until the ring is small.
-static void cut_polygon(const Work *work, uint32_t face, uint32_t *ring, Faces *out) {
+static void cut_polygon(Pairs *pairs, uint32_t face, uint32_t *ring, Faces *out) {
+    const Work *work = pairs->work;
     const Faces *old = &work->faces;
     uint32_t n = old->first[face + 1] - old->first[face];
     double normal[3];
@@ -112,10 +120,10 @@ static void cut_polygon(const Work *work, uint32_t face, uint32_t *ring, Faces *
             double value = ear_of(work, ring, n, k, normal);
             if (value > most) most = value, best = k;
         }
-        push_triangle(out, old, ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n], old->origin[face]);
+        push_triangle(pairs, out, ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n], old->origin[face]);
         memmove(ring + best, ring + best + 1, (n - 1 - best) * sizeof *ring);
     }
-    cut_best(work, ring, n, normal, old->origin[face], out);
+    cut_best(pairs, ring, n, normal, old->origin[face], out);
 }
 
 /// Cuts a quad along the diagonal that leaves the better triangles; they are a pair from the start.
@@ -127,8 +135,8 @@ static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
     for (uint32_t k = 0; k < 2; k++)
         value[k] = fmin(ear_of(pairs->work, ring, 4, k, normal), ear_of(pairs->work, ring, 4, k + 2, normal));
     uint32_t s = value[1] >= value[0] ? 0 : 1, t = out->count; // the ears are at s + 1 and s + 3
-    push_triangle(out, old, h + s, h + s + 1, h + s + 2, old->origin[face]);
-    push_triangle(out, old, h + s, h + s + 2, h + (s + 3) % 4, old->origin[face]);
+    push_triangle(pairs, out, h + s, h + s + 1, h + s + 2, old->origin[face]);
+    push_triangle(pairs, out, h + s, h + s + 2, h + (s + 3) % 4, old->origin[face]);
     pairs->mate[t] = t + 1, pairs->mate[t + 1] = t;
     pairs->whole[t] = pairs->whole[t + 1] = h;
 }
@@ -139,6 +147,9 @@ static void cut_faces(Pairs *pairs) {
     uint32_t triangles = old->corner_count - 2 * old->count;
     Faces out = work_faces(work, triangles, 3 * triangles);
     uint32_t *ring = work_new(work, old->corner_count, sizeof *ring);
+    work_edges(work);
+    pairs->before = *old, pairs->before_face = work->face, pairs->before_twin = work->twin;
+    pairs->from = work_new(work, 3 * (size_t)triangles, sizeof *pairs->from);
     pairs->mate = work_new(work, triangles, sizeof *pairs->mate);
     pairs->whole = work_new(work, triangles, sizeof *pairs->whole);
     if (work->no_memory) return;
@@ -146,10 +157,40 @@ static void cut_faces(Pairs *pairs) {
     memset(pairs->whole, 0xff, triangles * sizeof *pairs->whole);
     for (uint32_t f = 0; f < old->count; f++) {
         if (old->first[f + 1] - old->first[f] == 4) cut_quad(pairs, f, &out);
-        else cut_polygon(work, f, ring, &out);
+        else cut_polygon(pairs, f, ring, &out);
     }
-    pairs->before = *old;
     work->faces = out;
+}
+
+/// The same diagonal in another triangle of its face.
+static uint32_t other_side(const Pairs *pairs, uint32_t half) {
+    const uint32_t *from = pairs->from, face = pairs->before_face[from[half]], count = pairs->work->faces.corner_count;
+    uint32_t a = from[half], b = from[half - half % 3 + (half + 1) % 3], low = half - half % 3, high = low + 3;
+    while (low > 0 && pairs->before_face[from[low - 1]] == face) low -= 3;
+    while (high < count && pairs->before_face[from[high]] == face) high += 3;
+    for (uint32_t h = low; h < high; h++)
+        if (from[h] == b && from[h - h % 3 + (h + 1) % 3] == a) return h;
+    return MESH_NONE;
+}
+
+/// Twins of the triangles' sides: those of the faces before, and the two sides of a diagonal. Vertices do not tell, for
+/// a diagonal may run between the ends of another side.
+static void find_twins(Pairs *pairs) {
+    Work *work = pairs->work;
+    const uint32_t count = work->faces.corner_count, *from = pairs->from;
+    uint32_t *side = work_new(work, pairs->before.corner_count, sizeof *side);
+    work->face = work_new(work, count, sizeof *work->face);
+    work->twin = work_new(work, count, sizeof *work->twin);
+    if (work->no_memory) return;
+    for (int fill = 0; fill < 2; fill++)
+        for (uint32_t h = 0; h < count; h++) {
+            uint32_t a = from[h], b = from[h - h % 3 + (h + 1) % 3];
+            bool outer = faces_next(&pairs->before, pairs->before_face, a) == b;
+            work->face[h] = h / 3;
+            if (!fill && outer) side[a] = h;
+            else if (fill && outer) work->twin[h] = pairs->before_twin[a] == MESH_NONE ? MESH_NONE : side[pairs->before_twin[a]];
+            else if (fill) work->twin[h] = other_side(pairs, h);
+        }
 }
 
 // ---- what a pair costs
@@ -188,7 +229,7 @@ static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
                        corner_angle(pairs, last3(twin))};
     double worst = 0, most = 0, fold = fold_between(pairs, half / 3, twin / 3);
     for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), most = fmax(most, angle[i]);
-    bool thin_fan = false; // a vertex inside must keep three cells
+    bool thin_fan = corner[last3(half)] == corner[last3(twin)]; // a vertex inside must keep three cells
     for (int i = 0; i < 2; i++) {
         uint32_t v = corner[i ? next3(half) : half];
         thin_fan = thin_fan || (!pairs->rim[v] && pairs->degree[v] <= 3);
@@ -417,7 +458,7 @@ bool mesh_pair(Work *work) {
     if (!pairs) return true;
     pairs->work = work;
     cut_faces(pairs);
-    if (!work->no_memory) work_edges(work);
+    if (!work->no_memory) find_twins(pairs);
     if (!work->no_memory) cost_all(pairs);
     if (work->no_memory) return true;
     bool found = find_mates(pairs);

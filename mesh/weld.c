@@ -3,7 +3,6 @@
 #include "mesh/work.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 uint32_t places_slot(const Places *places, const int64_t box[3]) {
@@ -52,8 +51,7 @@ void work_mark_open(const Work *work, uint8_t *open) {
             open[faces->corner[h]] = open[faces->corner[faces_next(faces, work->face, h)]] = 1;
 }
 
-/// Renames the corners.
-static void rename_corners(Work *work, const uint32_t *to) {
+void work_rename(Work *work, const uint32_t *to) {
     for (uint32_t h = 0; h < work->faces.corner_count; h++) work->faces.corner[h] = to[work->faces.corner[h]];
     for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = to[work->became[v]];
 }
@@ -75,45 +73,5 @@ void mesh_weld(Work *work) {
         to[v] = found;
         work_did(work, MESH_WELDED, 1, v);
     }
-    rename_corners(work, to);
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/// The longest side of a face; with `lengths`, all sides' lengths behind the `count` there are.
-static double face_sides(const Work *work, uint32_t face, double *lengths, uint32_t *count) {
-    const Faces *faces = &work->faces;
-    double longest = 0;
-    for (uint32_t h = faces->first[face]; h < faces->first[face + 1]; h++) {
-        uint32_t next = h + 1 < faces->first[face + 1] ? h + 1 : faces->first[face];
-        double length = distance3(work->place[faces->corner[h]], work->place[faces->corner[next]]);
-        if (lengths) lengths[(*count)++] = length;
-        longest = fmax(longest, length);
-    }
-    return longest;
-}
-
-void mesh_shrink(Work *work) {
-    const Faces *faces = &work->faces;
-    double *lengths = work_new(work, faces->corner_count, sizeof *lengths);
-    uint32_t *to = work_sets(work, work->vertex_count), count = 0, shrunk = 0;
-    if (work->no_memory) return;
-    for (uint32_t f = 0; f < faces->count; f++) (void)face_sides(work, f, lengths, &count);
-    if (count == 0) return;
-    qsort(lengths, count, sizeof *lengths, by_size);
-    const double least = work->smallest * lengths[count / 2];
-    for (uint32_t f = 0; f < faces->count; f++) {
-        if (face_sides(work, f, NULL, NULL) >= least) continue;
-        for (uint32_t h = faces->first[f] + 1; h < faces->first[f + 1]; h++)
-            sets_join(to, faces->corner[h], faces->corner[h - 1]);
-        work_did(work, MESH_SHRUNK, 1, work_face_name(work, faces->origin[f]));
-        shrunk++;
-    }
-    if (!shrunk) return;
-    for (uint32_t v = 0; v < work->vertex_count; v++) to[v] = sets_find(to, v);
-    rename_corners(work, to);
-    mesh_clean(work);
+    work_rename(work, to);
 }

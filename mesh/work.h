@@ -5,6 +5,9 @@
 #include "mesh/mesh.h"
 
 #define MESH_NONE UINT32_MAX
+/// A face is degenerate when twice its area is this small beside the square of its longest side; the core refuses half
+/// of it (src/shell/sheet.c).
+#define FACE_THIN 4e-6
 
 /// Memory that goes all at once.
 typedef struct WorkBlock {
@@ -36,7 +39,7 @@ typedef struct Work {
     uint32_t *face;       ///< [corner_count] whose corner it is (work_edges)
     uint32_t *twin;       ///< [corner_count] the same side in the other face; MESH_NONE (work_edges)
     double weld;          ///< distance at which vertices are one
-    double smallest;      ///< faces with sides below it shrink
+    double smallest;      ///< sides below this share of the median side shrink
 } Work;
 
 /// Zeroed memory; NULL and work->no_memory when there is none.
@@ -102,6 +105,9 @@ double distance3(const double *a, const double *b);
 /// Twice the area times the normal.
 void face_area(const Work *work, uint32_t face, double normal[3]);
 
+/// Vertices become others: renames corners and what the file's vertices are.
+void work_rename(Work *work, const uint32_t *to);
+
 /// Marks the vertices on open edges; work->twin is filled.
 void work_mark_open(const Work *work, uint8_t *open);
 
@@ -121,7 +127,7 @@ uint32_t places_slot(const Places *places, const int64_t box[3]);
 
 /// Joins vertices on open edges that are as near as work->weld (weld.c).
 void mesh_weld(Work *work);
-/// Shrinks tiny faces (weld.c).
+/// Makes one of the ends of very short sides; work->smallest is a share of the median side (shrink.c).
 void mesh_shrink(Work *work);
 /// Leaves out what has no area and what is there twice; faces that touch themselves fall apart (clean.c).
 void mesh_clean(Work *work);

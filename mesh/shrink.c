@@ -1,0 +1,142 @@
+// Short sides go: springs that are far shorter than the rest cannot be held (docs/meshes.md), and what they show is less
+// than a cell. Vertices at the ends of short sides become one, the shortest first, as long as what becomes one vertex is
+// no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open edges become
+// one only along such an edge, so that nothing is pinched off.
+#include "mesh/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Short {
+    double length;
+    uint32_t half;
+} Short;
+
+typedef struct Shrink {
+    Work *work;
+    double least;          ///< sides shorter than this
+    uint32_t *set, *stays; ///< [vertices] what becomes one; the vertex that stays, of a root
+    uint8_t *open;         ///< [vertices] of a root: has a vertex on an open edge
+    double (*low)[3], (*high)[3]; ///< [vertices] of a root
+} Shrink;
+
+static int by_length(const void *a, const void *b) {
+    const Short *x = a, *y = b;
+    return x->length != y->length ? (x->length > y->length) - (x->length < y->length) : (x->half > y->half) - (x->half < y->half);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double side_length(const Work *work, uint32_t half) {
+    const Faces *faces = &work->faces;
+    return distance3(work->place[faces->corner[half]], work->place[faces->corner[faces_next(faces, work->face, half)]]);
+}
+
+static double median_side(Work *work) {
+    const uint32_t count = work->faces.corner_count;
+    double *lengths = work_new(work, count, sizeof *lengths);
+    if (!lengths || !count) return 0;
+    for (uint32_t h = 0; h < count; h++) lengths[h] = side_length(work, h);
+    qsort(lengths, count, sizeof *lengths, by_size);
+    return lengths[count / 2];
+}
+
+static Short *list_short(Work *work, double least, uint32_t *count) {
+    Short *list = work_new(work, work->faces.corner_count, sizeof *list);
+    *count = 0;
+    for (uint32_t h = 0; list && h < work->faces.corner_count; h++) {
+        double length = side_length(work, h);
+        if (length < least) list[(*count)++] = (Short){length, h};
+    }
+    if (*count) qsort(list, *count, sizeof *list, by_length);
+    return list;
+}
+
+/// Makes one of what the ends of a side belong to, if that stays small.
+static bool join_ends(Shrink *shrink, uint32_t half) {
+    const Work *work = shrink->work;
+    const Faces *faces = &work->faces;
+    uint32_t a = sets_find(shrink->set, faces->corner[half]);
+    uint32_t b = sets_find(shrink->set, faces->corner[faces_next(faces, work->face, half)]);
+    if (a == b || (shrink->open[a] && shrink->open[b] && work->twin[half] != MESH_NONE)) return false;
+    double low[3], high[3], size[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(shrink->low[a][k], shrink->low[b][k]);
+        high[k] = fmax(shrink->high[a][k], shrink->high[b][k]);
+        size[k] = high[k] - low[k];
+    }
+    if (sqrt(dot3(size, size)) > shrink->least) return false;
+    bool first = shrink->open[a] != shrink->open[b] ? shrink->open[a] : shrink->stays[a] < shrink->stays[b];
+    uint32_t stays = first ? shrink->stays[a] : shrink->stays[b], root;
+    uint8_t open = shrink->open[a] | shrink->open[b];
+    sets_join(shrink->set, a, b);
+    root = sets_find(shrink->set, a);
+    shrink->stays[root] = stays, shrink->open[root] = open;
+    memcpy(shrink->low[root], low, sizeof low), memcpy(shrink->high[root], high, sizeof high);
+    return true;
+}
+
+static Shrink shrink_begin(Work *work, double least) {
+    const uint32_t count = work->vertex_count;
+    Shrink shrink = {.work = work, .least = least, .set = work_sets(work, count), .stays = work_sets(work, count),
+                     .open = work_new(work, count, 1), .low = work_new(work, count, sizeof *shrink.low),
+                     .high = work_new(work, count, sizeof *shrink.high)};
+    if (work->no_memory) return shrink;
+    work_mark_open(work, shrink.open);
+    memcpy(shrink.low, work->place, count * sizeof *shrink.low);
+    memcpy(shrink.high, work->place, count * sizeof *shrink.high);
+    return shrink;
+}
+
+/// uv at a vertex that was several differ a little: those that differ by less than what became one are the first's.
+static void join_uv(Shrink *shrink, const uint8_t *several) {
+    Work *work = shrink->work;
+    const Faces *faces = &work->faces;
+    uint32_t *head = work_new(work, work->vertex_count, sizeof *head);
+    uint32_t *next = work_new(work, faces->corner_count, sizeof *next);
+    if (work->no_memory) return;
+    memset(head, 0xff, work->vertex_count * sizeof *head);
+    for (uint32_t h = 0; h < faces->corner_count; h++) {
+        uint32_t v = faces->corner[h], to = faces_next(faces, work->face, h), g;
+        if (!several[v]) continue;
+        double length = fmax(side_length(work, h), shrink->least), same = 0;
+        for (int k = 0; k < 2; k++) same = fmax(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
+        same *= 4 * shrink->least / length;
+        for (g = head[v]; g != MESH_NONE; g = next[g])
+            if (fabs((double)faces->uv[g][0] - (double)faces->uv[h][0]) <= same &&
+                fabs((double)faces->uv[g][1] - (double)faces->uv[h][1]) <= same)
+                break;
+        if (g != MESH_NONE) memcpy(faces->uv[h], faces->uv[g], sizeof *faces->uv);
+        else next[h] = head[v], head[v] = h;
+    }
+}
+
+void mesh_shrink(Work *work) {
+    work_edges(work);
+    if (work->no_memory || !(work->smallest > 0)) return;
+    const double least = work->smallest * median_side(work);
+    uint32_t count = 0, joined = 0;
+    Short *list = list_short(work, least, &count);
+    if (work->no_memory || !count) return;
+    Shrink shrink = shrink_begin(work, least);
+    uint8_t *several = work_new(work, work->vertex_count, 1);
+    uint32_t *to = work_new(work, work->vertex_count, sizeof *to);
+    if (work->no_memory) return;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!join_ends(&shrink, list[i].half)) continue;
+        if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, work->faces.origin[work->face[list[i].half]]));
+    }
+    if (!joined) return;
+    work_did(work, MESH_SHRUNK, joined - 1, 0);
+    for (uint32_t v = 0; v < work->vertex_count; v++) {
+        to[v] = shrink.stays[sets_find(shrink.set, v)];
+        if (to[v] != v) several[to[v]] = 1;
+    }
+    work_rename(work, to);
+    if (work->faces.uv) join_uv(&shrink, several);
+    mesh_clean(work);
+}
