@@ -107,6 +107,14 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
     return code;
 }
 
+void job_note_meshes(const Job *job, Console *console) {
+    for (uint32_t i = 0; i < job->assets.sheet_count; i++) {
+        char text[200];
+        for (int line = 0; mesh_report_line(&job->assets.reports[i], line, text, sizeof text); line++)
+            console_note(console, "%s: %s", job->scene->sheets[i].mesh.name, text);
+    }
+}
+
 ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
     SceneMessages messages = {0};
     SingeResult result = scene_build(job->scene, &job->assets, &job->hooks, sim, &messages);

@@ -34,6 +34,9 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
 /// The scene of a run's record, FOLDER/run.json.
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads);
 
+/// Notes what meshes were read and what was done to them.
+void job_note_meshes(const Job *job, Console *console);
+
 ExitCode job_build(Job *job, Console *console, SingeSim **sim);
 void job_close(Job *job);
 

@@ -356,6 +356,10 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
     run->record.preview = run->pictures != NULL;
     run->record.census = singe_sim_census(run->sim);
     run->record.thickening = singe_sim_stats(run->sim).thickening;
+    job_note_meshes(&run->job, run->console);
+    const SingeCensus *census = &run->record.census;
+    console_note(run->console, "%u cells of %.3g mm, strands of %.1f springs on average", census->cells,
+                 1e3 * (double)census->cell_size, census->mean_strand_length);
     run->timers = singe_sim_timers(run->sim);
     interrupt_watch();
     SingeResult result = record_write(&run->record, &run->folder, &run->job, &error);

@@ -64,6 +64,7 @@ typedef struct Mesh {
     uint32_t *cell_lines; ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
     uint32_t *cell_faces; ///< [cell_count] the file's face of each, or NULL where they are the same
     int32_t *source;      ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    int32_t *corner_source; ///< [4 * cell_count] the same of the cells' corners, where the file had several; else NULL
     uint32_t source_count; ///< vertices of the file
     uint32_t *became;     ///< [source_count] the vertex that the file's vertex is now, UINT32_MAX where it is left out;
                           ///< NULL with source

@@ -79,6 +79,7 @@ void mesh_free(Mesh *mesh) {
     store_free(mesh->allocator, mesh->cell_lines, cells, sizeof *mesh->cell_lines);
     store_free(mesh->allocator, mesh->cell_faces, cells, sizeof *mesh->cell_faces);
     store_free(mesh->allocator, mesh->source, vertices, sizeof *mesh->source);
+    store_free(mesh->allocator, mesh->corner_source, cells, 4 * sizeof *mesh->corner_source);
     store_free(mesh->allocator, mesh->became, mesh->source_count, sizeof *mesh->became);
     memset(mesh, 0, sizeof *mesh);
 }

@@ -19,6 +19,7 @@ static void take_faces(Work *work) {
     faces.count = file->face_count, faces.corner_count = file->corner_count;
     memcpy(faces.first, file->first, ((size_t)file->face_count + 1) * sizeof *faces.first);
     memcpy(faces.corner, file->corners, file->corner_count * sizeof *faces.corner);
+    for (uint32_t h = 0; h < file->corner_count; h++) faces.id[h] = (int32_t)file->corners[h];
     if (faces.uv) memcpy(faces.uv, file->uv, file->corner_count * sizeof *faces.uv);
     for (uint32_t f = 0; f < faces.count; f++) {
         uint32_t corners = faces.first[f + 1] - faces.first[f];
@@ -129,6 +130,7 @@ static void give_uv(Work *work, const uint32_t *number, Mesh *mesh, uint8_t *has
         if (!has[v]) has[v] = 1;
     }
     memcpy(mesh->corner_uv, faces->uv, faces->corner_count * sizeof *faces->uv);
+    memcpy(mesh->corner_source, faces->id, faces->corner_count * sizeof *faces->id);
 }
 
 static bool give_arrays(Work *work, Mesh *mesh) {
@@ -144,7 +146,8 @@ static bool give_arrays(Work *work, Mesh *mesh) {
     if (!work->file->uv) return good;
     mesh->uv = store_new(a, vertices, 2 * sizeof *mesh->uv);
     mesh->corner_uv = store_new(a, cells, 8 * sizeof *mesh->corner_uv);
-    return good && mesh->uv && mesh->corner_uv;
+    mesh->corner_source = store_new(a, cells, 4 * sizeof *mesh->corner_source);
+    return good && mesh->uv && mesh->corner_uv && mesh->corner_source;
 }
 
 static bool give(Work *work, Mesh *mesh) {
@@ -173,7 +176,14 @@ static void simplify(const Work *work, Mesh *mesh) {
     bool same = mesh->vertex_count == mesh->source_count, faces = true;
     for (uint32_t v = 0; v < mesh->vertex_count && same; v++) same = mesh->source[v] == (int32_t)v;
     for (uint32_t c = 0; c < mesh->cell_count && faces; c++) faces = mesh->cell_faces[c] == c;
-    if (same) {
+    bool several = false; // a vertex of the sheet was more than one of the file
+    for (size_t i = 0; mesh->corner_source && i < 4 * (size_t)mesh->cell_count; i++)
+        several = several || mesh->corner_source[i] != mesh->source[mesh->cells[i]];
+    if (mesh->corner_source && !(several && work->report->seam_vertices)) {
+        store_free(mesh->allocator, mesh->corner_source, mesh->cell_count, 4 * sizeof *mesh->corner_source);
+        mesh->corner_source = NULL;
+    }
+    if (same && !mesh->corner_source) {
         store_free(mesh->allocator, mesh->source, mesh->vertex_count, sizeof *mesh->source);
         mesh->source = NULL;
         store_free(mesh->allocator, mesh->became, mesh->source_count, sizeof *mesh->became);

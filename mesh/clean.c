@@ -46,8 +46,10 @@ static void clean_face(Work *work, uint32_t face, Loop *loop, Faces *out) {
         }
         loop->corner[loop->count++] = h;
     }
+    bool repeated = loop->count < old->first[face + 1] - old->first[face];
     whole = loop_end(work, loop, 0, old->origin[face], out) && whole;
-    if (!whole) work_did(work, MESH_DEGENERATE, 1, work_face_name(work, old->origin[face]));
+    if (repeated && whole && !work->shrunk) work_did(work, MESH_REPEATED, 1, work_face_name(work, old->origin[face]));
+    if (!whole && !work->shrunk) work_did(work, MESH_DEGENERATE, 1, work_face_name(work, old->origin[face]));
 }
 
 static uint32_t least_corner(const Faces *faces, uint32_t face) {

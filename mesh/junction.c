@@ -125,6 +125,7 @@ static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, u
     const Faces *old = &j->work->faces;
     uint32_t at = out->corner_count;
     faces_push(out, j->found[i].vertex, old, half);
+    out->id[at] = j->work->source[j->found[i].vertex];
     for (int k = 0; out->uv && k < 2; k++)
         out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
 }

@@ -150,17 +150,18 @@ static void turn_over(Work *work, const Turn *turn) {
     Faces *faces = &work->faces;
     uint32_t *corner = work_new(work, faces->corner_count, sizeof *corner);
     uint32_t *twin = work_new(work, faces->corner_count, sizeof *twin);
+    int32_t *id = work_new(work, faces->corner_count, sizeof *id);
     float (*uv)[2] = faces->uv ? work_new(work, faces->corner_count, sizeof *uv) : NULL;
     if (work->no_memory) return;
     for (uint32_t f = 0; f < faces->count; f++)
         for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) {
             uint32_t side = turn->flip[f] ? turned_place(faces, f, h) : h;
             uint32_t from = turn->flip[f] ? faces_next(faces, work->face, h) : h, t = work->twin[h];
-            corner[side] = faces->corner[from];
+            corner[side] = faces->corner[from], id[side] = faces->id[from];
             if (uv) memcpy(uv[side], faces->uv[from], sizeof *uv);
             twin[side] = t == MESH_NONE ? t : turn->flip[work->face[t]] ? turned_place(faces, work->face[t], t) : t;
         }
-    faces->corner = corner, faces->uv = uv, work->twin = twin;
+    faces->corner = corner, faces->id = id, faces->uv = uv, work->twin = twin;
 }
 
 static SingeResult turn_faces(Work *work) {

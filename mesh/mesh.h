@@ -25,6 +25,7 @@ typedef enum MeshRepair {
     MESH_UNUSED,     ///< vertices of no face left out
     MESH_WELDED,     ///< vertices joined to another one at their place
     MESH_SHRUNK,     ///< very short sides whose ends became one vertex
+    MESH_REPEATED,   ///< faces that named a vertex twice
     MESH_DEGENERATE, ///< faces without area left out
     MESH_DUPLICATE,  ///< faces left out whose corners another face has
     MESH_JUNCTION,   ///< vertices put into sides that they lie on

@@ -97,6 +97,7 @@ static void apply(Order *order) {
         out.origin[to] = old->origin[f];
         for (uint32_t i = 0; i < 4; i++) {
             out.corner[4 * to + i] = order->vertex[old->corner[4 * f + i]];
+            out.id[4 * to + i] = old->id[4 * f + i];
             if (out.uv) memcpy(out.uv[4 * to + i], old->uv[4 * f + i], sizeof *out.uv);
         }
         out.first[to + 1] = 4 * (to + 1);

@@ -11,6 +11,7 @@ static const RepairText texts[MESH_REPAIRS] = {
     [MESH_UNUSED] = {"vertex of no face left out", "vertices of no face left out", "vertex"},
     [MESH_WELDED] = {"vertex welded to another at its place", "vertices welded to others at their places", "vertex"},
     [MESH_SHRUNK] = {"very short side shrunk to a point", "very short sides shrunk to points", "face"},
+    [MESH_REPEATED] = {"face parted that names a vertex twice", "faces parted that name a vertex twice", "face"},
     [MESH_DEGENERATE] = {"face without area left out", "faces without area left out", "face"},
     [MESH_DUPLICATE] = {"face left out that is there twice", "faces left out that are there twice", "face"},
     [MESH_JUNCTION] = {"vertex put into a side that it lies on", "vertices put into sides that they lie on", "face"},

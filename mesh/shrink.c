@@ -137,6 +137,10 @@ void mesh_shrink(Work *work) {
         if (to[v] != v) several[to[v]] = 1;
     }
     work_rename(work, to);
+    for (uint32_t h = 0; h < work->faces.corner_count; h++)
+        if (several[work->faces.corner[h]]) work->faces.id[h] = work->source[work->faces.corner[h]];
     if (work->faces.uv) join_uv(&shrink, several);
+    work->shrunk = true;
     mesh_clean(work);
+    work->shrunk = false;
 }

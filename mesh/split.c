@@ -25,6 +25,7 @@ static void push_centre(const Work *work, Faces *out, uint32_t face, uint32_t ce
         for (uint32_t h = first; h < end; h++)
             for (int k = 0; k < 2; k++) uv[k] += old->uv[h][k] / (float)(end - first);
     }
+    out->id[out->corner_count] = -1;
     out->corner[out->corner_count++] = centre;
 }
 

@@ -36,6 +36,7 @@ uint32_t *work_sets(Work *work, uint32_t count) {
 Faces work_faces(Work *work, uint32_t count, uint32_t corners) {
     Faces faces = {.first = work_new(work, (size_t)count + 1, sizeof *faces.first),
                    .corner = work_new(work, corners, sizeof *faces.corner),
+                   .id = work_new(work, corners, sizeof *faces.id),
                    .origin = work_new(work, count, sizeof *faces.origin)};
     if (work->file->uv) faces.uv = work_new(work, corners, sizeof *faces.uv);
     return faces;
@@ -44,11 +45,13 @@ Faces work_faces(Work *work, uint32_t count, uint32_t corners) {
 void faces_push_between(Faces *faces, uint32_t vertex, const Faces *old, uint32_t a, uint32_t b) {
     if (faces->uv)
         for (int k = 0; k < 2; k++) faces->uv[faces->corner_count][k] = 0.5f * (old->uv[a][k] + old->uv[b][k]);
+    faces->id[faces->corner_count] = -1;
     faces->corner[faces->corner_count++] = vertex;
 }
 
 void faces_push(Faces *faces, uint32_t vertex, const Faces *old, uint32_t from) {
     faces_push_between(faces, vertex, old, from, from);
+    faces->id[faces->corner_count - 1] = old->id[from];
 }
 
 void faces_end(Faces *faces, uint32_t origin) {

@@ -20,6 +20,7 @@ typedef struct Faces {
     uint32_t *first;   ///< [count + 1]
     uint32_t *corner;  ///< [corner_count] vertex
     float (*uv)[2];    ///< [corner_count] or NULL
+    int32_t *id;       ///< [corner_count] vertex of the file, -1 for a new one
     uint32_t *origin;  ///< [count] face of the file
 } Faces;
 
@@ -30,6 +31,7 @@ typedef struct Work {
     SingeError *error;
     WorkBlock *blocks;
     bool no_memory;
+    bool shrunk;          ///< faces vanish because their sides did, which has been said
     uint32_t vertex_count, vertex_capacity, attribute_count;
     double (*place)[3];
     int32_t *source;      ///< vertex of the file, -1 for a new one
@@ -50,7 +52,7 @@ void work_free(Work *work);
 Faces work_faces(Work *work, uint32_t faces, uint32_t corners);
 /// Appends a corner to the face that is being made, with the uv of corner `from` of `old`.
 void faces_push(Faces *faces, uint32_t vertex, const Faces *old, uint32_t from);
-/// Appends a corner with the uv between those of corners `a` and `b` of `old`.
+/// Appends a corner of a new vertex, with the uv between those of corners `a` and `b` of `old`.
 void faces_push_between(Faces *faces, uint32_t vertex, const Faces *old, uint32_t a, uint32_t b);
 /// Ends the face that is being made.
 void faces_end(Faces *faces, uint32_t origin);

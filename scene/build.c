@@ -48,6 +48,7 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->uv = mesh->uv;
     def->corner_uv = mesh->corner_uv;
     def->source_vertex = mesh->source;
+    def->corner_source_vertex = mesh->corner_source;
     def->source_count = mesh->source ? mesh->source_count : 0;
     def->attribute_count = mesh->attribute_count;
     def->attributes = mesh->attributes;

@@ -169,6 +169,9 @@ typedef struct SingeSheetDef {
     const float *corner_uv;
     const int32_t *source_vertex; ///< [vertex_count] what SingeSurface.source_vertex says: 0 up to source_count, or -1
     uint32_t source_count;        ///< vertices of the mesh that this one was made from; 0 without source_vertex
+    /// [4 * cell_count] the same of each cell's corners, or NULL: where a seam's vertices were several in that mesh. Needs
+    /// corner_uv and source_vertex.
+    const int32_t *corner_source_vertex;
 } SingeSheetDef;
 
 SINGE_API void singe_init_sheet(SingeSheetDef *def, size_t struct_size);

@@ -4,7 +4,8 @@
 //
 //   uv = w_a uv_a + w_b uv_b + w_c (uv_1 + uv_2 + uv_3 + uv_4)/4,   uv_i as this cell has them
 //
-// Only cells are looked at whose uv differ from what their vertices have (Shell.uv).
+// Only cells are looked at whose uv differ from what their vertices have (Shell.uv). Where the input had several
+// vertices on a seam, each copy has the number of its own.
 #include "ablate/ablate_plan.h"
 #include "base/vec.h"
 
@@ -23,7 +24,9 @@ typedef struct Seams {
 
 static bool is_seamed(const Shell *shell, uint32_t cell) {
     for (int i = 0; i < 4; i++)
-        if (memcmp(shell->corner_uv[cell][i], shell->uv[shell->cells[cell][i]], 2 * sizeof(float)) != 0) return true;
+        if (memcmp(shell->corner_uv[cell][i], shell->uv[shell->cells[cell][i]], 2 * sizeof(float)) != 0 ||
+            shell->corner_source[cell][i] != shell->source_vertex[shell->cells[cell][i]])
+            return true;
     return false;
 }
 
@@ -64,11 +67,13 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
     return best;
 }
 
-static void cell_uv(const Shell *shell, uint32_t cell, int side, Vec point, float uv[2]) {
+/// uv of a point, and its number where it is a corner that has one.
+static void cell_uv(const Shell *shell, uint32_t cell, int side, Vec point, float uv[2], int32_t *source) {
     const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
     const int next = (side + 1) & 3;
     float weight[3];
     weights_at(shell, cell, side, point, weight);
+    if (*source >= 0) *source = shell->corner_source[cell][weight[0] > weight[1] ? side : next];
     for (int k = 0; k < 2; k++) {
         float centre = 0.25f * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
         uv[k] = weight[0] > 1 - SEAM_SAME   ? corner[side][k]
@@ -85,20 +90,24 @@ static float cell_uv_size(const Shell *shell, uint32_t cell) {
     return size;
 }
 
-/// The copy of a vertex that has this uv; made where there is none.
-static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same) {
+/// The copy of a vertex that has this uv and number; made where there is none.
+static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
     SingeSurface *surface = seams->surface;
     uint32_t last = vertex;
     if (!seams->claimed[vertex]) {
         seams->claimed[vertex] = 1;
         memcpy(surface->uv[vertex], uv, 2 * sizeof *uv);
+        surface->source_vertex[vertex] = source;
         return vertex;
     }
     for (uint32_t v = vertex; v != SHELL_NONE; last = v, v = seams->next[v])
-        if (fabsf(surface->uv[v][0] - uv[0]) <= same && fabsf(surface->uv[v][1] - uv[1]) <= same) return v;
+        if (fabsf(surface->uv[v][0] - uv[0]) <= same && fabsf(surface->uv[v][1] - uv[1]) <= same &&
+            surface->source_vertex[v] == source)
+            return v;
     uint32_t copy = surface->vertex_count++;
     surface_copy_vertex(surface, vertex, copy);
     memcpy(surface->uv[copy], uv, 2 * sizeof *uv);
+    surface->source_vertex[copy] = source;
     seams->claimed[copy] = 1;
     seams->next[copy] = SHELL_NONE;
     seams->next[last] = copy;
@@ -112,8 +121,9 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
         int side = side_of(seams, cell, triangle);
         for (int k = 0; k < 3; k++) {
             float uv[2];
-            cell_uv(seams->shell, cell, side, vec_load(seams->surface->rest_position[triangle[k]]), uv);
-            parted[k] = copy_with(seams, triangle[k], uv, same);
+            int32_t source = seams->surface->source_vertex[triangle[k]];
+            cell_uv(seams->shell, cell, side, vec_load(seams->surface->rest_position[triangle[k]]), uv, &source);
+            parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
         memcpy(triangle, parted, sizeof parted);
     }

@@ -44,7 +44,9 @@ static bool any_seams(const SheetSource *sources, uint32_t source_count) {
 }
 
 static bool shell_alloc(Memory *memory, bool seams, Shell *shell) {
-    if (seams && !NEW(memory, shell->corner_uv, shell->cell_count)) return false;
+    if (seams && (!NEW(memory, shell->corner_uv, shell->cell_count) ||
+                  !NEW(memory, shell->corner_source, shell->cell_count)))
+        return false;
     return NEW(memory, shell->source_vertex, shell->vertex_count) && NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
            NEW(memory, shell->rest_position, shell->particle_count) &&
            NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
@@ -62,6 +64,7 @@ void shell_free(Memory *memory, Shell *shell) {
     FREE(memory, shell->rest_position, shell->particle_count);
     FREE(memory, shell->uv, shell->particle_count);
     FREE(memory, shell->corner_uv, shell->cell_count);
+    FREE(memory, shell->corner_source, shell->cell_count);
     FREE(memory, shell->source_vertex, shell->vertex_count);
     FREE(memory, shell->sheets, shell->sheet_count);
     FREE(memory, shell->matter.sheet, shell->particle_count);
@@ -91,7 +94,11 @@ static void place_sheet(Shell *shell, uint32_t index, const SheetSource *source)
             shell->cells[sheet->cell_first + c][i] = corner;
             const float *corner_uv = sheet_corner_uv(source, c, i);
             for (int k = 0; k < 2; k++) uv[k] += corner_uv[k] / 4;
-            if (shell->corner_uv) memcpy(shell->corner_uv[sheet->cell_first + c][i], corner_uv, 2 * sizeof *corner_uv);
+            if (!shell->corner_uv) continue;
+            memcpy(shell->corner_uv[sheet->cell_first + c][i], corner_uv, 2 * sizeof *corner_uv);
+            int32_t from = source->corner_source ? source->corner_source[c][i] : -1;
+            shell->corner_source[sheet->cell_first + c][i] = from < 0 ? shell->source_vertex[corner]
+                                                                      : (int32_t)sheet->source_first + from;
         }
         shell->matter.sheet[centre + c] = (uint16_t)index;
     }

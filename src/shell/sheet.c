@@ -59,6 +59,8 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
                          name, def->vertex_count, def->cell_count);
     if (!def->positions || !def->cells) return argument(name, "positions or cells are NULL", error);
     if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv, too", error);
+    if (def->corner_source_vertex && (!def->corner_uv || !def->source_vertex))
+        return argument(name, "corner_source_vertex needs corner_uv and source_vertex, too", error);
     if (def->source_vertex && def->source_count > INT32_MAX)
         return argument(name, "source_count is too large", error);
     if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
@@ -89,6 +91,10 @@ static SingeResult check_vertices(const SingeSheetDef *def, const char *name, Si
         if (def->source_vertex && (def->source_vertex[v] < -1 || def->source_vertex[v] >= (int64_t)def->source_count))
             return element_fail(name, "vertex", v, "has a source_vertex that is not below source_count", error);
     }
+    for (size_t i = 0; i < 4 * (size_t)def->cell_count && def->corner_source_vertex; i++)
+        if (def->corner_source_vertex[i] < -1 || def->corner_source_vertex[i] >= (int64_t)def->source_count)
+            return element_fail(name, "cell", (uint32_t)(i / 4), "has a source vertex that is not below source_count",
+                                error);
     for (size_t i = 0; i < 8 * (size_t)def->cell_count && def->corner_uv; i++)
         if (!isfinite(def->corner_uv[i]))
             return element_fail(name, "cell", (uint32_t)(i / 8), "has a uv that is not finite", error);
@@ -154,7 +160,8 @@ static bool source_alloc(Memory *memory, const SingeSheetDef *def, SheetSource *
            NEW(memory, source->cells, source->sheet.cell_count) &&
            NEW(memory, source->uv, source->sheet.vertex_count) &&
            (!def->corner_uv || NEW(memory, source->corner_uv, source->sheet.cell_count)) &&
-           (!def->source_vertex || NEW(memory, source->source_vertex, source->sheet.vertex_count));
+           (!def->source_vertex || NEW(memory, source->source_vertex, source->sheet.vertex_count)) &&
+           (!def->corner_source_vertex || NEW(memory, source->corner_source, source->sheet.cell_count));
 }
 
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, SheetSource *source, SingeError *error) {
@@ -184,6 +191,8 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     memcpy(source->cells, def.cells, sizeof *source->cells * def.cell_count);
     if (def.uv) memcpy(source->uv, def.uv, sizeof *source->uv * def.vertex_count);
     if (def.corner_uv) memcpy(source->corner_uv, def.corner_uv, sizeof *source->corner_uv * def.cell_count);
+    if (def.corner_source_vertex)
+        memcpy(source->corner_source, def.corner_source_vertex, sizeof *source->corner_source * def.cell_count);
     if (def.source_vertex)
         memcpy(source->source_vertex, def.source_vertex, sizeof *source->source_vertex * def.vertex_count);
     SingeResult result = material_evaluate(memory, &def, source, error);
@@ -199,6 +208,7 @@ void sheet_source_free(Memory *memory, SheetSource *source) {
     FREE(memory, source->uv, vertices);
     FREE(memory, source->corner_uv, cells);
     FREE(memory, source->source_vertex, vertices);
+    FREE(memory, source->corner_source, cells);
     for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, source->values[p], vertices + cells);
     memset(source, 0, sizeof *source);
 }

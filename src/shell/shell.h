@@ -92,6 +92,7 @@ typedef struct Shell {
     float (*uv)[2];
     float (*corner_uv)[4][2];      ///< [cell_count], or NULL where no sheet has seams
     int32_t *source_vertex;        ///< [vertex_count] vertex of the input, numbered over all sheets, or -1
+    int32_t (*corner_source)[4];   ///< [cell_count] the same of the cells' corners; NULL without corner_uv
     SpringSet springs[SINGE_COLOUR_COUNT];
     Matter matter;
     Sheet *sheets;
@@ -125,6 +126,7 @@ typedef struct SheetSource {
     float (*uv)[2];        ///< [vertex_count], zero without
     float (*corner_uv)[4][2]; ///< [cell_count] or NULL
     int32_t *source_vertex;   ///< [vertex_count] or NULL
+    int32_t (*corner_source)[4]; ///< [cell_count] or NULL
     float value[PARAM_COUNT];   ///< each parameter, where it has one value for the sheet
     float *values[PARAM_COUNT]; ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
 } SheetSource;

@@ -55,9 +55,12 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
         !snapshot_array(stream, memory, &source->uv, vertices, sizeof *source->uv))
         return false;
     uint8_t seams = source->corner_uv != NULL, numbered = source->source_vertex != NULL;
+    uint8_t corners = source->corner_source != NULL;
+    STREAM(stream, corners);
     STREAM(stream, seams);
     STREAM(stream, numbered);
     if ((seams && !snapshot_array(stream, memory, &source->corner_uv, cells, sizeof *source->corner_uv)) ||
+        (corners && !snapshot_array(stream, memory, &source->corner_source, cells, sizeof *source->corner_source)) ||
         (numbered && !snapshot_array(stream, memory, &source->source_vertex, vertices, sizeof *source->source_vertex)))
         return false;
     for (int p = 0; p < PARAM_COUNT; p++) {

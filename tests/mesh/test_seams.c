@@ -163,7 +163,47 @@ static void seams_open_no_cracks(void **state) {
     }
 }
 
+// A file that has two vertices at each place of a seam gets both numbers back, each with its uv.
+static void seams_keep_their_vertices(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv .01 0 0\nv .01 .01 0\nv 0 .01 0\nv .01 0 0\nv .02 0 0\nv .02 .01 0\nv .01 .01 0\n"
+                    "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt .6 0\nvt 1 0\nvt 1 1\nvt .6 1\n"
+                    "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 6);
+    SingeSim *sim;
+    SingeSimDef def = singe_default_sim();
+    SingeSheetId id;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    SingeSheetDef sheet = singe_default_sheet();
+    sheet.vertex_count = 6, sheet.positions = made.mesh.positions, sheet.cell_count = 2, sheet.cells = made.mesh.cells;
+    sheet.uv = made.mesh.uv, sheet.corner_uv = made.mesh.corner_uv, sheet.source_vertex = made.mesh.source;
+    sheet.source_count = made.mesh.source_count, sheet.corner_source_vertex = made.mesh.corner_source;
+    for (int i = 0; i < 2; i++) // of the second sheet they count on
+        if (singe_sim_add_sheet(sim, &sheet, &id)) fail_msg("%s", singe_sim_error(sim)->message);
+    if (singe_sim_commit(sim)) fail_msg("%s", singe_sim_error(sim)->message);
+    mesh_free(&made.mesh);
+    SingeSurface surface = {0};
+    assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
+    assert_int_equal(surface.vertex_count, 2 * (8 + 2));
+    static const float u[] = {0, 0.4f, 0.4f, 0, 0.6f, 1, 1, 0.6f};
+    uint32_t seen = 0;
+    for (uint32_t v = 0; v < surface.vertex_count; v++) {
+        int32_t number = surface.source_vertex[v];
+        if (number < 0) continue;
+        assert_false(seen & 1u << number);
+        seen |= 1u << number;
+        assert_true(surface.uv[v][0] == u[number % 8]);
+        assert_int_equal(surface.sheet[v], number / 8);
+    }
+    assert_int_equal(seen, 0xffff);
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(seams_open_no_cracks)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(seams_open_no_cracks),
+                                       cmocka_unit_test(seams_keep_their_vertices)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
