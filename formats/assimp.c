@@ -178,7 +178,9 @@ static SingeResult take_scene(const char *name, const struct aiScene *scene, Pol
     out->vertex_count = (uint32_t)counts.vertices, out->face_count = (uint32_t)counts.faces;
     out->corner_count = (uint32_t)counts.corners;
     if (!room) return refuse_memory(error, "mesh", name);
-    if (!good) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: a face uses a vertex that is not there", short_name(name));
+    if (!good)
+        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: a face uses a vertex that is not there",
+                      short_name(name));
     for (size_t i = 0; i < 3 * (size_t)counts.vertices; i++)
         if (!isfinite(out->positions[i]))
             return refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 3),

@@ -27,7 +27,7 @@ static bool loop_end(Work *work, const Loop *loop, uint32_t from, uint32_t origi
         for (int k = 0; k < 3; k++) normal[k] += n[k];
     }
     if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest)) return false;
-    for (uint32_t i = 0; i < count; i++) faces_push(out, old->corner[loop->corner[from + i]], old, loop->corner[from + i]);
+    for (uint32_t i = from; i < loop->count; i++) faces_push(out, old->corner[loop->corner[i]], old, loop->corner[i]);
     faces_end(out, origin);
     return true;
 }

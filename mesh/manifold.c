@@ -24,7 +24,8 @@ static uint32_t *plain_components(Work *work, const uint32_t *order) {
 static void away_from(const Work *work, uint32_t half, double out[3]) {
     const Faces *faces = &work->faces;
     const uint32_t face = work->face[half], first = faces->first[face], end = faces->first[face + 1];
-    const double *a = work->place[faces->corner[half]], *b = work->place[faces->corner[faces_next(faces, work->face, half)]];
+    const double *a = work->place[faces->corner[half]];
+    const double *b = work->place[faces->corner[faces_next(faces, work->face, half)]];
     double middle[3] = {0}, side[3];
     for (uint32_t h = first; h < end; h++)
         for (int k = 0; k < 3; k++) middle[k] += work->place[faces->corner[h]][k] / (end - first);

@@ -1,5 +1,5 @@
-// Numbers of vertices and faces for locality. Lanes take strands beside each other that run through consecutive numbers
-// (src/dynamics/strand_lay.c), as those of a mesh that is numbered row by row. Here rows of quads are walked along their
+// Numbers of vertices and faces for locality. Lanes take strands beside each other that run through consecutive
+// numbers (src/dynamics/strand_lay.c), as those of a mesh that is numbered row by row. Rows of quads are walked along their
 // opposite sides, one after the other from the lowest: a row's lower vertices are numbered as it is walked, and the row
 // above, which begins at the opposite side of its first quad, comes next.
 #include "mesh/work.h"
@@ -90,7 +90,8 @@ static void apply(Order *order) {
         uint32_t to = order->vertex[v];
         memcpy(place[to], work->place[v], sizeof *place);
         source[to] = work->source[v];
-        if (attributes) memcpy(values + to * attributes, work->attributes + v * attributes, attributes * sizeof *values);
+        if (!attributes) continue;
+        memcpy(values + to * attributes, work->attributes + v * attributes, attributes * sizeof *values);
     }
     for (uint32_t f = 0; f < old->count; f++) {
         uint32_t to = order->face[f];

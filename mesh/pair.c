@@ -5,10 +5,10 @@
 //
 //   max |angle - 90| over the quad's four corners + the fold between the two triangles
 //
-// and less where the quad goes on the rows of one that is there: at an end of the side that both share, their angles add
-// up to 180 where the other sides run straight through. Pairs are made cheapest first, so rows grow from where they fit
-// best, and opposite sides run through many quads: strands are long. What stays alone is mended by match.c, which shifts
-// pairs along a way of triangles until two that are alone meet, or one comes to the sheet's border. A pair that would be
+// and less where the quad goes on the rows of one that is there: at an end of the side that both share, their angles
+// add up to 180 where the other sides run straight through. Pairs are made cheapest first, so rows grow from where they
+// fit best, and opposite sides run through many quads: strands are long. What stays alone is mended by match.c, which
+// shifts pairs along a way of triangles until two that are alone meet, or one comes to the border. A pair that would be
 // no good quad (an angle above 175 degrees, a sharp fold, a seam of the uv) shares its side with a new vertex in the
 // middle, by which both triangles are quads of their own; so does a triangle at the border.
 #include "mesh/work.h"
@@ -188,7 +188,8 @@ static void find_twins(Pairs *pairs) {
             bool outer = faces_next(&pairs->before, pairs->before_face, a) == b;
             work->face[h] = h / 3;
             if (!fill && outer) side[a] = h;
-            else if (fill && outer) work->twin[h] = pairs->before_twin[a] == MESH_NONE ? MESH_NONE : side[pairs->before_twin[a]];
+            else if (fill && outer && pairs->before_twin[a] == MESH_NONE) work->twin[h] = MESH_NONE;
+            else if (fill && outer) work->twin[h] = side[pairs->before_twin[a]];
             else if (fill) work->twin[h] = other_side(pairs, h);
         }
 }
@@ -267,7 +268,8 @@ static void heap_push(Pairs *pairs, HeapItem item) {
         pairs->heap = heap, pairs->heap_capacity = capacity;
     }
     uint32_t i = pairs->heap_count++;
-    for (; i > 0 && before(&item, &pairs->heap[(i - 1) / 2]); i = (i - 1) / 2) pairs->heap[i] = pairs->heap[(i - 1) / 2];
+    for (; i > 0 && before(&item, &pairs->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        pairs->heap[i] = pairs->heap[(i - 1) / 2];
     pairs->heap[i] = item;
 }
 
@@ -283,8 +285,8 @@ static HeapItem heap_pop(Pairs *pairs) {
     return top;
 }
 
-/// The angle of the quad made of `side`'s triangle and its mate, at the corner that `side` leaves. `twin` is the half-edge
-/// of the mate along the side that both share, `half` its own.
+/// The angle of the quad made of a triangle and its mate at the corner that `corner_half` leaves. `half` is the
+/// triangle's side that both share, `twin` the mate's.
 static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
     double angle = corner_angle(pairs, corner_half);
     if (corner_half == half) angle += corner_angle(pairs, next3(twin));
@@ -366,7 +368,8 @@ static void grow(Pairs *pairs, bool all, const uint8_t *open) {
     if (work->no_memory || !any_alone(pairs)) return;
     for (uint32_t t = 0, total = 0; t < count; t++) {
         for (uint32_t h = 3 * t; h < 3 * t + 3; h++)
-            if (work->twin[h] != MESH_NONE && (all || pairs->good[pair_name(pairs, h)])) to[total++] = work->twin[h] / 3;
+            if (work->twin[h] != MESH_NONE && (all || pairs->good[pair_name(pairs, h)]))
+                to[total++] = work->twin[h] / 3;
         first[t + 1] = total;
     }
     match_grow(work, count, first, to, open, pairs->mate);

@@ -1,6 +1,6 @@
-// Short sides go: springs that are far shorter than the rest cannot be held (docs/meshes.md), and what they show is less
-// than a cell. Vertices at the ends of short sides become one, the shortest first, as long as what becomes one vertex is
-// no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open edges become
+// Short sides go: springs that are far shorter than the rest cannot be held (docs/meshes.md), and what they show is
+// less than a cell. Vertices at the ends of short sides become one, the shortest first, as long as what becomes one
+// vertex is no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open edges become
 // one only along such an edge, so that nothing is pinched off.
 #include "mesh/work.h"
 
@@ -23,7 +23,8 @@ typedef struct Shrink {
 
 static int by_length(const void *a, const void *b) {
     const Short *x = a, *y = b;
-    return x->length != y->length ? (x->length > y->length) - (x->length < y->length) : (x->half > y->half) - (x->half < y->half);
+    if (x->length != y->length) return x->length < y->length ? -1 : 1;
+    return (x->half > y->half) - (x->half < y->half);
 }
 
 static int by_size(const void *a, const void *b) {
@@ -128,7 +129,8 @@ void mesh_shrink(Work *work) {
     if (work->no_memory) return;
     for (uint32_t i = 0; i < count; i++) {
         if (!join_ends(&shrink, list[i].half)) continue;
-        if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, work->faces.origin[work->face[list[i].half]]));
+        uint32_t face = work->face[list[i].half];
+        if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, work->faces.origin[face]));
     }
     if (!joined) return;
     work_did(work, MESH_SHRUNK, joined - 1, 0);

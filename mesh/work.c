@@ -185,6 +185,6 @@ uint32_t work_face_name(const Work *work, uint32_t origin) {
 
 SingeResult work_refuse(const Work *work, uint32_t origin, const char *what) {
     uint32_t name = work_face_name(work, origin);
-    return refuse(work->error, SINGE_ERROR_MESH, "mesh", name, work->file->lines ? "%s:%u: %s" : "%s: face %u (from 0) %s",
-                  short_name(work->name), name, what);
+    const char *format = work->file->lines ? "%s:%u: %s" : "%s: face %u (from 0) %s";
+    return refuse(work->error, SINGE_ERROR_MESH, "mesh", name, format, short_name(work->name), name, what);
 }

@@ -46,10 +46,11 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *
 /// What lies farther out the simulation takes for a failure.
 static const float place_most = 1e4f;
 
+/// Grids are in metres.
 static double metres_per_unit(const SceneSheet *sheet) {
     static const double units[] = {[SCENE_UNITS_M] = 1, [SCENE_UNITS_CM] = 0.01, [SCENE_UNITS_MM] = 0.001,
                                    [SCENE_UNITS_IN] = 0.0254, [SCENE_UNITS_FT] = 0.3048};
-    return units[sheet->units] * (double)sheet->scale;
+    return (sheet->mesh.name ? units[sheet->units] : 1) * (double)sheet->scale;
 }
 
 /// Scales, turns and moves positions. Returns whether all of it lies where it can be simulated.
@@ -62,7 +63,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
     for (uint32_t v = 0; v < count; v++) {
         float *p = positions + 3 * (size_t)v;
         double x = (double)p[0] * scale, y = (double)p[1] * scale, z = (double)p[2] * scale;
-        if (sheet->up == SCENE_UP_Y) {
+        if (sheet->mesh.name && sheet->up == SCENE_UP_Y) {
             double up = y;
             y = -z, z = up;
         }

@@ -76,9 +76,8 @@ static void cell_uv(const Shell *shell, uint32_t cell, int side, Vec point, floa
     if (*source >= 0) *source = shell->corner_source[cell][weight[0] > weight[1] ? side : next];
     for (int k = 0; k < 2; k++) {
         float centre = 0.25f * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
-        uv[k] = weight[0] > 1 - SEAM_SAME   ? corner[side][k]
-                : weight[1] > 1 - SEAM_SAME ? corner[next][k]
-                                            : weight[0] * corner[side][k] + weight[1] * corner[next][k] + weight[2] * centre;
+        float mixed = weight[0] * corner[side][k] + weight[1] * corner[next][k] + weight[2] * centre;
+        uv[k] = weight[0] > 1 - SEAM_SAME ? corner[side][k] : weight[1] > 1 - SEAM_SAME ? corner[next][k] : mixed;
     }
 }
 

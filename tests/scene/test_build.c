@@ -347,6 +347,50 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     return most;
 }
 
+// A file in millimetres whose y is up, of triangles; a pin takes the file's numbers of vertices, also of a welded one.
+static void test_mesh_files(void **state) {
+    (void)state;
+    char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
+    assert_non_null(mkdtemp(folder));
+    write_text(folder, "a.obj", "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
+                                "f 2 3 4\nf 5 6 7\n");
+    static const char text[] = "sheets: [{mesh: a.obj, units: mm, up: y, scale: 2, translate: [0, 0, 1]}]\n"
+                               "pins: [{vertices: [4, 6]}]\n";
+    Scene *scene;
+    SceneAssets assets;
+    SceneMessages messages = {0};
+    SingeSim *sim;
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(scene_parse("t.yaml", text, strlen(text), folder, NULL, 0, &scene, &messages), SINGE_OK);
+    assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+    assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+    assert_int_equal(assets.reports[0].count[MESH_WELDED], 2);
+    SingeView view = singe_sim_view(sim);
+    assert_int_equal(view.vertex_count, 4);
+    assert_int_equal(view.cell_count, 1);
+    int held = 0;
+    for (uint32_t v = 0; v < 4; v++) {
+        const float *p = view.position[v];
+        bool corner = p[0] == 0; // at x = 0: the file's vertices 1 or 4, and 6
+        assert_true(fabsf(p[0]) < 1e-6f || fabsf(p[0] - 0.2f) < 1e-6f);
+        assert_true((fabsf(p[1]) < 1e-6f && fabsf(p[2] - 1) < 1e-6f) ||
+                    (fabsf(p[1] - 0.6f) < 1e-6f && fabsf(p[2] - 1.4f) < 1e-6f));
+        assert_int_equal((view.particle_flags[v] & SINGE_PINNED) != 0, corner);
+        held += corner;
+    }
+    assert_int_equal(held, 2);
+    singe_sim_destroy(sim);
+    scene_assets_free(&assets);
+    scene_free(scene);
+    messages = refused("sheets: [{mesh: a.obj, units: mm}]\npins: [{vertices: [0]}]\n", folder);
+    assert_int_equal(messages.count, 1);
+    assert_non_null(strstr(messages.items[0].text, "vertex 0 is out of range or of no face"));
+    scene_messages_free(&messages);
+    snprintf(path, sizeof path, "%s/a.obj", folder);
+    unlink(path);
+    rmdir(folder);
+}
+
 static void test_camera_finds_the_sheets(void **state) {
     (void)state;
     static const char *const scenes[] = {
@@ -390,6 +434,7 @@ int main(void) {
         cmocka_unit_test(test_rotation),   cmocka_unit_test(test_sim),
         cmocka_unit_test(test_refused),    cmocka_unit_test(test_bad_files),
         cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_solids), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_mesh_files),
         cmocka_unit_test(test_examples),   cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
