@@ -3,7 +3,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Polygons mesh;
     SingeError error;
-    if (ply_read("fuzz.ply", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK) demand_mesh(&mesh), demand_quads(&mesh);
+    if (ply_read("fuzz.ply", data, size, (SingeAllocator){0}, &mesh, &error) == SINGE_OK)
+        demand_mesh(&mesh), demand_quads(&mesh);
     else demand(error.code && error.message[0] && !mesh.positions);
     polygons_free(&mesh);
 
