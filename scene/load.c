@@ -47,15 +47,15 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *
 static const float place_most = 1e4f;
 
 /// Grids are in metres.
-static double metres_per_unit(const SceneSheet *sheet) {
+static double metres_per_unit(int unit, float scale) {
     static const double units[] = {[SCENE_UNITS_M] = 1, [SCENE_UNITS_CM] = 0.01, [SCENE_UNITS_MM] = 0.001,
                                    [SCENE_UNITS_IN] = 0.0254, [SCENE_UNITS_FT] = 0.3048};
-    return (sheet->mesh.name ? units[sheet->units] : 1) * (double)sheet->scale;
+    return units[unit] * (double)scale;
 }
 
 /// Scales, turns and moves positions. Returns whether all of it lies where it can be simulated.
 static bool transform(const SceneSheet *sheet, float *positions, uint32_t count) {
-    const double scale = metres_per_unit(sheet);
+    const double scale = metres_per_unit(sheet->mesh.name ? sheet->units : SCENE_UNITS_M, sheet->scale);
     double r[9];
     rotation_matrix(sheet->rotate, r);
     bool near = true;
@@ -167,7 +167,8 @@ static void load_solid(Loader *loader, uint32_t index) {
         Bytes bytes = {0};
         result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
         if (!result)
-            result = solid_read_mesh(file->path, bytes.data, bytes.size, collider->scale, solid, &error);
+            result = solid_read_mesh(file->path, bytes.data, bytes.size,
+                                     metres_per_unit(collider->units, collider->scale), solid, &error);
         bytes_free(&bytes);
     } else if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD) {
         SingePicture picture = {0};

@@ -127,7 +127,8 @@ typedef struct SceneCollider {
     ScenePlace place;
     SingeColliderDef def; ///< its pointers are empty
     SceneFile mesh;       ///< of a mesh
-    float scale;          ///< metres per unit of the mesh file
+    float scale;          ///< times what `units` says
+    int units;            ///< SceneUnits of the mesh file
     SceneFile picture;    ///< of a heightfield
     float heights[2];     ///< m, where the picture is black and where it is white
     uint32_t key_count;   ///< at least 1

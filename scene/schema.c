@@ -320,10 +320,12 @@ static const SchemaRow collider_rows[] = {
      WITHIN(1e-6, 1e6), .doc = "half of the box's lengths along its own axes"},
     COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
-     .doc = "a closed mesh, OBJ or PLY, whose faces turn counter-clockwise seen from outside and do not pass through "
+     .doc = "a closed mesh of triangles or polygons: OBJ, PLY, or what assimp reads, whose faces turn counter-clockwise seen from outside and do not pass through "
             "each other; one that is inside out is turned"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
-     .doc = "metres per unit of the mesh file; 0.001 for millimetres"},
+     .doc = "times `units`: how large the mesh file is made"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
+     .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = HEIGHTFIELD, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's middle, "
             "straight between"},

@@ -87,27 +87,45 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
     }
 }
 
-SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, float scale, SceneSolid *solid,
+/// Cuts all faces; false when out of memory. Names of a corner twice in a row make no triangle of extent, which the
+/// library leaves out.
+static bool cut_faces(const Polygons *polygons, PreviewSolid *surface) {
+    uint32_t most = 0;
+    for (uint32_t f = 0; f < polygons->face_count; f++) {
+        uint32_t count = polygons->first[f + 1] - polygons->first[f];
+        most = count > most ? count : most;
+    }
+    uint32_t *left = malloc((most + 1) * sizeof *left);
+    for (uint32_t f = 0; left && f < polygons->face_count; f++) {
+        uint32_t first = polygons->first[f], count = polygons->first[f + 1] - first;
+        memcpy(left, polygons->corners + first, count * sizeof *left);
+        face_cut(surface->vertices, left, count, surface->triangles + 3 * (size_t)surface->triangle_count);
+        surface->triangle_count += count - 2;
+    }
+    free(left);
+    return left != NULL;
+}
+
+SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale, SceneSolid *solid,
                             SingeError *error) {
-    Mesh mesh;
-    SingeResult result = mesh_read(name, bytes, size, (SingeAllocator){0}, &mesh, error);
+    Polygons polygons;
+    SingeResult result = polygons_read(name, bytes, size, (SingeAllocator){0}, &polygons, error);
     if (result)
         return result;
-    uint32_t corners = 4; // of every face
     PreviewSolid *surface = &solid->surface;
-    size_t count = (size_t)mesh.cell_count * (corners - 2);
-    surface->vertices = malloc(3 * (size_t)mesh.vertex_count * sizeof *surface->vertices);
+    size_t count = (size_t)polygons.corner_count - 2 * (size_t)polygons.face_count;
+    surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
     surface->triangles = malloc(3 * count * sizeof *surface->triangles);
+    surface->vertex_count = polygons.vertex_count;
     if (count > INT32_MAX / 4)
         result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
     else if (!surface->vertices || !surface->triangles)
         result = solid_no_memory(error);
-    for (size_t k = 0; !result && k < 3 * (size_t)mesh.vertex_count; k++)
-        surface->vertices[k] = mesh.positions[k] * scale;
-    surface->vertex_count = mesh.vertex_count, surface->triangle_count = (uint32_t)count;
-    for (size_t f = 0; !result && f < mesh.cell_count; f++)
-        face_cut(surface->vertices, mesh.cells + corners * f, corners, surface->triangles + 3 * (corners - 2) * f);
-    mesh_free(&mesh);
+    for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
+        surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
+    if (!result && !cut_faces(&polygons, surface))
+        result = solid_no_memory(error);
+    polygons_free(&polygons);
     return result;
 }
 

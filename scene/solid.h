@@ -4,8 +4,8 @@
 
 #include "scene/scene.h"
 
-/// The triangles of a mesh file, scaled.
-SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, float scale,
+/// The triangles of a mesh file, times `scale`.
+SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size, double scale,
                                             SceneSolid *solid, SingeError *error);
 
 /// Heights from a picture, between those of black and of white, over a rectangle of that size, and the surface that is

@@ -206,13 +206,20 @@ static void test_bad_meshes(void **state) {
 static const char cube[] = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n"
                            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n%s";
 
+/// An L that stands up: its ends are polygons of eight corners that are not convex, its sides triangles and quads.
+static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1 -1 0\nv -1 2 0\nv -2 2 0\n"
+                          "v -2 -2 1\nv 2 -2 1\nv 2 0 1\nv 1 0 1\nv 1 -1 1\nv -1 -1 1\nv -1 2 1\nv -2 2 1\n"
+                          "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10\nf 1 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
+                          "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
+
 /// Meshes and pictures of heights become colliders and shapes; what is not closed is told at its collider.
 static void test_solids(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];
-    const char *const names[] = {"cube.obj", "open.obj", "heights.png"};
+    const char *const names[] = {"cube.obj", "open.obj", "heights.png", "nut.obj"};
     SingeError error = {0};
     assert_non_null(mkdtemp(folder));
+    write_text(folder, names[3], nut);
     snprintf(text, sizeof text, cube, "f 4 1 5 8\n");
     write_text(folder, names[0], text);
     snprintf(text, sizeof text, cube, "");
@@ -221,9 +228,10 @@ static void test_solids(void **state) {
     // three columns and two rows: above, black, white, black; below, white, black, black
     const uint8_t pixels[18] = {0, 0, 0, 255, 255, 255, 0, 0, 0, 255, 255, 255};
     assert_int_equal(png_write(path, 3, 2, pixels, &error), SINGE_OK);
-    const char *const good = SHEET "colliders:\n  - {kind: mesh, mesh: cube.obj, scale: 0.001, position: [0, 0, 1 m]}\n"
+    const char *const good = SHEET "colliders:\n  - {kind: mesh, mesh: cube.obj, units: mm, position: [0, 0, 1 m]}\n"
                                    "  - {kind: heightfield, picture: heights.png, size: [30 cm, 20 cm],\n"
-                                   "     heights: [1 cm, 3 cm]}\n";
+                                   "     heights: [1 cm, 3 cm]}\n"
+                                   "  - {kind: mesh, mesh: nut.obj, units: cm, scale: 0.5}\n";
     const char *const bad = SHEET "colliders:\n  - {kind: plane}\n  - {kind: mesh, mesh: open.obj}\n";
     Scene *scene;
     SceneAssets assets;
@@ -239,8 +247,10 @@ static void test_solids(void **state) {
     assert_true(fabsf(field->heights[0] - 0.03f) < 1e-6f && fabsf(field->heights[1] - 0.01f) < 1e-6f); // least y first
     assert_true(fabsf(field->heights[3] - 0.01f) < 1e-6f && fabsf(field->heights[4] - 0.03f) < 1e-6f);
     assert_true(fabsf(field->surface.vertices[0] + 0.15f) < 1e-6f && fabsf(field->surface.vertices[1] + 0.1f) < 1e-6f);
-    PreviewShape shapes[2];
-    assert_int_equal(scene_shapes(scene, &assets, 0, shapes, 2), 2);
+    assert_int_equal(assets.solids[2].surface.triangle_count, 2 * 6 + 8 * 2);
+    assert_true(fabsf(assets.solids[2].surface.vertices[0] + 0.01f) < 1e-7f);
+    PreviewShape shapes[3];
+    assert_int_equal(scene_shapes(scene, &assets, 0, shapes, 3), 3);
     assert_true(shapes[0].solid == &mesh->surface && shapes[1].solid == &field->surface);
     assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
     singe_sim_destroy(sim);
