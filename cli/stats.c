@@ -15,7 +15,7 @@ static const char stats_header[] =
     "frame,time,particles,springs,triangles,pieces,mass,burnt_fraction,temperature_max,heat_in,heat_lost,"
     "heat_of_combustion,heat_stored,ledger_error,strain_mean,strain_p99,strain_max,inverted_cells,ms_heat,ms_burn,"
     "ms_ablate,ms_dynamics,ms_gas,ms_output,speed_rms_unburnt,mass_ledger_error,ignited,holes_opened,pieces_freed,"
-    "front_speed,triangles_fine,ms_surface\n";
+    "front_speed,triangles_fine,ms_surface,tears\n";
 
 static SingeResult append(StatsFile *file, const char *text, size_t size, SingeError *error) {
     for (size_t done = 0; done < size;) {
@@ -82,14 +82,14 @@ SingeResult stats_write(StatsFile *file, int frame, const SingeStats *s, const T
         line, sizeof line,
         "%d,%.9g,%" PRIu32 ",%" PRIu32 ",%" PRIu64 ",%" PRIu32
         ",%.9g,%.9g,%.7g,%.9g,%.9g,%.9g,%.9g,%.4g,%.6g,%.6g,%.6g,%" PRIu32
-        ",%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6g,%.4g,%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%.6g,%" PRIu64 ",%.3f\n",
+        ",%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6g,%.4g,%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%.6g,%" PRIu64 ",%.3f,%" PRIu32 "\n",
         frame, s->time, s->particles, s->springs, cost->triangles, s->pieces, s->mass, s->burnt_fraction,
         (double)s->temperature_max, s->heat_in, s->heat_lost, s->heat_of_combustion, s->heat_stored, s->ledger_error,
         s->strain_mean, s->strain_p99, s->strain_max, s->inverted_cells, cost->stage[SINGE_STAGE_HEAT],
         cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
         cost->stage[SINGE_STAGE_GAS], cost->output,
         s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited, totals->holes_opened, totals->pieces_freed,
-        s->front_speed, cost->fine_triangles, cost->surface);
+        s->front_speed, cost->fine_triangles, cost->surface, s->tears);
     return append(file, line, (size_t)length, error);
 }
 

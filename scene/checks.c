@@ -186,6 +186,7 @@ static void check_step(Reader *reader, const Node *map, const Scene *scene) {
 void finish_scene(Reader *reader, const Node *map, void *object) {
     Scene *scene = object;
     check_step(reader, map, scene);
+    scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
     const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count)

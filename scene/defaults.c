@@ -40,6 +40,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->sim.surface_detail = 0.4e-3f;
     scene->sim.gas.enabled = true;
     scene->sim.contact.enabled = true;
+    scene->tearing = true;
     default_preview(&scene->preview);
     return true;
 }

@@ -177,6 +177,7 @@ typedef struct Scene {
     int frames;   ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;    ///< frames a second
     int steps;    ///< steps a frame
+    bool tearing; ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
     SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count;
     SceneSheet *sheets;

@@ -221,6 +221,11 @@ static const SchemaRow material_rows[] = {
           "times as thick as the real sheet"),
     PARAM("crease_share", crease_share, DIM_FRACTION, WITHIN(0, 1),
           "how much of the bend beyond that stays; char keeps less, ash nothing"),
+    PARAM("strength", strength, DIM_STIFFNESS, OVER_OR_INF(0),
+          "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The model's "
+          "own, far below real paper's ([equations.md](equations.md#tearing))"),
+    PARAM("char_strength", char_strength, DIM_STIFFNESS, OVER(0),
+          "the same of what is burnt to mass_min; geometric between the two in burn progress"),
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
      .sub = &schema_measured, .doc = "what sources say of its fire"},
 };
@@ -580,6 +585,8 @@ static const SchemaRow scene_rows[] = {
     {"creases", ROW_BOOL, DIM_NONE, AT(Scene, sim.solver.creases),
      .doc = "yes: sharp bends stay, by the material's `crease_radius` and `crease_share` (solver `strand`); no: sheets "
             "spring back, as in the paper"},
+    {"tearing", ROW_BOOL, DIM_NONE, AT(Scene, tearing),
+     .doc = "sheets tear where they are pulled at with more than the material's `strength`; needs the method `strand`"},
     {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},

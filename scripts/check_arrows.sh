@@ -4,7 +4,7 @@
 #   src/base      base
 #   src/shell     base, shell
 #   src/world     base, shell, world
-#   src/<stage>   base, shell, world and its own folder: heat, burn, ablate, dynamics and gas never meet
+#   src/<stage>   base, shell, world and its own folder: heat, burn, ablate, dynamics, tear and gas never meet
 #   src/contact   base, shell; dynamics includes it too
 #   src/step      everything in src
 #   formats       formats
@@ -33,7 +33,7 @@ check() {
         fi
     done < <(grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$folder" --include='*.[ch]' || true)
     # the library's own parts are never reached by angle brackets either
-    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|contact|heat|burn|ablate|dynamics|gas|step)/' \
+    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|contact|heat|burn|ablate|dynamics|tear|gas|step)/' \
         "$folder" --include='*.[ch]'; then bad=1; fi
 }
 
@@ -42,11 +42,11 @@ check src/base 'singe/.*|base/.*'
 check src/shell 'singe/.*|base/.*|shell/.*'
 check src/world 'singe/.*|base/.*|shell/.*|world/.*'
 check src/contact 'singe/.*|base/.*|shell/.*|contact/.*'
-for stage in heat burn ablate gas; do
+for stage in heat burn ablate tear gas; do
     check src/$stage "singe/.*|base/.*|shell/.*|world/.*|$stage/.*"
 done
 check src/dynamics 'singe/.*|(base|shell|world|contact|dynamics)/.*'
-check src/step 'singe/.*|(base|shell|world|contact|heat|burn|ablate|dynamics|gas|step)/.*'
+check src/step 'singe/.*|(base|shell|world|contact|heat|burn|ablate|dynamics|tear|gas|step)/.*'
 check formats 'singe/.*|formats/.*'
 check mesh 'singe/.*|formats/.*|mesh/.*'
 check preview 'singe/.*|formats/.*|preview/.*'

@@ -162,6 +162,7 @@ typedef struct SingeStats {
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
     double front_speed;
+    uint32_t tears;                ///< vertices that tears have split
 } SingeStats;
 
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);

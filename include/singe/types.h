@@ -138,6 +138,10 @@ typedef struct SingeMaterialDef {
     /// thicker than the real sheet, and creases at radii larger in proportion
     SingeParam crease_radius;
     SingeParam crease_share;               ///< of the curvature beyond that, what stays, 0 to 1
+
+    // tearing, where the solver has it on
+    SingeParam strength;      ///< N/m, the line force at which it tears before it burns, > 0, may be INFINITY
+    SingeParam char_strength; ///< N/m, the same of what is burnt to m_min; between the two geometric in burn progress
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);
@@ -341,6 +345,9 @@ typedef struct SingeSolverDef {
     float height_min;       ///< smallest height of a centre over its corners, in thicknesses; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
     bool creases;           ///< bends sharper than the material's crease_radius stay (strand)
+    /// sheets tear where the line force in them exceeds the material's `strength` (strand; the others never do); a part
+    /// of the vertices is kept in reserve, which views show after each sheet's own
+    bool tearing;
 } SingeSolverDef;
 
 /// Fills a Def with what suits SINGE_SOLVER_STRAND, and for another method with what the paper gives for it.

@@ -23,6 +23,10 @@ void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state, Pool *pool, float heat_ambient,
                         AblateState *ablate, EventList *events, SingeError *error);
 
+/// Labels the pieces anew after a tear; small loose ones go, and those that came free are reported.
+void ablate_torn(AblatePlan *plan, const Shell *shell, const State *state, float heat_ambient, AblateState *ablate,
+                 EventList *events);
+
 /// Draws the surface (marching triangles, surface.c). Grows `surface` through its allocator.
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
                            SingeError *error);

@@ -4,10 +4,16 @@
 #include <string.h>
 
 static void mark_rim(AblatePlan *plan, const Shell *shell) {
+    plan->split_count = shell->split_count;
+    memset(plan->rim, 0, plan->vertex_count);
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++)
             if (shell_neighbour(shell, c, i) == SHELL_NONE)
                 plan->rim[shell->cells[c][i]] = plan->rim[shell->cells[c][(i + 1) & 3]] = 1;
+}
+
+void ablate_plan_follow(AblatePlan *plan, const Shell *shell) {
+    if (plan->split_count != shell->split_count) mark_rim(plan, shell);
 }
 
 static SurfaceKeys number_keys(const Shell *shell) {

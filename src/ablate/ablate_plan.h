@@ -14,7 +14,8 @@ typedef struct SurfaceKeys {
 struct AblatePlan {
     uint32_t particle_count, vertex_count;
     float *level;            ///< [particles] m' of eq 7 at the present masses
-    uint8_t *rim;            ///< [vertices] 1 at the mesh's boundary
+    uint8_t *rim;            ///< [vertices] 1 at the mesh's boundary, and where it is torn
+    uint32_t split_count;    ///< of the shell that `rim` is for
     // scratch: pieces and the surface are never worked on at the same time
     void *scratch;
     size_t scratch_size;
@@ -26,6 +27,9 @@ struct AblatePlan {
     SurfaceKeys keys;
     uint32_t *output;        ///< [keys.count] index in the surface; in the same scratch
 };
+
+/// Makes the plan follow a shell that has torn.
+void ablate_plan_follow(AblatePlan *plan, const Shell *shell);
 
 /// Fills plan->level.
 void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state);

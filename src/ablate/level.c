@@ -19,6 +19,7 @@ static void fill(AblatePlan *plan, const Shell *shell, const State *state, bool 
 }
 
 void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state) {
+    ablate_plan_follow(plan, shell);
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         fill(plan, shell, state, sheet->material.ablate, sheet->vertex_first, sheet->vertex_count);

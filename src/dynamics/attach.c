@@ -142,15 +142,25 @@ void attach_update(Attachments *attachments, const Shell *shell, const State *st
         attach_let_go(attachments, shell, state->ablate.piece);
     attachments->topology = state->ablate.topology_version;
     if (!pins_changed) attach_shorten(attachments, shell, state->step);
-    bool changed = attachments->mass_burnt != state->burn.mass_burnt;
-    if (!pins_changed && !(changed && (state->step + 1) % ATTACH_PERIOD == 0)) return;
+    bool changed = attachments->mass_burnt != state->burn.mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
+    bool torn = attachments->split_count != shell->split_count && (state->step + 1) % ATTACH_TORN_PERIOD == 0;
+    if (!pins_changed && !changed && !torn) return;
     attach_measure(attachments, shell, state, pins_changed);
     attachments->mass_burnt = state->burn.mass_burnt;
+    attachments->split_count = shell->split_count;
+}
+
+void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare) {
+    for (int k = 0; k < ATTACH_SOURCES; k++) {
+        attachments->length[spare][k] = attachments->length[vertex][k];
+        attachments->goal[spare][k] = attachments->goal[vertex][k];
+    }
 }
 
 void attach_stream(Attachments *attachments, const Shell *shell, Stream *stream) {
     STREAM(stream, attachments->topology);
     STREAM(stream, attachments->mass_burnt);
+    STREAM(stream, attachments->split_count);
     stream_data(stream, attachments->source, shell->sheet_count * sizeof *attachments->source);
     stream_data(stream, attachments->length, shell->vertex_count * sizeof *attachments->length);
     stream_data(stream, attachments->goal, shell->vertex_count * sizeof *attachments->goal);
@@ -177,9 +187,12 @@ static void attach_spread(const Attachments *attachments, const float (*position
 }
 
 void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
-    for (uint32_t s = 0; s < shell->sheet_count; s++)
-        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s],
-                      &attachments->spread[s]);
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        AttachSpread *spread = &attachments->spread[s];
+        attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
+        // what is held farther apart than it reaches may tear: nothing but its springs pulls at it then
+        if (spread->tight && shell->spare_count > 0) spread->count = 0;
+    }
 }
 
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,

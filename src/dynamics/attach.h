@@ -6,8 +6,9 @@
 #include "base/pool.h"
 #include "dynamics/geodesic.h"
 
-/// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps.
-enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96 };
+/// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps;
+/// and while it tears.
+enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
@@ -30,6 +31,7 @@ typedef struct Attachments {
     // what they were measured for
     uint64_t topology;
     double mass_burnt;
+    uint32_t split_count;
 } Attachments;
 
 /// Puts back what is too far from the sources: of `count` vertices beside each other, as many whole blocks of lanes
@@ -43,6 +45,9 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 /// At the end of a step, and after pins have changed: lets go what has come free of a source, and finds sources and
 /// lengths anew where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
 void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
+
+/// A tear has given a vertex a second lip: it is as far from everything.
+void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare);
 
 /// Notes where the sources are.
 void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics);

@@ -49,7 +49,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
-        !attach_create(memory, shell, &plan->attachments) ||
+        !patches_create(memory, shell, &plan->patches) || !attach_create(memory, shell, &plan->attachments) ||
         (settings->contact.enabled &&
          touch_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->touch)) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
@@ -78,12 +78,20 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
     FREE(memory, plan->partial, plan_partials(shell));
     FREE(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
     strands_free(memory, &plan->strands);
+    patches_free(memory, shell, &plan->patches);
     attach_free(memory, shell, &plan->attachments);
     FREE(memory, plan, 1);
 }
 
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state) {
     if (plan->settings.solver.attachments) attach_update(&plan->attachments, shell, state, true);
+}
+
+const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour) { return plan->patches.pull[colour]; }
+
+void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare) {
+    (void)shell, (void)state;
+    attach_split(&plan->attachments, vertex, spare);
 }
 
 void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
@@ -185,6 +193,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         between.closes = true;
         between.collider_count = collider_count;
     }
+    if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
     if (plan->touch) touch_guard(plan->touch, shell, state, pool, h, dynamics);
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);

@@ -38,6 +38,12 @@ void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream
 /// To be called when other particles are pinned than before.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
 
+/// Force over length of a colour's springs, N/m, mean of the step done; NULL where sheets cannot tear.
+const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
+
+/// To be called when a tear has split a vertex.
+void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare);
+
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 

@@ -41,6 +41,22 @@ bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *so
                     StrandSolve *solve, Strands *strands);
 void strands_free(Memory *memory, Strands *strands);
 
+/// A spring that a tear has taken out of its strand, or made (patch.c).
+typedef struct Patch {
+    uint32_t spring, a, b;
+    float length, weight, compliance;
+    float pull; ///< sum of mu in this step
+} Patch;
+
+/// The patches of all colours. Empty where sheets cannot tear.
+typedef struct Patches {
+    uint32_t capacity; ///< of each list
+    uint32_t count[SINGE_COLOUR_COUNT];
+    Patch *items[SINGE_COLOUR_COUNT];
+    uint32_t split_count; ///< of the shell that they are for
+    float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, force over length, mean of the step done
+} Patches;
+
 typedef struct Paper Paper;
 
 /// Where two cells meet that a green spring joins, as they lie at rest (crease.c).
@@ -64,6 +80,7 @@ struct DynamicsPlan {
     const Kernels *kernels;
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
+    Patches patches;
     bool strands_written; ///< their weights and targets, in a step that was done
     Attachments attachments;
     TouchPlan *touch;        ///< NULL where sheets pass through each other
@@ -100,6 +117,19 @@ void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateSt
 /// One projection of one colour, family after family (strand_project.c).
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters);
+
+bool patches_create(Memory *memory, const Shell *shell, Patches *patches);
+void patches_free(Memory *memory, const Shell *shell, Patches *patches);
+/// Once a step: finds the springs that are in no strand any more where tears have changed the shell (true then), ...
+bool patch_follow(DynamicsPlan *plan, const Shell *shell);
+/// ... takes over their weights and lengths, and starts to sum.
+void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state);
+/// Whether a spring still runs where its strand does.
+bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring, size_t slot);
+/// Projects a colour's patches one by one.
+void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics);
+/// The forces of the step's substeps of h seconds, in plan->patches.pull.
+void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
 
 /// Bytes of height_wait.
 size_t height_wait_count(const Shell *shell);

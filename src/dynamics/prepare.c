@@ -75,11 +75,14 @@ static void prepare_strands(void *task, int begin, int end) {
     const float *soft = job->plan->soft;
     const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
     const float *crease = job->state->dynamics.crease, *bend = job->state->dynamics.bend;
+    const bool torn = job->shell->split_count > 0;
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];
-            set->weight[slot] = flags[k] & SINGE_ALIVE ? dynamics_weight(material, soft, a, b) : 0;
+            bool here = flags[k] & SINGE_ALIVE;
+            if (torn) here = here && patch_is_in_strand(job->plan, job->shell, job->colour, k, slot);
+            set->weight[slot] = here ? dynamics_weight(material, soft, a, b) : 0;
             set->length[slot] = target[k];
             if (!hinges || crease[k] == 0) continue;
             float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
@@ -94,8 +97,9 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state
     memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
+    bool torn = patch_follow(plan, shell);
     // nothing has burnt, so what was written for an earlier step is still right
-    bool same = plan->strands_written && state->burn.mass_burnt == 0;
+    bool same = plan->strands_written && state->burn.mass_burnt == 0 && !torn;
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         if (same && !(plan->creased && colour == SINGE_GREEN)) continue;
@@ -104,4 +108,5 @@ void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state
         int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
         pool_for(pool, (int)springs->strand_count, grain, prepare_strands, &job);
     }
+    patch_prepare(plan, shell, state);
 }

@@ -43,7 +43,8 @@ static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint3
     const uint32_t(*ends)[2] = job->set->ends;
     uint32_t run = 0; // springs in a row that are there
     for (uint32_t k = begin; k < end; k++) {
-        run = job->flags[k] & SINGE_ALIVE ? run + 1 : 0;
+        if (!(job->flags[k] & SINGE_ALIVE)) run = 0;
+        else run = run > 0 && ends[k][0] != ends[k - 1][1] ? 1 : run + 1; // a tear has parted them
         if (run >= 2 * reach) smooth_triple(job, ends[k + 1 - 2 * reach][0], ends[k + 1 - reach][0], ends[k][1]);
     }
 }

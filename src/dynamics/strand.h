@@ -14,6 +14,9 @@
 
 enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
 
+/// y of the constraint in strand_kernel.h.
+#define STRAND_YIELD 0.5f
+
 /// In StrandSet.beside: the particles of the row are anywhere.
 #define STRAND_APART UINT32_MAX
 
@@ -39,6 +42,7 @@ typedef struct StrandSet {
     float *length;         ///< [row_count STRAND_LANES] m, targets
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N
+    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: nobody asks
     float compliance_all;  ///< m/N, that of every spring; negative where they differ
     void *block;           ///< that the five lie in
 } StrandSet;
@@ -49,7 +53,7 @@ static inline uint32_t strand_lane(uint32_t width, uint32_t column) {
 static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lane % 4 * (width / 4) + lane / 4; }
 
 /// Lays out the strands of a colour. `nowhere` is the first particle of no mass. False when out of memory.
-bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, StrandSet *set);
+bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set);
 void strand_set_free(Memory *memory, StrandSet *set);
 
 /// Gives every strand its slot, and writes groups, families and rows (strand_lay.c). False when out of memory.

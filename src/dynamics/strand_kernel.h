@@ -28,8 +28,7 @@
 
 #include <math.h>
 
-/// y and g above.
-#define STRAND_YIELD 0.5f
+/// g above; y is in strand.h.
 #define STRAND_GIVES 0.01f
 
 /// A spring of every lane: d, W E, the diagonal.
@@ -47,6 +46,7 @@ typedef struct Group {
     uint32_t rows;
     size_t stride;              ///< floats from one quadruple to the next where particles are beside each other
     float *keep, *first_beside; ///< first_beside: `position` seen from this part's first lane
+    float *pull;                ///< sums of mu, or NULL
     Lanes softness, inverse_h2; ///< 1 + r/2, 1/h^2
     Lanes stiff;                ///< c/h^2 where c is the same everywhere
 } Group;
@@ -117,13 +117,20 @@ static inline void chains_eliminate(const Group *group) {
     }
 }
 
+/// Notes what a row asks of its springs.
+static inline void group_pull(const Group *group, uint32_t k, Lanes mu) {
+    float *pull = group->pull + (size_t)k * STRAND_LANES;
+    lanes_store(pull, lanes_load(pull) + mu);
+}
+
 /// Back: substitutes, and moves each node once both its springs are known.
-static inline void chains_substitute(const Group *group) {
+static inline void chains_substitute(const Group *group, const bool pulls) {
     Lanes mu = lanes_all(0), factor = mu;
     Quads b = group_quads(group, group->rows), after = quads_push(&b, &b, mu);
     for (uint32_t k = group->rows; k-- > 0;) {
         mu = lanes_load(keep_at(group, k, KEEP_RIGHT)) + factor * mu;
         factor = lanes_load(keep_at(group, k, KEEP_FACTOR));
+        if (pulls) group_pull(group, k, mu);
         Quads a = group_quads(group, k), push = quads_push(&a, &b, mu);
         quads_move(&b, &after, &push);
         group_put(group, k + 1, &b);
@@ -202,13 +209,15 @@ static inline Lanes ring_mu(const Group *group, uint32_t k, Lanes scale) {
     return lanes_load(keep_at(group, k, KEEP_RIGHT)) - scale * lanes_load(keep_at(group, k, KEEP_CYCLIC));
 }
 
-static inline void rings_move(const Group *group, Lanes scale) {
+static inline void rings_move(const Group *group, Lanes scale, const bool pulls) {
     uint32_t end = group->rows - 1;
     Quads start = group_quads(group, 0), a = start, last = group_quads(group, end);
     Quads before = quads_push(&last, &start, ring_mu(group, end, scale));
     for (uint32_t k = 0; k <= end; k++) {
         Quads b = k == end ? start : group_quads(group, k + 1);
-        Quads push = quads_push(&a, &b, ring_mu(group, k, scale));
+        Lanes mu = ring_mu(group, k, scale);
+        if (pulls) group_pull(group, k, mu);
+        Quads push = quads_push(&a, &b, mu);
         quads_move(&a, &push, &before);
         group_put(group, k, &a);
         a = b, before = push;
@@ -220,10 +229,11 @@ static inline void group_solve(const Group *part, bool ring) {
     if (ring) {
         Corner corner = rings_corner(group);
         rings_eliminate(group, &corner);
-        rings_move(group, rings_substitute(group, &corner));
+        rings_move(group, rings_substitute(group, &corner), group->pull != NULL);
     } else {
         chains_eliminate(group);
-        chains_substitute(group);
+        if (group->pull) chains_substitute(group, true); // a loop of its own: the other one pays nothing
+        else chains_substitute(group, false);
     }
 }
 
@@ -245,6 +255,7 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
                        .weight = set->weight + slot,
                        .compliance = set->compliance_all < 0 ? set->compliance + slot : NULL,
                        .rows = part->rows,
+                       .pull = set->pull ? set->pull + slot : NULL,
                        .stride = part->width,
                        .keep = keep,
                        .first_beside = job->position + 4 * strand_column(part->width, lane),

@@ -37,7 +37,8 @@ bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *so
     *strands = (Strands){.solve = solve, .room_count = room_count};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         StrandSet *set = &strands->sets[colour];
-        if (!strand_set_create(memory, &shell->springs[colour], shell->particle_count, set)) return false;
+        bool pulls = shell->spare_count > 0;
+        if (!strand_set_create(memory, &shell->springs[colour], shell->particle_count, pulls, set)) return false;
         strands_comply(shell, (SingeColour)colour, h, solver->regularisation[colour], set);
         if (strands->longest < set->longest) strands->longest = set->longest;
     }
@@ -86,6 +87,7 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
         project.first_group = set->family_first[f];
         pool_for(pool, (int)(set->family_first[f + 1] - project.first_group), 1, strands_range, &project);
     }
+    patch_project(plan, colour, 1 / (h * h), dynamics);
     counters->strands += set->strand_count;
     counters->springs += plan->spring_count[colour];
     counters->flops += (double)STRAND_FLOPS * plan->spring_count[colour];

@@ -47,7 +47,7 @@ static bool set_take_block(Memory *memory, StrandSet *set) {
     return true;
 }
 
-bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, StrandSet *set) {
+bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set) {
     *set = (StrandSet){.family_count = springs->family_count, .strand_count = springs->strand_count};
     set->group_capacity = set->strand_count; // a strand has a group of its own at most
     if (!NEW(memory, set->groups, set->group_capacity) ||
@@ -58,6 +58,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
     set->group_capacity = set->group_count;
     if (set->row_count > UINT32_MAX / STRAND_LANES) return false; // slots are numbered in 32 bits
     if (!set_take_block(memory, set)) return false;
+    if (pulls && !NEW(memory, set->pull, (size_t)set->row_count * STRAND_LANES)) return false;
     set_write_nodes(set, springs, nowhere);
     for (uint32_t g = 0; g < set->group_count; g++) {
         if (set->longest < set->groups[g].rows) set->longest = set->groups[g].rows;
@@ -71,5 +72,6 @@ void strand_set_free(Memory *memory, StrandSet *set) {
     FREE(memory, set->family_first, (size_t)set->family_count + 1);
     FREE(memory, set->strand_slot, set->strand_count);
     memory_free(memory, &set->block, set_words(set), sizeof(float));
+    FREE(memory, set->pull, (size_t)set->row_count * STRAND_LANES);
     *set = (StrandSet){0};
 }

@@ -31,6 +31,9 @@ void gas_plan_free(Memory *memory, GasPlan *plan);
 /// Passes the fields through a stream, as they do not follow from anything else.
 void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream);
 
+/// To be called when a tear has split a vertex.
+void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare);
+
 /// Called at the end of a step, with what it has made of the sheets; cannot fail. The gas has a step of its own, of
 /// about 1/96 s: it moves at every n-th call, and not while there is nothing hot.
 void gas_step(GasPlan *plan, const Shell *shell, const State *state, const ColliderList *colliders,

@@ -188,6 +188,16 @@ void gas_plan_free(Memory *memory, GasPlan *plan) {
     FREE(memory, plan, 1);
 }
 
+void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare) {
+    for (int t = 0; t < 2; t++) { // only one of them holds, and nobody asks the other before it is written
+        GasTurn *turn = &plan->turn[t];
+        turn->conductance[spare] = turn->conductance[vertex];
+        turn->temperature[spare] = turn->temperature[vertex];
+        turn->mass[spare] = turn->mass[vertex];
+        memcpy(turn->air[spare], turn->air[vertex], sizeof turn->air[spare]);
+    }
+}
+
 void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream) {
     uint8_t awake = gas->awake, warm = gas->warm;
     STREAM(stream, awake);

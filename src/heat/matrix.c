@@ -4,13 +4,18 @@
 
 #include "heat/plan.h"
 
-/// Counts the entries of every row in `length`, or fills them in where `fill` is set.
+/// Counts the entries of every row in `length`, or fills them in where `fill` is set: where a tear has given a vertex
+/// more springs than its row has room for, the last ones conduct nothing.
 static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length, bool fill) {
     HeatMatrix *matrix = &plan->matrix;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
             float conductance = plan->conductance[plan->spring_first[c] + k];
             if (conductance == 0) continue;
+            const uint32_t *ends = shell->springs[c].ends[k];
+            bool full = fill && (length[ends[0]] >= heat_row_width(matrix, ends[0]) ||
+                                 length[ends[1]] >= heat_row_width(matrix, ends[1]));
+            if (full) continue;
             for (int end = 0; end < 2; end++) {
                 uint32_t row = shell->springs[c].ends[k][end], entry = length[row]++;
                 if (!fill) continue;
@@ -18,6 +23,20 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
                 matrix->value[heat_entry(matrix, row, entry)] = conductance;
             }
         }
+}
+
+/// Room for what tears may bring: a second lip of an edge at every vertex, and all that a spare vertex may get.
+static void matrix_reserve(const Shell *shell, uint32_t *length) {
+    enum { SPARE = 16 };
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const Sheet *sheet = &shell->sheets[s];
+        uint32_t ordinary = sheet->vertex_count - sheet->spare_count;
+        for (uint32_t v = 0; v < sheet->vertex_count && sheet->spare_count; v++) {
+            uint32_t *room = &length[sheet->vertex_first + v];
+            if (v < ordinary) ++*room;
+            else *room = SPARE;
+        }
+    }
 }
 
 /// Lays out the slices, each as wide as its longest row.
@@ -72,6 +91,13 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
     return count;
 }
 
+/// All springs and particles of the shell as alive as at the start.
+static void matrix_revive(HeatPlan *plan, const Shell *shell) {
+    memset(plan->spring_alive, 1, plan->springs);
+    for (uint32_t i = 0; i < plan->particles; i++)
+        plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
+}
+
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell) {
     HeatMatrix *matrix = &plan->matrix;
     uint32_t n = plan->particles, *length = NULL;
@@ -80,6 +106,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
               NEW(memory, length, n);
     if (ok) {
         matrix_scatter(plan, shell, length, false);
+        matrix_reserve(shell, length);
         matrix_lay_out(matrix, n, length);
         ok = NEW(memory, matrix->column, matrix->entries) && NEW(memory, matrix->value, matrix->entries);
     }
@@ -90,12 +117,25 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
     }
     FREE(memory, length, n);
     if (!ok) return SINGE_ERROR_MEMORY;
-    memset(plan->spring_alive, 1, plan->springs);
-    for (uint32_t i = 0; i < n; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
-    matrix->twin_count = matrix_twins(plan, shell, NULL);
+    matrix_revive(plan, shell);
+    matrix->twin_count = matrix->twin_capacity = matrix_twins(plan, shell, NULL);
     if (!NEW(memory, matrix->twins, matrix->twin_count)) return SINGE_ERROR_MEMORY;
     matrix_twins(plan, shell, matrix->twins);
     return SINGE_OK;
+}
+
+void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length) {
+    HeatMatrix *matrix = &plan->matrix;
+    memset(length, 0, plan->particles * sizeof *length);
+    memset(matrix->value, 0, matrix->entries * sizeof *matrix->value);
+    matrix_fill_up(matrix, plan->particles);
+    matrix_scatter(plan, shell, length, true);
+    matrix_revive(plan, shell);
+    matrix->dt = 0; // all diagonals are computed again
+    if (matrix->twin_capacity == 0) return; // parting cells makes no twins
+    matrix->twin_count = matrix_twins(plan, shell, NULL);
+    if (matrix->twin_count > matrix->twin_capacity) matrix->twin_count = 0;
+    else matrix_twins(plan, shell, matrix->twins);
 }
 
 void heat_matrix_free(Memory *memory, HeatPlan *plan) {
@@ -104,7 +144,7 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     FREE(memory, matrix->inverse, plan->particles);
     FREE(memory, matrix->column, matrix->entries);
     FREE(memory, matrix->value, matrix->entries);
-    FREE(memory, matrix->twins, matrix->twin_count);
+    FREE(memory, matrix->twins, matrix->twin_capacity);
 }
 
 /// The spring among those that are not alone between their ends, or NULL.

@@ -78,12 +78,23 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     if (!result) {
         heat_operator(plan, shell);
         result = heat_matrix_create(memory, plan, shell);
-        FREE(memory, plan->conductance, plan->springs);
+        if (shell->spare_count == 0) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);
     }
     if (result) heat_plan_free(memory, plan);
     else *out = plan;
     return result;
+}
+
+/// Scratch of the step, which has not begun, is room for what the rebuilding counts.
+void heat_plan_follow(HeatPlan *plan, const Shell *shell) {
+    if (plan->split_count == shell->split_count) return;
+    plan->split_count = shell->split_count;
+    for (uint32_t k = 0; k < plan->springs; k++) plan->conductance[k] = 0;
+    for (uint32_t i = 0; i < plan->particles; i++) plan->measure[i] = 0;
+    heat_operator(plan, shell);
+    heat_matrix_rebuild(plan, shell, plan->scratch);
+    heat_rest_rebuild(plan, plan->scratch);
 }
 
 void heat_plan_free(Memory *memory, HeatPlan *plan) {

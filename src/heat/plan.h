@@ -28,7 +28,7 @@ typedef struct HeatMatrix {
     float dt;         ///< s, of `inverse`
     uint32_t slices, entries;
     HeatTwin *twins;  ///< hardly ever any
-    uint32_t twin_count;
+    uint32_t twin_count, twin_capacity;
 } HeatMatrix;
 
 /// Entries of every row in the slice of row i, and where entry k of row i lies.
@@ -44,7 +44,7 @@ typedef struct HeatRest {
     uint32_t groups;
     uint32_t *first;   ///< [groups + 1] the groups that conduct with group g are near[first[g]] up to
     uint32_t *near;    ///< near[first[g + 1]], less itself; all where there would be too many to list
-    uint32_t near_count;
+    uint32_t near_count; ///< room for
     uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
     uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
 } HeatRest;
@@ -58,7 +58,9 @@ struct HeatPlan {
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
-    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built, but
+                           ///< where sheets can tear
+    uint32_t split_count;  ///< of the shell that the matrix is for
     uint8_t *spring_alive; ///< [springs] as the matrix has it
     uint8_t *alive;        ///< [particles] as the matrix has it
     HeatMatrix matrix;
@@ -93,17 +95,24 @@ typedef struct HeatPass {
     int turn;          ///< which of rest.awake holds
 } HeatPass;
 
+/// Makes operator and matrix follow a shell that has torn since the last call (plan.c).
+void heat_plan_follow(HeatPlan *plan, const Shell *shell);
+
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
+/// Writes it anew for a shell that has torn; `length` and `fill`, [particles], are scratch.
+void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
 /// Makes the matrix follow what ablation removed since the last call, and the time step.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
+/// The same anew, in the room that there is; `seen`, [groups], is scratch.
+void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
 void heat_rest_free(Memory *memory, HeatPlan *plan);
 /// Whether the group or one near it is in `set`.
 bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);

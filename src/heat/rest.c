@@ -23,6 +23,18 @@ static uint32_t list_near(const HeatPlan *plan, uint32_t group, uint32_t *seen, 
     return count;
 }
 
+void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen) {
+    HeatRest *rest = &plan->rest;
+    for (uint32_t g = 0; g < rest->groups; g++) seen[g] = 0;
+    for (uint32_t g = 0; g < rest->groups; g++) {
+        uint32_t count = list_near(plan, g, seen, NULL);
+        rest->first[g + 1] = rest->first[g] + (count == UINT32_MAX ? 0 : count);
+    }
+    for (uint32_t g = 0; g < rest->groups; g++) seen[g] = 0;
+    for (uint32_t g = 0; g < rest->groups; g++)
+        if (rest->first[g + 1] > rest->first[g]) list_near(plan, g, seen, rest->near + rest->first[g]);
+}
+
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan) {
     HeatRest *rest = &plan->rest;
     uint32_t groups = rest->groups = plan->particles / HEAT_GROUP + (plan->particles % HEAT_GROUP > 0), *seen = NULL;
@@ -32,11 +44,9 @@ SingeResult heat_rest_create(Memory *memory, HeatPlan *plan) {
         uint32_t count = list_near(plan, g, seen, NULL);
         rest->first[g + 1] = rest->first[g] + (count == UINT32_MAX ? 0 : count);
     }
-    if (ok) rest->near_count = rest->first[groups];
+    if (ok) rest->near_count = plan->conductance ? groups * NEAR_MOST : rest->first[groups];
     ok = ok && NEW(memory, rest->near, rest->near_count);
-    for (uint32_t g = 0; ok && g < groups; g++) seen[g] = 0;
-    for (uint32_t g = 0; ok && g < groups; g++)
-        if (rest->first[g + 1] > rest->first[g]) list_near(plan, g, seen, rest->near + rest->first[g]);
+    if (ok) heat_rest_rebuild(plan, seen);
     FREE(memory, seen, groups);
     return ok ? SINGE_OK : SINGE_ERROR_MEMORY;
 }

@@ -13,6 +13,7 @@
 #include "shell/half_edge.h"
 #include "shell/matter.h"
 #include "shell/measure.h"
+#include "shell/split.h"
 #include "shell/strand.h"
 
 #include <string.h>
@@ -22,7 +23,7 @@ enum { SHEET_LIMIT = UINT16_MAX };
 static SingeResult shell_count(const SheetSource *sources, uint32_t source_count, Shell *shell, SingeError *error) {
     uint64_t vertices = 0, cells = 0, numbers = 0;
     for (uint32_t i = 0; i < source_count; i++) {
-        vertices += sources[i].sheet.vertex_count;
+        vertices += sources[i].sheet.vertex_count + sources[i].sheet.spare_count;
         cells += sources[i].sheet.cell_count;
         numbers += sources[i].sheet.source_count;
     }
@@ -47,11 +48,12 @@ static bool shell_alloc(Memory *memory, bool seams, Shell *shell) {
     if (seams && (!NEW(memory, shell->corner_uv, shell->cell_count) ||
                   !NEW(memory, shell->corner_source, shell->cell_count)))
         return false;
-    return NEW(memory, shell->source_vertex, shell->vertex_count) && NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
+    return NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
            NEW(memory, shell->rest_position, shell->particle_count) &&
            NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
            NEW(memory, shell->matter.sheet, shell->particle_count) &&
            NEW(memory, shell->cell_order, shell->cell_count) &&
+           NEW(memory, shell->source_vertex, shell->vertex_count) &&
            NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
            NEW(memory, shell->fan, (size_t)4 * shell->cell_count);
 }
@@ -69,22 +71,24 @@ void shell_free(Memory *memory, Shell *shell) {
     FREE(memory, shell->sheets, shell->sheet_count);
     FREE(memory, shell->matter.sheet, shell->particle_count);
     FREE(memory, shell->cell_order, shell->cell_count);
+    FREE(memory, shell->edge_origin, shell->edge_spare_count);
     FREE(memory, shell->fan_first, (size_t)shell->vertex_count + 1);
     FREE(memory, shell->fan, (size_t)4 * shell->cell_count);
     FREE(memory, shell->cell_family_first, (size_t)shell->cell_family_count + 1);
     *shell = (Shell){0};
 }
 
-/// Copies one sheet to its ranges, which begin at sheet->vertex_first and cell_first.
+/// Copies one sheet to its ranges, which begin at sheet->vertex_first, cell_first and source_first. Spares wait at its
+/// first vertex.
 static void place_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
     const Sheet *sheet = &shell->sheets[index];
-    uint32_t centre = shell_centre(shell, sheet->cell_first);
-    for (uint32_t v = 0; v < sheet->vertex_count; v++) {
-        uint32_t p = sheet->vertex_first + v;
+    uint32_t centre = shell_centre(shell, sheet->cell_first), count = source->sheet.vertex_count;
+    for (uint32_t i = 0; i < sheet->vertex_count; i++) {
+        uint32_t p = sheet->vertex_first + i, v = i < count ? i : 0;
         for (int k = 0; k < 3; k++) shell->rest_position[p][k] = source->position[v][k];
         for (int k = 0; k < 2; k++) shell->uv[p][k] = source->uv[v][k];
         shell->matter.sheet[p] = (uint16_t)index;
-        int32_t from = source->source_vertex ? source->source_vertex[v] : (int32_t)v;
+        int32_t from = i >= count ? -1 : source->source_vertex ? source->source_vertex[v] : (int32_t)v;
         shell->source_vertex[p] = from < 0 ? -1 : (int32_t)sheet->source_first + from;
     }
     for (uint32_t c = 0; c < sheet->cell_count; c++) {
@@ -111,9 +115,11 @@ static void place_sheets(Shell *shell, const SheetSource *sources) {
         shell->sheets[i].vertex_first = vertex;
         shell->sheets[i].cell_first = cell;
         shell->sheets[i].source_first = source;
+        shell->sheets[i].vertex_count += shell->sheets[i].spare_count;
+        shell->spare_count += shell->sheets[i].spare_count;
         source += sources[i].sheet.source_count;
         place_sheet(shell, i, &sources[i]);
-        vertex += sources[i].sheet.vertex_count;
+        vertex += shell->sheets[i].vertex_count;
         cell += sources[i].sheet.cell_count;
     }
 }
@@ -291,6 +297,8 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
         matter_weigh(shell, sources);
         result = measure_springs(shell, error);
     }
+    if (result == SINGE_OK && !split_reserve(memory, shell))
+        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of tears");
     if (result == SINGE_OK && !fibre_measure(memory, shell))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);

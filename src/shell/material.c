@@ -73,6 +73,8 @@ static const ParamRule param_rules[] = {
     {FIELD(damping), PARAM_DAMPING, AT_BOTH, NOT_NEGATIVE},
     {FIELD(crease_radius), PARAM_CREASE_RADIUS, AT_BOTH, NOT_NEGATIVE},
     {FIELD(crease_share), PARAM_CREASE_SHARE, AT_BOTH, UP_TO_ONE},
+    {FIELD(strength), PARAM_STRENGTH, AT_BOTH, POSITIVE_OR_INFINITE},
+    {FIELD(char_strength), PARAM_CHAR_STRENGTH, AT_BOTH, POSITIVE},
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 

@@ -47,6 +47,8 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_DAMPING] = &matter->damping,
         [PARAM_CREASE_RADIUS] = &matter->crease_radius,
         [PARAM_CREASE_SHARE] = &matter->crease_share,
+        [PARAM_STRENGTH] = &matter->strength,
+        [PARAM_CHAR_STRENGTH] = &matter->char_strength,
     };
     return fields[param];
 }
@@ -90,10 +92,11 @@ static bool matter_is_uniform(const SheetSource *sources, uint32_t count, int pa
 /// Copies one sheet's values of a parameter to its particles.
 static void matter_place(const Shell *shell, const Sheet *sheet, const SheetSource *source, int param, Field *field) {
     uint32_t centre = shell_centre(shell, sheet->cell_first);
+    uint32_t vertices = source->sheet.vertex_count;
     for (uint32_t v = 0; v < sheet->vertex_count; v++)
-        field->values[sheet->vertex_first + v] = matter_value(source, param, v);
+        field->values[sheet->vertex_first + v] = matter_value(source, param, v < vertices ? v : 0);
     for (uint32_t c = 0; c < sheet->cell_count; c++)
-        field->values[centre + c] = matter_value(source, param, sheet->vertex_count + c);
+        field->values[centre + c] = matter_value(source, param, vertices + c);
 }
 
 bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
@@ -136,12 +139,12 @@ static double matter_per_area(const SheetSource *source, uint32_t i) {
 
 static void matter_weigh_sheet(Shell *shell, const Sheet *sheet, const SheetSource *source) {
     Matter *matter = &shell->matter;
-    uint32_t total = sheet->vertex_count + sheet->cell_count;
+    uint32_t vertices = source->sheet.vertex_count, total = vertices + sheet->cell_count;
     double sum = 0;
     for (uint32_t i = 0; i < total; i++) sum += matter_per_area(source, i);
     for (uint32_t i = 0; i < total; i++) {
-        bool corner = i < sheet->vertex_count;
-        uint32_t cell = sheet->cell_first + i - sheet->vertex_count;
+        bool corner = i < vertices;
+        uint32_t cell = sheet->cell_first + i - vertices;
         uint32_t p = corner ? sheet->vertex_first + i : shell_centre(shell, cell);
         if (matter->capacity_ratio.mask)
             matter->capacity_ratio.values[p] = (float)(matter_per_area(source, i) / (sum / total));
@@ -152,4 +155,19 @@ static void matter_weigh_sheet(Shell *shell, const Sheet *sheet, const SheetSour
 
 void matter_weigh(Shell *shell, const SheetSource *sources) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) matter_weigh_sheet(shell, &shell->sheets[s], &sources[s]);
+}
+
+void matter_split(Shell *shell, uint32_t from, uint32_t to, float area) {
+    Matter *matter = &shell->matter;
+    for (int p = 0; p < PARAM_COUNT; p++) {
+        Field *field = matter_field(matter, p);
+        if (field && field->mask) field->values[to] = field->values[from];
+    }
+    if (matter->capacity_ratio.mask) matter->capacity_ratio.values[to] = matter->capacity_ratio.values[from];
+    float share = area / matter->area[from];
+    float *const shared[] = {matter->area, matter->mass, matter->capacity};
+    for (int k = 0; k < 3; k++) {
+        shared[k][to] = shared[k][from] * share;
+        shared[k][from] -= shared[k][to];
+    }
 }

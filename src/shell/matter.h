@@ -16,4 +16,7 @@ float matter_value(const SheetSource *source, int param, uint32_t i);
 /// Masses, capacities and their ratio, from areas, grammage and specific heat.
 void matter_weigh(Shell *shell, const SheetSource *sources);
 
+/// Gives a vertex without cells the material of another and `area` of it, with its share of mass and capacity.
+void matter_split(Shell *shell, uint32_t from, uint32_t to, float area);
+
 #endif

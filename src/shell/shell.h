@@ -65,6 +65,7 @@ typedef struct Matter {
     Field weight[SINGE_COLOUR_COUNT];
     Field compliance[SINGE_COLOUR_COUNT]; ///< m/N
     Field char_weight;
+    Field strength, char_strength; ///< N/m, line force at which it tears, fresh and at m_min
     Field drag;
     Field damping;             ///< 1/s
     Field crease_radius;       ///< m
@@ -77,6 +78,8 @@ typedef struct Matter {
 typedef struct Sheet {
     char name[64];
     uint32_t vertex_first, vertex_count, cell_first, cell_count;
+    uint32_t spare_count;      ///< at the end of its vertices, without cells till a tear needs them (shell/split.h)
+    uint32_t spare_used;
     float cell_size;           ///< m, median edge
     SingeMaterialDef material; ///< for what is one for the sheet; its pictures and attributes are gone
     float velocity[3];
@@ -102,6 +105,12 @@ typedef struct Shell {
     uint32_t *fan_first;           ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
     uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
     bool creases;                  ///< bends may stay: a State has room for them
+    // what tears have changed; all 0 where sheets cannot tear
+    uint32_t spare_count;          ///< of all sheets
+    uint32_t split_count;          ///< splits done: whoever keeps something of the topology compares it
+    uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second lip
+    uint32_t *edge_origin;         ///< [edge_spare_count] the blue spring that it was torn from
+    uint32_t moved[SINGE_COLOUR_COUNT]; ///< springs that a split has given another end, or made, at most
 } Shell;
 
 /// The parameters that vary over a sheet, in the order of SheetSource.value.
@@ -112,6 +121,7 @@ typedef enum ShellParam {
     PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_CREASE_RADIUS, PARAM_CREASE_SHARE,
+    PARAM_STRENGTH, PARAM_CHAR_STRENGTH,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
     PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT
@@ -207,6 +217,20 @@ typedef struct GasState {
     int turn;                 ///< which of the two holds
 } GasState;
 
+/// A vertex that a tear has split: cells of its fan went to the next spare vertex of its sheet.
+typedef struct ShellSplit {
+    uint32_t vertex;
+    uint32_t cells; ///< bit k: the cell fan[fan_first[vertex] + k]
+    uint32_t spare; ///< the vertex they went to
+} ShellSplit;
+
+/// Empty where sheets cannot tear.
+typedef struct TearState {
+    float (*line_force)[6]; ///< [cells] N/m in rest coordinates, filtered: xx, yy, zz, yz, zx, xy
+    ShellSplit *splits;     ///< [spare_count] in the order in which they happened; they make the Shell what it is
+    uint32_t split_count;
+} TearState;
+
 typedef struct State {
     double time;   ///< s
     uint64_t step;
@@ -215,6 +239,7 @@ typedef struct State {
     AblateState ablate;
     DynamicsState dynamics;
     GasState gas;
+    TearState tear;
     void *arena;   ///< all arrays above but the gas's lie in one block
     size_t arena_size;
     size_t basic_size; ///< of the arena's start: all but the springs' lengths, which follow from the rest
@@ -246,6 +271,12 @@ void state_rebase(const Shell *shell, State *state, void *arena);
 
 /// Makes `to` equal to `from`; both were created for this shell. Keeps the arena of `to`.
 void state_copy(const Shell *shell, State *to, const State *from);
+
+/// True for a vertex that waits for a tear.
+static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
+    const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
+    return vertex - sheet->vertex_first >= sheet->vertex_count - sheet->spare_count + sheet->spare_used;
+}
 
 /// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }

@@ -48,6 +48,8 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     }
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->ablate.spring_flags[colour], shell->springs[colour].count);
+    TAKE(state->tear.line_force, shell->spare_count ? shell->cell_count : 0);
+    TAKE(state->tear.splits, shell->spare_count);
     *basic = used;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         TAKE(state->burn.spring_length[colour], shell->springs[colour].count);
@@ -72,6 +74,7 @@ static void start_springs(const Shell *shell, State *state) {
         const SpringSet *set = &shell->springs[colour];
         for (uint32_t s = 0; s < set->count; s++) {
             state->burn.spring_length[colour][s] = set->rest[s];
+            if (set->rest[s] == 0) continue; // a spare of tears
             state->ablate.spring_flags[colour][s] = SINGE_ALIVE;
             for (int k = 0; k < 2; k++) state->ablate.degree[set->ends[s][k]]++;
         }

@@ -65,6 +65,15 @@ void sim_log_commit(const SingeSim *sim) {
             1e-6 * (double)census.memory);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
     sim_log_solver(sim);
+    if (sim->def.solver.tearing && !sim->tear)
+        sim_log(sim, SINGE_LOG_WARNING, "tearing needs the solver's method `strand`: these sheets stay whole");
+}
+
+void sim_log_short_of_spares(SingeSim *sim) {
+    if (sim->tear_warned) return;
+    sim->tear_warned = true;
+    sim_log(sim, SINGE_LOG_WARNING,
+            "tearing: a sheet has used up the vertices it has in reserve and tears no further (said once)");
 }
 
 void sim_log_unconverged(SingeSim *sim) {

@@ -149,6 +149,7 @@ static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float 
 static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
                       uint32_t particle) {
     if (listed[particle]) return true;
+    if (shell_is_corner(shell, particle) && shell_is_spare(shell, particle)) return false;
     // centres lie a thickness off the mesh, where points are given
     float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : field_at(shell->matter.thickness, particle));
     for (uint32_t k = 0; k < def->point_count; k++)
@@ -176,10 +177,10 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3),
                              "point %u is not finite or beyond 1e9 m", (uint32_t)(k / 3));
     for (uint32_t k = 0; k < def->vertex_count; k++)
-        if (def->vertices[k] >= sheet->vertex_count)
+        if (def->vertices[k] >= sheet->vertex_count - sheet->spare_count)
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", k,
                              "vertex %u is out of range: sheet \"%s\" has %u", def->vertices[k], sheet->name,
-                             sheet->vertex_count);
+                             sheet->vertex_count - sheet->spare_count);
     return SINGE_OK;
 }
 

@@ -123,7 +123,8 @@ static void sim_unbuild(SingeSim *sim) {
     ablate_plan_free(memory, sim->ablate);
     dynamics_plan_free(memory, &sim->shell, sim->dynamics);
     gas_plan_free(memory, sim->gas);
-    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL, sim->gas = NULL;
+    tear_plan_free(memory, sim->tear);
+    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL, sim->gas = NULL, sim->tear = NULL;
     FREE(memory, sim->thickening, sim->shell.sheet_count);
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
@@ -188,10 +189,18 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     return SINGE_OK;
 }
 
+/// Vertices that a sheet has in reserve for tears: a quarter, and some for small ones.
+static uint32_t sim_spares(const SingeSim *sim, const Sheet *sheet) {
+    const SingeSolverDef *solver = &sim->def.solver;
+    return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 4 + 16 : 0;
+}
+
 SingeResult sim_build(SingeSim *sim) {
     const SingeSimDef *def = &sim->def;
     Memory *memory = &sim->memory;
     Shell *shell = &sim->shell;
+    for (uint32_t s = 0; s < sim->sheet_count; s++)
+        sim->sheets[s].sheet.spare_count = sim_spares(sim, &sim->sheets[s].sheet);
     TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
     shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
 
@@ -223,6 +232,7 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
     ok = ok && (!def->gas.enabled || gas_plan_create(memory, shell, &gas, &sim->gas, &sim->state.gas) == SINGE_OK);
+    ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, &sim->tear) == SINGE_OK);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);

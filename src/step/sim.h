@@ -8,6 +8,7 @@
 #include "dynamics/dynamics.h"
 #include "gas/gas.h"
 #include "heat/heat.h"
+#include "tear/tear.h"
 
 struct SingeSim {
     Memory memory;
@@ -36,12 +37,14 @@ struct SingeSim {
     SingeTimers timers;
     bool tangle_warned, crossing_warned, crowd_warned; ///< of contact, once each
     bool heat_warned;  ///< that the diffusion ran out of iterations
+    bool tear_warned;  ///< that a sheet ran out of spare vertices
 
     // plans and scratch of the stages
     HeatPlan *heat;
     AblatePlan *ablate;
     DynamicsPlan *dynamics;
     GasPlan *gas; ///< NULL without gas
+    TearPlan *tear; ///< NULL where sheets cannot tear
     double *partial;      ///< [pool_blocks(particles)]
     float *sample;        ///< [blue springs], at least as many as cells: of a statistic
 };
@@ -65,6 +68,8 @@ void sim_log_commit(const SingeSim *sim);
 void sim_log_unconverged(SingeSim *sim);
 /// Tells it that a collider's mesh was inside out.
 void sim_log_turned(const SingeSim *sim, uint32_t collider);
+/// Tells it once that a sheet has no vertices left to tear with.
+void sim_log_short_of_spares(SingeSim *sim);
 
 /// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches);

@@ -4,6 +4,7 @@
 // Layout: SnapshotHeader, then the body that snapshot_body walks. Numbers are in the machine's order. Defs
 // go field by field (snapshot_def.c): their padding and pointers differ from run to run. The checksum finds
 // damage; what is read is checked further only as far as it is used as an index.
+#include "shell/split.h"
 #include "step/snapshot_def.h"
 
 #include <string.h>
@@ -204,11 +205,15 @@ static void snapshot_state(Stream *stream, SingeSim *sim) {
     STREAM(stream, state->ablate.topology_version);
     STREAM(stream, state->ablate.heat_removed);
     STREAM(stream, state->ablate.mass_removed);
+    STREAM(stream, state->tear.split_count);
     STREAM(stream, sim->heat_start);
     uint64_t size = state->arena_size;
     STREAM(stream, size);
     stream->failed |= size != state->arena_size;
     stream_data(stream, state->arena, state->arena_size);
+    if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again as it did
+        stream->failed = state->tear.split_count > sim->shell.spare_count ||
+                         !split_replay(&sim->shell, state->tear.splits, state->tear.split_count);
     dynamics_plan_stream(sim->dynamics, &sim->shell, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     for (uint32_t i = 0; stream->mode == STREAM_READ && i < sim->shell.particle_count; i++)

@@ -34,6 +34,7 @@ static void def_solver(Stream *stream, SingeSolverDef *solver) {
     STREAM(stream, solver->height_min);
     STREAM(stream, solver->height_gain);
     def_bool(stream, &solver->creases);
+    def_bool(stream, &solver->tearing);
 }
 
 static void def_gas(Stream *stream, SingeGasDef *gas) {

@@ -152,6 +152,7 @@ SingeStats singe_sim_stats(const SingeSim *sim) {
     stats_strain(sim, &stats);
     stats.inverted_cells = stats_inverted(sim);
     stats.tangled_cells = dynamics_plan_touches(sim->dynamics).tangled;
+    stats.tears = sim->state.tear.split_count;
     stats.front_speed = stats_front_speed(sim);
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
     return stats;

@@ -24,6 +24,30 @@ static void step_note_touches(SingeSim *sim) {
     sim_log_touches(sim, &touches);
 }
 
+/// What is kept for a vertex beside the State, for its new half.
+static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
+    dynamics_plan_torn(sim->dynamics, &sim->shell, &sim->state, vertex, spare);
+    if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
+    for (uint32_t i = 0; i < sim->sources.count; i++)
+        if (sim->sources.items[i].picture)
+            sim->sources.items[i].picture[spare] = sim->sources.items[i].picture[vertex];
+}
+
+/// Tears, and what follows from them.
+static void step_tear(SingeSim *sim, float h) {
+    State *state = &sim->state;
+    bool short_of_spares = false;
+    const float *pull[SINGE_COLOUR_COUNT];
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        pull[colour] = dynamics_pull(sim->dynamics, (SingeColour)colour);
+    uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, h, &short_of_spares);
+    if (short_of_spares) sim_log_short_of_spares(sim);
+    if (tears == 0) return;
+    for (uint32_t k = state->tear.split_count - tears; k < state->tear.split_count; k++)
+        step_share(sim, state->tear.splits[k].vertex, state->tear.splits[k].spare);
+    ablate_torn(sim->ablate, &sim->shell, state, sim->def.ambient_temperature, &state->ablate, &sim->events);
+}
+
 static SingeResult step_stages(SingeSim *sim) {
     const Shell *shell = &sim->shell;
     const SingeSimDef *def = &sim->def;
@@ -57,7 +81,11 @@ static SingeResult step_stages(SingeSim *sim) {
                       &state->dynamics, &counters, error));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
-    // 5. the gas above what burns; what it does to the sheets is felt from the next step on
+    // 5. what was pulled at too hard has torn; as it cannot fail, no step has to be undone that tore
+    if (sim->tear) step_tear(sim, h);
+    step_lap(sim, SINGE_STAGE_ABLATE, &start);
+
+    // 6. the gas above what burns; what it does to the sheets is felt from the next step on
     if (sim->gas) gas_step(sim->gas, shell, state, &sim->colliders, &def->wind, sim->pool, &state->gas);
     step_lap(sim, SINGE_STAGE_GAS, &start);
 

@@ -96,6 +96,8 @@ static const struct {
     {AT(damping), PARAM_DAMPING, BOTH, FROM_0},
     {AT(crease_radius), PARAM_CREASE_RADIUS, BOTH, FROM_0},
     {AT(crease_share), PARAM_CREASE_SHARE, BOTH, TO_1},
+    {AT(strength), PARAM_STRENGTH, BOTH, ABOVE_0_OR_INFINITE},
+    {AT(char_strength), PARAM_CHAR_STRENGTH, BOTH, ABOVE_0},
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 
@@ -143,15 +145,17 @@ static void test_numbers(void **state) {
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
     SingeParam *more[] = {&m->layer_exchange, &m->convection, &m->emissivity, &m->loss_mass_floor, &m->rate_ceiling,
-                          &m->char_weight, &m->drag, &m->damping};
-    for (int k = 0; k < 8; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
+                          &m->char_weight, &m->drag, &m->damping, &m->strength, &m->char_strength};
+    enum { MORE = sizeof more / sizeof *more };
+    for (int k = 0; k < MORE; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
     for (int k = 0; k < 4; k++) m->compliance[k] = singe_param(0.3f + 0.1f * (float)k);
     SheetSource source = evaluate(&memory, &square.def);
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     const Matter *matter = &shell.matter;
     const Field others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
-                             matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping};
+                             matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping, matter->strength,
+                             matter->char_strength};
     const Field fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
                              matter->gas_heat, matter->heating, matter->mass_rate, matter->ash_exponent,
                              matter->mass_min, matter->mass_loss, matter->ash_density};
@@ -164,7 +168,7 @@ static void test_numbers(void **state) {
         assert_true(field_at(matter->gas_heat, p) == heat * (1 - share));
         assert_true(field_at(matter->shrink, p) == (p < 9 ? 0.75f : 1.25f));
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->weight[k], p) == 0.5f + 0.1f * (float)k);
-        for (int k = 0; k < 8; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
+        for (int k = 0; k < MORE; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
     for (int k = 0; k < FIRST; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));

@@ -1,0 +1,152 @@
+// Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs: where
+// a split has given one of them another end, it is gone from its lane (weight 0) and goes on here, and so do the springs
+// that a tear makes for its second lip. They are projected one by one, in order, after the strands of their colour: the
+// constraint is that of strand_kernel.h on a chain of one spring,
+//
+//   mu = W E/((w_a + w_b) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D),   x_a += w_a d mu,  x_b -= w_b d mu
+//
+// The force of a spring over its length, from which line forces come: the sums of mu over the projections of a step,
+//
+//   pull = sum mu/(substeps h^2)
+#include "dynamics/plan.h"
+
+#include "base/quad.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Lists springs that are in no strand, by the lanes themselves: a spring whose ends are not the nodes of its slot.
+bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
+                        size_t slot) {
+    const uint32_t *node = plan->strands.sets[colour].node + slot, *ends = shell->springs[colour].ends[spring];
+    return node[0] == 4 * ends[0] && node[STRAND_LANES] == 4 * ends[1];
+}
+
+bool patches_create(Memory *memory, const Shell *shell, Patches *patches) {
+    patches->capacity = 8 * shell->spare_count; // as split.h allows
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        uint32_t springs = shell->spare_count > 0 ? shell->springs[colour].count : 0;
+        if (!NEW(memory, patches->items[colour], patches->capacity) || !NEW(memory, patches->pull[colour], springs))
+            return false;
+    }
+    return true;
+}
+
+void patches_free(Memory *memory, const Shell *shell, Patches *patches) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        uint32_t springs = shell->spare_count > 0 ? shell->springs[colour].count : 0;
+        FREE(memory, patches->items[colour], patches->capacity);
+        FREE(memory, patches->pull[colour], springs);
+    }
+}
+
+/// The slot of every strand's first spring is known; which strand a spring is in is found by halving.
+static float strand_compliance(const StrandSet *set, const SpringSet *springs, uint32_t spring) {
+    uint32_t low = 0, high = springs->strand_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (springs->strand_first[middle] <= spring) low = middle;
+        else high = middle;
+    }
+    return set->compliance[set->strand_slot[low] + (size_t)(spring - springs->strand_first[low]) * STRAND_LANES];
+}
+
+static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, float compliance) {
+    if (patches->count[colour] == patches->capacity) return; // split_is_possible sees to it
+    patches->items[colour][patches->count[colour]++] = (Patch){.spring = spring, .compliance = compliance};
+}
+
+bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
+    Patches *patches = &plan->patches;
+    if (patches->split_count == shell->split_count) return false;
+    patches->split_count = shell->split_count;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        const StrandSet *set = &plan->strands.sets[colour];
+        patches->count[colour] = 0;
+        for (uint32_t s = 0; s < springs->strand_count; s++) {
+            size_t slot = set->strand_slot[s];
+            for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES)
+                if (!patch_is_in_strand(plan, shell, (SingeColour)colour, k, slot))
+                    patch_push(patches, (SingeColour)colour, k, set->compliance[slot]);
+        }
+    }
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    uint32_t first = blue->count - shell->edge_spare_count;
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        patch_push(patches, SINGE_BLUE, first + k,
+                   strand_compliance(&plan->strands.sets[SINGE_BLUE], blue, shell->edge_origin[k]));
+    return true;
+}
+
+void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT && shell->spare_count > 0; colour++) {
+        StrandSet *set = &plan->strands.sets[colour];
+        if (set->pull) memset(set->pull, 0, (size_t)set->row_count * STRAND_LANES * sizeof *set->pull);
+        for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
+            Patch *patch = &plan->patches.items[colour][k];
+            const uint32_t *ends = shell->springs[colour].ends[patch->spring];
+            bool alive = state->ablate.spring_flags[colour][patch->spring] & SINGE_ALIVE;
+            patch->a = ends[0], patch->b = ends[1], patch->pull = 0;
+            patch->length = state->burn.spring_length[colour][patch->spring];
+            patch->weight =
+                alive ? dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b) : 0;
+        }
+    }
+}
+
+void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics) {
+    const float softness = 1 + 0.5f * plan->settings.solver.regularisation[colour];
+    for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
+        Patch *patch = &plan->patches.items[colour][k];
+        Quad a = quad_load(dynamics->position[patch->a]), b = quad_load(dynamics->position[patch->b]), d = b - a;
+        float weights = a[3] + b[3], target = patch->length * patch->length;
+        if (!(patch->weight > 0 && weights > 0)) continue;
+        float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
+        if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
+        float beyond = fmaxf(e - square * 0.01f, 0);
+        float diagonal = weights * (softness * square + beyond * STRAND_YIELD) + patch->compliance * inverse_h2 * square;
+        float mu = patch->weight * e / fmaxf(diagonal, 1e-20f);
+        patch->pull += mu;
+        d[3] = 0;
+        quad_store(dynamics->position[patch->a], a + a[3] * mu * d);
+        quad_store(dynamics->position[patch->b], b - b[3] * mu * d);
+    }
+}
+
+typedef struct Gather {
+    DynamicsPlan *plan;
+    const Shell *shell;
+    SingeColour colour;
+    float scale;
+} Gather;
+
+/// What is held at both ends has a row without a diagonal, whose mu says nothing.
+static void gather_strands(void *task, int begin, int end) {
+    const Gather *job = task;
+    const SpringSet *springs = &job->shell->springs[job->colour];
+    const StrandSet *set = &job->plan->strands.sets[job->colour];
+    const float *inverse_mass = job->plan->inverse_mass;
+    float *pull = job->plan->patches.pull[job->colour];
+    for (int s = begin; s < end; s++) {
+        size_t slot = set->strand_slot[s];
+        for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
+            bool moves = inverse_mass[springs->ends[k][0]] + inverse_mass[springs->ends[k][1]] > 0;
+            pull[k] = moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale : 0;
+        }
+    }
+}
+
+void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
+    Gather job = {plan, shell, SINGE_RED, 1 / ((float)plan->settings.solver.substeps * h * h)};
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        job.colour = (SingeColour)colour;
+        const SpringSet *springs = &shell->springs[colour];
+        int grain = 1 + (int)((uint64_t)POOL_BLOCK * springs->strand_count / (springs->count + 1));
+        pool_for(pool, (int)springs->strand_count, grain, gather_strands, &job);
+        for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
+            const Patch *patch = &plan->patches.items[colour][k];
+            plan->patches.pull[colour][patch->spring] = patch->pull * job.scale;
+        }
+    }
+}

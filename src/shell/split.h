@@ -1,0 +1,54 @@
+// Splitting a vertex: the one way in which a Shell changes after its build (src/tear decides where).
+//
+// A vertex v lends some cells of its fan to a spare vertex v': they get v' for a corner, and the springs that lie in them
+// alone end at v' from then on. Cells stay whole. Where a cell that goes borders on one that stays, their edge is torn:
+// the two are neighbours no more (their green spring is of no cell any more), and the one that goes gets a blue spring of
+// its own, a spare one behind those of the strands. v' has v's place at rest, uv and material; area, mass and capacity
+// are shared by the areas of the corners. What has been done is a list of ShellSplit, from which it can be done again.
+#ifndef SHELL_SPLIT_H
+#define SHELL_SPLIT_H
+
+#include "shell/shell.h"
+
+enum {
+    SPLIT_FAN = 24,  ///< cells around a vertex that can be split, at most
+    SPLIT_EDGES = 2, ///< edges that a split tears at most
+    SPLIT_MOVED = 8, ///< springs of a colour that splits give another end, at most, for each spare vertex
+};
+
+/// The cells around a vertex and who borders on whom there.
+typedef struct Fan {
+    int count;                ///< 0 where there are too many
+    uint32_t cell[SPLIT_FAN]; ///< in the order of shell->fan
+    uint8_t corner[SPLIT_FAN];
+    int8_t after[SPLIT_FAN];  ///< the one counter-clockwise of it, across side corner - 1; -1 where there is none
+    int8_t before[SPLIT_FAN]; ///< the one clockwise of it, across side corner
+} Fan;
+
+void split_fan(const Shell *shell, uint32_t vertex, Fan *fan);
+
+/// An edge that a split tore: `edge` stays with the cells of v, `spare` is its twin at v'.
+typedef struct TornEdge {
+    uint32_t edge, spare, green;
+    uint32_t far; ///< its other end
+} TornEdge;
+
+typedef struct SplitResult {
+    uint32_t spare; ///< v'
+    int torn_count;
+    TornEdge torn[SPLIT_EDGES];
+} SplitResult;
+
+/// Gives a built shell its spare blue springs. False when out of memory.
+bool split_reserve(Memory *memory, Shell *shell);
+
+/// Whether there is room for this split and it tears no more than SPLIT_EDGES edges.
+bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *split);
+
+/// Splits; it must be possible.
+SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split);
+
+/// Does splits that another shell of the same sheets has had. False where they do not fit it.
+bool split_replay(Shell *shell, const ShellSplit *splits, uint32_t count);
+
+#endif

@@ -1,0 +1,180 @@
+// Line force in a cell of area A, in rest coordinates (the virial of its springs):
+//
+//   N = (1/A) sum share f L (U x U),   f U L = (f/|d|) (l/L) D,   N = (1/A) sum share pull (l/L) (D x D)   [N/m]
+//
+//   f     N     force of the spring, pulling positive; pull = f/|d| is what the dynamics sums
+//   D     m     the spring at rest, its part in the plane of the cell; L its length; l its target length
+//   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
+//
+// Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
+// tears nothing,
+//
+//   N <- N + (1 - exp(-h/tau)) (N_step - N)
+//
+// with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
+// averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by s^2/4
+// (variance, an axis) at a time, and so does the mean over the cells at a vertex.
+#include "tear/plan.h"
+
+#include <math.h>
+#include <string.h>
+
+static const float LINE_FILTER = 5e-3f; ///< tau, s
+static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
+enum { LINE_PASSES = 12 };
+
+float tear_strength(const Shell *shell, const State *state, uint32_t vertex) {
+    const Matter *matter = &shell->matter;
+    float fresh = field_at(matter->strength, vertex);
+    float progress = shell_burn_progress(state->burn.mass[vertex], field_at(matter->mass_min, vertex));
+    if (progress <= 0 || isinf(fresh)) return fresh;
+    return fresh * powf(field_at(matter->char_strength, vertex) / fresh, progress);
+}
+
+typedef struct Measure {
+    TearPlan *plan;
+    const Shell *shell;
+    State *state;
+    const float *const *pull;
+    float keep; ///< exp(-h/tau)
+    int from;   ///< which of plan->smooth is read
+} Measure;
+
+static void measure_spring(const Measure *job, SingeColour colour, uint32_t spring, Vec normal, float share, Tensor t) {
+    const SpringSet *set = &job->shell->springs[colour];
+    float pull = job->pull[colour][spring];
+    if (pull == 0) return;
+    const float(*rest)[4] = (const float(*)[4])job->shell->rest_position;
+    Vec d = vec_sub(vec_load(rest[set->ends[spring][1]]), vec_load(rest[set->ends[spring][0]]));
+    d = vec_mad(d, normal, -vec_dot(d, normal));
+    tensor_add(t, d, share * pull * job->state->burn.spring_length[colour][spring] / set->rest[spring]);
+}
+
+static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
+    const Shell *shell = job->shell;
+    const CellSprings *springs = &shell->cell_springs[cell];
+    Vec p[4];
+    for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[shell->cells[cell][i]]);
+    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    memset(now, 0, sizeof(Tensor));
+    for (int i = 0; i < 4; i++) {
+        bool alone = springs->green[i] == SHELL_NONE;
+        measure_spring(job, SINGE_RED, springs->red[i], normal, 1, now);
+        measure_spring(job, SINGE_BLUE, springs->blue[i], normal, alone ? 1 : 0.5f, now);
+        if (!alone) measure_spring(job, SINGE_GREEN, springs->green[i], normal, 0.5f, now);
+    }
+    for (int i = 0; i < 2; i++) measure_spring(job, SINGE_YELLOW, springs->yellow[i], normal, 1, now);
+    float area = shell->matter.area[shell_centre(shell, cell)];
+    for (int k = 0; k < 6; k++) now[k] /= area;
+}
+
+/// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
+static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
+    float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+    for (int i = 0; i < 4; i++) {
+        float strength = tear_strength(job->shell, job->state, job->shell->cells[cell][i]);
+        if (square > strength * strength) return true;
+    }
+    return false;
+}
+
+static double measure_cells(void *task, int begin, int end) {
+    const Measure *job = task;
+    double near = 0;
+    for (int c = begin; c < end; c++) {
+        float *held = job->state->tear.line_force[c];
+        Tensor now;
+        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) {
+            memset(held, 0, sizeof(Tensor));
+            continue;
+        }
+        measure_now(job, (uint32_t)c, now);
+        float before = held[0] + held[1] + held[2], after = now[0] + now[1] + now[2];
+        float keep = after < 0.5f * before ? 0 : job->keep;
+        for (int k = 0; k < 6; k++) held[k] = now[k] + keep * (held[k] - now[k]);
+        near += measure_is_near(job, (uint32_t)c, held);
+    }
+    return near;
+}
+
+double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
+                    Pool *pool, float h) {
+    Measure job = {.plan = plan, .shell = shell, .state = state, .pull = pull, .keep = expf(-h / LINE_FILTER)};
+    return pool_sum(pool, (int)shell->cell_count, measure_cells, &job, plan->partial);
+}
+
+static void smooth_cells(void *task, int begin, int end) {
+    const Measure *job = task;
+    const Tensor *from = (const Tensor *)job->plan->smooth[job->from];
+    for (int c = begin; c < end; c++) {
+        float *to = job->plan->smooth[!job->from][c], own = 1;
+        Tensor sum = {0};
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell_neighbour(job->shell, (uint32_t)c, i);
+            if (other == SHELL_NONE || !(job->state->ablate.cell_flags[other] & SINGE_ALIVE)) continue;
+            own -= 0.125f;
+            for (int k = 0; k < 6; k++) sum[k] += 0.125f * from[other][k];
+        }
+        for (int k = 0; k < 6; k++) to[k] = own * from[c][k] + sum[k];
+    }
+}
+
+void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool) {
+    float size = shell->sheets[0].cell_size;
+    for (uint32_t s = 1; s < shell->sheet_count; s++) size = fminf(size, shell->sheets[s].cell_size);
+    float passes = floorf(4 * LINE_ZONE * LINE_ZONE / (size * size)) - 1;
+    int count = passes < 0 ? 0 : passes > LINE_PASSES ? LINE_PASSES : (int)passes;
+    count += count & 1; // and back
+    memcpy(plan->smooth[0], state->tear.line_force, shell->cell_count * sizeof(Tensor));
+    Measure job = {.plan = plan, .shell = shell, .state = (State *)(uintptr_t)state};
+    for (int k = 0; k < count; k++) {
+        job.from = k & 1;
+        pool_for(pool, (int)shell->cell_count, POOL_BLOCK, smooth_cells, &job);
+    }
+}
+
+/// Whether a cell borders on a torn edge, or the sheet's, at the vertex.
+static bool borders(const Fan *fan, int k) { return fan->after[k] < 0 || fan->before[k] < 0; }
+
+/// The mean over the cells of a vertex; before the tip of a tear over those that lie ahead, where there are any.
+static bool pull_force(const TearPlan *plan, const Shell *shell, const State *state, const Fan *fan, bool torn,
+                       Tensor force) {
+    float weight = 0;
+    for (int turn = torn ? 0 : 1; turn < 2 && weight == 0; turn++)
+        for (int k = 0; k < fan->count; k++) {
+            if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE) || (turn == 0 && borders(fan, k))) continue;
+            float area = shell->matter.area[shell_centre(shell, fan->cell[k])];
+            for (int i = 0; i < 6; i++) force[i] += area * plan->smooth[0][fan->cell[k]][i];
+            weight += area;
+        }
+    for (int i = 0; i < 6 && weight > 0; i++) force[i] /= weight;
+    return weight > 0;
+}
+
+/// The normal of a vertex at rest.
+static Vec pull_normal(const Shell *shell, const Fan *fan) {
+    Vec sum = {0, 0, 0};
+    for (int k = 0; k < fan->count; k++) {
+        const uint32_t *corner = shell->cells[fan->cell[k]];
+        Vec p[4];
+        for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
+        sum = vec_add(sum, vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    }
+    return vec_unit(sum);
+}
+
+TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
+    TearPull pull = {0};
+    Fan fan;
+    if (!(state->ablate.particle_flags[vertex] & SINGE_ALIVE) || state->dynamics.pinned[vertex]) return pull;
+    split_fan(shell, vertex, &fan);
+    if (fan.count < 2 || !pull_force(plan, shell, state, &fan, plan->torn[vertex], pull.force)) return pull;
+    Vec normal = pull_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? vec(1, 0, 0) : vec(0, 1, 0);
+    Vec e1 = vec_unit(vec_cross(normal, side)), e2 = vec_cross(normal, e1);
+    float a = tensor_across(pull.force, e1), b = tensor_across(pull.force, e2);
+    float c = (tensor_across(pull.force, vec_add(e1, e2)) - a - b) / 2;
+    float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = atan2f(c, (a - b) / 2) / 2;
+    pull.across = vec_add(vec_scale(e1, cosf(angle)), vec_scale(e2, sinf(angle)));
+    pull.ratio = fmaxf(0, (mean + radius) / tear_strength(shell, state, vertex));
+    return pull;
+}

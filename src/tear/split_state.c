@@ -1,0 +1,78 @@
+// What a split does to the State: the new particle is what the old one was, and the lips of the tear part a little.
+#include "tear/plan.h"
+
+#include <string.h>
+
+/// How far each lip moves towards the middle of its own cells, of the way there: lips are never in one place, so that
+/// contact can tell their sides from the start.
+static const float LIP_GAP = 0.02f;
+
+#define COPY(array, to, from) memcpy((array) + (to), (array) + (from), sizeof *(array))
+
+static void copy_particle(State *state, uint32_t to, uint32_t from) {
+    COPY(state->heat.temperature, to, from);
+    COPY(state->heat.temperature_peak, to, from);
+    COPY(state->burn.mass, to, from);
+    COPY(state->burn.burn_rate, to, from);
+    COPY(state->burn.time_ignited, to, from);
+    COPY(state->burn.time_burnt, to, from);
+    COPY(state->ablate.piece, to, from);
+    COPY(state->ablate.particle_flags, to, from);
+    COPY(state->dynamics.position, to, from);
+    COPY(state->dynamics.velocity, to, from);
+}
+
+static uint16_t alive(const State *state, SingeColour colour, uint32_t spring) {
+    return state->ablate.spring_flags[colour][spring] & SINGE_ALIVE;
+}
+
+/// Counts the springs that are left at a corner.
+static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
+    uint16_t degree = 0;
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
+        uint32_t cell = shell->fan[k];
+        const CellSprings *springs = &shell->cell_springs[cell];
+        int i = 0;
+        while (shell->cells[cell][i] != vertex) i++;
+        int after = (i + 3) & 3;
+        degree = (uint16_t)(degree + alive(state, SINGE_RED, springs->red[i]) +
+                            alive(state, SINGE_YELLOW, springs->yellow[i & 1]) +
+                            alive(state, SINGE_BLUE, springs->blue[i]));
+        if (springs->green[after] == SHELL_NONE)
+            degree = (uint16_t)(degree + alive(state, SINGE_BLUE, springs->blue[after]));
+    }
+    state->ablate.degree[vertex] = degree;
+}
+
+/// A torn edge has two springs from now on, and nothing spans it.
+static void tear_edge_state(const Shell *shell, State *state, const TornEdge *torn) {
+    COPY(state->ablate.spring_flags[SINGE_BLUE], torn->spare, torn->edge);
+    COPY(state->burn.spring_length[SINGE_BLUE], torn->spare, torn->edge);
+    if (!alive(state, SINGE_GREEN, torn->green)) return;
+    state->ablate.spring_flags[SINGE_GREEN][torn->green] &= (uint8_t)~SINGE_ALIVE;
+    for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
+}
+
+/// Moves a lip towards the mean of its cells' corners.
+static void open_lip(const Shell *shell, State *state, uint32_t vertex) {
+    Vec sum = {0, 0, 0};
+    uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
+    for (uint32_t k = first; k < last; k++)
+        for (int i = 0; i < 4; i++)
+            sum = vec_add(sum, vec_load(state->dynamics.position[shell->cells[shell->fan[k]][i]]));
+    Vec place = vec_load(state->dynamics.position[vertex]), way = vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
+    vec_store(state->dynamics.position[vertex], vec_mad(place, way, LIP_GAP));
+}
+
+/// What is open carries nothing across: takes the line force in a direction from a vertex's cells.
+void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result) {
+    *result = split_vertex(shell, fan, split);
+    state->tear.splits[state->tear.split_count++] = (ShellSplit){split->vertex, split->cells, result->spare};
+    copy_particle(state, result->spare, split->vertex);
+    for (int k = 0; k < result->torn_count; k++) tear_edge_state(shell, state, &result->torn[k]);
+    for (int k = 0; k < result->torn_count; k++) count_degree(shell, state, result->torn[k].far);
+    count_degree(shell, state, split->vertex);
+    count_degree(shell, state, result->spare);
+    open_lip(shell, state, split->vertex);
+    open_lip(shell, state, result->spare);
+}

@@ -1,0 +1,238 @@
+// Where sheets tear, and which way.
+//
+// A vertex tears where the largest principal value N_1 of the line force exceeds its strength and no vertex of its cells
+// is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open there
+// already: those with the most line force across them for their strength. The tear so runs along the sides of cells,
+// roughly across the direction of N_1, an edge a step; while tears run in a piece, no other begins there, and of those
+// that could begin, one does.
+#include "tear/plan.h"
+
+#include <string.h>
+
+/// In TearPlan.leader.
+#define LEADER_RUNS (UINT32_MAX - 1)
+
+/// The least line force across an edge that tears, of N_1: half where N_1 pulls along the diagonal of square cells.
+static const float EDGE_LEAST = 0.3f;
+
+SingeResult tear_plan_create(Memory *memory, const Shell *shell, TearPlan **out) {
+    TearPlan *plan;
+    *out = NULL;
+    if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+    plan->cell_count = shell->cell_count, plan->vertex_count = shell->vertex_count;
+    plan->particle_count = shell->particle_count;
+    if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
+        !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
+        !NEW(memory, plan->leader, plan->particle_count) ||
+        !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
+        tear_plan_free(memory, plan);
+        return SINGE_ERROR_MEMORY;
+    }
+    *out = plan;
+    return SINGE_OK;
+}
+
+void tear_plan_free(Memory *memory, TearPlan *plan) {
+    if (!plan) return;
+    for (int k = 0; k < 2; k++) FREE(memory, plan->smooth[k], plan->cell_count);
+    FREE(memory, plan->ratio, plan->vertex_count);
+    FREE(memory, plan->torn, plan->vertex_count);
+    FREE(memory, plan->leader, plan->particle_count);
+    FREE(memory, plan->partial, pool_blocks((int)plan->cell_count));
+    FREE(memory, plan, 1);
+}
+
+/// Marks the ends of torn edges.
+static void mark_torn(TearPlan *plan, const Shell *shell) {
+    if (plan->split_count == shell->split_count) return;
+    plan->split_count = shell->split_count;
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    uint32_t first = blue->count - shell->edge_spare_count;
+    memset(plan->torn, 0, plan->vertex_count);
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        for (int end = 0; end < 2; end++)
+            plan->torn[blue->ends[first + k][end]] = plan->torn[blue->ends[shell->edge_origin[k]][end]] = 1;
+}
+
+/// Nothing that shares a cell with the vertex is nearer to tearing; of a vertex at a tear, nothing else there.
+static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex) {
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell->cells[shell->fan[k]][i];
+            if (plan->torn[vertex] && !plan->torn[other]) continue;
+            if (plan->ratio[other] > plan->ratio[vertex] ||
+                (plan->ratio[other] == plan->ratio[vertex] && other < vertex))
+                return false;
+        }
+    return true;
+}
+
+/// For every piece: that a tear runs in it, or the vertex where one may begin.
+static void choose_leaders(TearPlan *plan, const State *state) {
+    memset(plan->leader, 0xff, plan->particle_count * sizeof *plan->leader);
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        if (!(plan->ratio[v] > 1)) continue;
+        uint32_t *leader = &plan->leader[state->ablate.piece[v]];
+        if (plan->torn[v]) *leader = LEADER_RUNS;
+        else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader])) *leader = v;
+    }
+}
+
+/// The cells of a fan in turning order, those that hang together with the first.
+typedef struct Turn {
+    int count, at[SPLIT_FAN];
+    bool closed;
+} Turn;
+
+static Turn turn_order(const Fan *fan) {
+    Turn turn = {0};
+    int start = 0;
+    for (int k = 0; k < fan->count && fan->before[start] >= 0; k++) start = fan->before[start];
+    turn.closed = fan->before[start] >= 0;
+    if (turn.closed) start = 0;
+    for (int k = start; k >= 0 && turn.count < fan->count && (turn.count == 0 || k != start); k = fan->after[k])
+        turn.at[turn.count++] = k;
+    return turn;
+}
+
+/// The edge that a cell shares with the one before it: its other end and its direction at rest.
+static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
+    return shell->cells[fan->cell[k]][(fan->corner[k] + 1) & 3];
+}
+
+/// Line force across an edge over its strength, in TearPull's terms; 0 where it is too small a part of N_1.
+static float edge_pull(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex, uint32_t end,
+                       Vec normal, Vec *along) {
+    *along = vec_unit(vec_sub(vec_load(shell->rest_position[end]), vec_load(shell->rest_position[vertex])));
+    float across = tensor_across(pull->force, vec_unit(vec_cross(normal, *along)));
+    if (!(across > EDGE_LEAST * tensor_across(pull->force, pull->across))) return 0;
+    return across / (tear_strength(shell, state, vertex) + tear_strength(shell, state, end));
+}
+
+/// The cells [first, last) of the turn, or the others where those are fewer.
+static uint32_t smaller_part(const Fan *fan, const Turn *turn, int first, int last) {
+    uint32_t inside = 0, outside = UINT32_MAX >> (32 - fan->count);
+    for (int j = first; j < last; j++) inside |= 1u << turn->at[j];
+    outside &= ~inside;
+    return __builtin_popcount(inside) <= __builtin_popcount(outside) ? inside : outside;
+}
+
+static bool any_alive(const State *state, const Fan *fan, uint32_t cells, bool those) {
+    for (int k = 0; k < fan->count; k++)
+        if (((cells >> k & 1) != 0) == those && state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE) return true;
+    return false;
+}
+
+/// Which cells of a vertex are pulled off the others the hardest; 0 where no edge is pulled at enough.
+static uint32_t choose_part(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
+                             const Fan *fan) {
+    Turn turn = turn_order(fan);
+    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
+    Vec normal = {0, 0, 0}, along[SPLIT_FAN];
+    for (int k = 0; k < fan->count; k++) {
+        const uint32_t *corner = shell->cells[fan->cell[k]];
+        Vec p[4];
+        for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
+        normal = vec_add(normal, vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    }
+    float force[SPLIT_FAN];
+    int first = -1, second = -1;
+    for (int j = turn.closed ? 0 : 1; j < turn.count; j++) {
+        force[j] = edge_pull(shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal, &along[j]);
+        if (force[j] > 0 && (first < 0 || force[j] > force[first])) first = j;
+    }
+    if (first < 0) return 0;
+    if (!turn.closed) return smaller_part(fan, &turn, first, turn.count);
+    for (int j = 0; j < turn.count; j++)
+        if (force[j] > 0 && vec_dot(along[j], along[first]) < -0.2f && (second < 0 || force[j] > force[second])) second = j;
+    if (second < 0) return 0;
+    return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
+}
+
+/// The same, where something of both parts is left.
+static uint32_t choose_cells(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
+                             const Fan *fan) {
+    uint32_t cells = choose_part(shell, state, pull, vertex, fan);
+    return cells && any_alive(state, fan, cells, true) && any_alive(state, fan, cells, false) ? cells : 0;
+}
+
+typedef struct Ratios {
+    TearPlan *plan;
+    const Shell *shell;
+    const State *state;
+} Ratios;
+
+/// How near each vertex is to tearing; what could tear along none of its edges does not come near.
+static void fill_ratios(void *task, int begin, int end) {
+    const Ratios *job = task;
+    for (int v = begin; v < end; v++) {
+        TearPull pull = tear_pull(job->plan, job->shell, job->state, (uint32_t)v);
+        Fan fan;
+        if (pull.ratio > 1) {
+            split_fan(job->shell, (uint32_t)v, &fan);
+            if (!choose_cells(job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;
+        }
+        job->plan->ratio[v] = pull.ratio;
+    }
+}
+
+/// What has torn open does not carry line force across any more.
+static void unload(State *state, const Fan *fan, Vec across) {
+    for (int k = 0; k < fan->count; k++) {
+        float *force = state->tear.line_force[fan->cell[k]], carried = tensor_across(force, across);
+        if (carried > 0) tensor_add(force, across, -carried);
+    }
+}
+
+/// Parts what hangs together at a vertex alone.
+static void separate(Shell *shell, State *state, uint32_t vertex) {
+    for (;;) {
+        Fan fan;
+        SplitResult result;
+        split_fan(shell, vertex, &fan);
+        Turn turn = turn_order(&fan);
+        if (turn.count == fan.count || state->dynamics.pinned[vertex]) return;
+        ShellSplit split = {vertex, smaller_part(&fan, &turn, 0, turn.count), SHELL_NONE};
+        if (!split_is_possible(shell, &fan, &split)) return;
+        tear_split(shell, state, &fan, &split, &result);
+        if (!(split.cells & 1u << turn.at[0])) return; // the rest went, and may hang together at the new vertex alone
+    }
+}
+
+/// Splits a vertex; true when it did. Two spare vertices are left for the ends of the edges that it tears.
+static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t vertex, bool *short_of_spares) {
+    TearPull pull = tear_pull(plan, shell, state, vertex);
+    const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
+    Fan fan;
+    SplitResult result;
+    split_fan(shell, vertex, &fan);
+    ShellSplit split = {vertex, choose_cells(shell, state, &pull, vertex, &fan), SHELL_NONE};
+    if (split.cells == 0) return false;
+    if (sheet->spare_used + 1 + SPLIT_EDGES > sheet->spare_count || !split_is_possible(shell, &fan, &split)) {
+        *short_of_spares = true;
+        return false;
+    }
+    unload(state, &fan, pull.across);
+    tear_split(shell, state, &fan, &split, &result);
+    for (int k = 0; k < result.torn_count; k++) separate(shell, state, result.torn[k].far);
+    return true;
+}
+
+uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT], Pool *pool,
+                   float h, bool *short_of_spares) {
+    uint32_t before = state->tear.split_count;
+    *short_of_spares = false;
+    if (tear_measure(plan, shell, state, pull, pool, h) == 0) return 0;
+    Ratios job = {plan, shell, state};
+    mark_torn(plan, shell);
+    tear_smooth(plan, shell, state, pool);
+    pool_for(pool, (int)plan->vertex_count, POOL_BLOCK, fill_ratios, &job);
+    choose_leaders(plan, state);
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        if (!(plan->ratio[v] > 1)) continue;
+        uint32_t leader = plan->leader[state->ablate.piece[v]];
+        bool may = leader == LEADER_RUNS ? plan->torn[v] : leader == v;
+        if (may && is_weakest(plan, shell, v)) tear_vertex(plan, shell, state, v, short_of_spares);
+    }
+    return state->tear.split_count - before;
+}

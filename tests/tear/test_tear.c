@@ -1,0 +1,250 @@
+// Sheets that tear: where, into what, and that nothing is lost by it.
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALONG = 24, ACROSS = 10, WEAK = 9, GRIP = 2, STEPS = 120 };
+static const float side = 5e-3f;
+
+static SingeSimDef pull_def(void) {
+    SingeSimDef def = singe_default_sim();
+    def.solver.tearing = true;
+    def.solver.substeps = 16;
+    def.gravity[2] = 0;
+    return def;
+}
+
+/// A vertex off the grid by up to a fifth of a cell, so that tears find no straight way.
+static void jitter(TestMesh *mesh) {
+    uint32_t random = 7;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        for (int k = 0; k < 2; k++) {
+            random = random * 1664525u + 1013904223u;
+            mesh->positions[3 * v + (uint32_t)k] += 0.3f * side * ((float)(random >> 8) / 16777216.0f - 0.5f);
+        }
+}
+
+/// Holds what lies within GRIP cells of an end of the strip, and moves it.
+static void grip(SingeSim *sim, bool right, float by) {
+    uint32_t held[(GRIP + 1) * (ACROSS + 1)], count = 0;
+    for (uint32_t j = 0; j <= ACROSS; j++)
+        for (uint32_t i = 0; i <= GRIP; i++) held[count++] = j * (ALONG + 1) + (right ? ALONG - i : i);
+    const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, by, 0, 0)};
+    SingePinDef pin = singe_default_pin();
+    SingePinId id;
+    pin.vertex_count = count, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet.generation = 1;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+}
+
+/// A strip of this strength that is pulled apart; where `line` is not 1, a row of vertices across has that share of it.
+static SingeSim *pulled(const SingeSimDef *def, float strength, float line, const SingeMaterialDef *from) {
+    TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
+    float weak[(ALONG + 1) * (ACROSS + 1)];
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v % (ALONG + 1) == WEAK;
+    const SingeAttribute attribute = {"weak", weak};
+    SingeSheetDef sheet = test_sheet(&mesh);
+    SingeSheetId id;
+    SingeSim *sim;
+    jitter(&mesh);
+    if (from) sheet.material = *from;
+    sheet.attribute_count = 1, sheet.attributes = &attribute;
+    sheet.material.strength = (SingeParam){
+        .value = strength, .to = strength * line, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
+    assert_int_equal(singe_sim_create(def, &sim, NULL), SINGE_OK);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_ok(sim, singe_sim_commit(sim));
+    test_mesh_free(&mesh);
+    grip(sim, false, 0);
+    grip(sim, true, 9e-3f);
+    return sim;
+}
+
+// ---- the drawn surface
+
+typedef struct Edge {
+    uint32_t low, high;
+} Edge;
+
+static int by_ends(const void *a, const void *b) {
+    const Edge *e = a, *f = b;
+    if (e->low != f->low) return e->low < f->low ? -1 : 1;
+    return e->high < f->high ? -1 : e->high > f->high;
+}
+
+/// No edge has more than two triangles, none is a spike, and vertices are where their uv and their input say.
+static void check_surface(SingeSim *sim) {
+    SingeSurface surface = {0};
+    TestMesh mesh = test_grid(ALONG, ACROSS, side, side);
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    size_t count = 3 * (size_t)surface.triangle_count;
+    Edge *edges = malloc(count * sizeof *edges);
+    assert_non_null(edges);
+    for (uint32_t t = 0; t < surface.triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = surface.triangles[t][k], b = surface.triangles[t][(k + 1) % 3];
+            edges[3 * t + (uint32_t)k] = (Edge){a < b ? a : b, a < b ? b : a};
+            float way = 0;
+            for (int d = 0; d < 3; d++)
+                way += (surface.position[a][d] - surface.position[b][d]) * (surface.position[a][d] - surface.position[b][d]);
+            assert_true(sqrtf(way) < 2.5f * side);
+        }
+    qsort(edges, count, sizeof *edges, by_ends);
+    for (size_t e = 2; e < count; e++) assert_true(by_ends(&edges[e], &edges[e - 2]) != 0);
+    for (uint32_t v = 0; v < surface.vertex_count; v++) {
+        int32_t source = surface.source_vertex[v];
+        if (source < 0) continue;
+        assert_true((uint32_t)source < mesh.vertex_count);
+        assert_true(surface.uv[v][0] == mesh.uv[2 * source] && surface.uv[v][1] == mesh.uv[2 * source + 1]);
+    }
+    free(edges);
+    test_mesh_free(&mesh);
+    singe_surface_free(&surface);
+}
+
+/// Every particle's springs are counted as its degree says, and what hangs together has one piece.
+static void check_view(SingeSim *sim) {
+    SingeView view = singe_sim_view(sim);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t k = 0; k < view.spring_count[colour]; k++) {
+            if (!(view.spring_flags[colour][k] & SINGE_ALIVE)) continue;
+            uint32_t a = view.springs[colour][k][0], b = view.springs[colour][k][1];
+            assert_true(view.particle_flags[a] & view.particle_flags[b] & SINGE_ALIVE);
+            assert_int_equal(view.piece[a], view.piece[b]);
+        }
+    for (uint32_t c = 0; c < view.cell_count; c++)
+        for (int i = 0; i < 4 && view.cell_flags[c] & SINGE_ALIVE; i++)
+            assert_int_equal(view.piece[view.cells[c][i]], view.piece[view.vertex_count + c]);
+}
+
+// ---- tests
+
+static void pulled_apart_it_tears_at_its_weakest_line(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
+    size_t freed = 0, events;
+    for (int k = 0; k < STEPS; k++) {
+        test_steps(sim, 1);
+        const SingeEvent *event = singe_sim_events(sim, &events);
+        for (size_t e = 0; e < events; e++) freed += event[e].kind == SINGE_EVENT_PIECE_FREED;
+    }
+    SingeStats stats = singe_sim_stats(sim);
+    assert_int_equal(stats.pieces, 2);
+    assert_int_equal(freed, 1);
+    assert_int_equal(stats.tears, ACROSS + 1);
+    assert_true(stats.mass_ledger_error < 1e-6);
+    assert_int_equal(stats.cells, ALONG * ACROSS);
+    assert_true(stats.strain_mean < 0.002);
+    SingeView view = singe_sim_view(sim);
+    uint32_t left = view.piece[0] == view.piece[ALONG] ? 1 : 0;
+    assert_int_equal(left, 0);
+    check_surface(sim);
+    check_view(sim);
+    // each lip of the tear has the weak line's vertices
+    for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
+        if (view.particle_flags[v] & SINGE_ALIVE) assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+    singe_sim_destroy(sim);
+}
+
+static void uniform_sheets_tear_too(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    SingeSim *sim = pulled(&def, 2, 1, NULL);
+    test_steps(sim, STEPS);
+    SingeStats stats = singe_sim_stats(sim);
+    assert_true(stats.tears > ACROSS / 2 && stats.pieces >= 2);
+    assert_true(stats.mass_ledger_error < 1e-6);
+    check_surface(sim);
+    check_view(sim);
+    singe_sim_destroy(sim);
+}
+
+static void without_tearing_it_stays_whole(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    def.solver.tearing = false;
+    SingeSim *sim = pulled(&def, 2, 0.5f, NULL);
+    test_steps(sim, 30);
+    assert_int_equal(singe_sim_stats(sim).tears, 0);
+    assert_int_equal(singe_sim_view(sim).vertex_count, (ALONG + 1) * (ACROSS + 1));
+    singe_sim_destroy(sim);
+}
+
+/// Runs a strip that burns at one end while it tears.
+static SingeSim *burning(int threads) {
+    SingeSimDef def = pull_def();
+    SingeMaterialDef material = singe_default_material();
+    def.thread_count = threads;
+    def.pace = 8;
+    def.surface_detail = 0.5e-3f;
+    material.char_strength = singe_param(0.5f);
+    SingeSim *sim = pulled(&def, 4, 0.5f, &material);
+    test_spot(sim, 14 * side, 0, 0, 0.01f, 1200, 400);
+    return sim;
+}
+
+static void same_bytes_and_from_a_snapshot(void **unused) {
+    (void)unused;
+    SingeSim *one = burning(1), *three = burning(3), *resumed;
+    int half = 0;
+    for (; half < STEPS && singe_sim_stats(one).tears < 3; half++) test_steps(one, 1);
+    test_steps(three, half);
+    uint32_t tears = singe_sim_stats(one).tears;
+    test_assert_same(one, three);
+    test_ok(one, singe_sim_clone(one, &resumed));
+    test_assert_same(one, resumed);
+    test_steps(one, STEPS - half);
+    test_steps(three, STEPS - half);
+    test_steps(resumed, STEPS - half);
+    test_assert_same(one, three);
+    test_assert_same(one, resumed);
+    SingeStats stats = singe_sim_stats(one);
+    assert_true(stats.tears > tears); // it was torn half
+    assert_true(stats.burnt_fraction > 0 && stats.mass_ledger_error < 1e-6 && stats.ledger_error < 1e-3);
+    check_surface(one);
+    check_view(one);
+    singe_sim_destroy(one);
+    singe_sim_destroy(three);
+    singe_sim_destroy(resumed);
+}
+
+static void flux_fails(void *context, const SingeView *view, float *flux, float *conductance, float *temperature) {
+    (void)conductance, (void)temperature;
+    for (uint32_t i = 0; i < view->particle_count && *(bool *)context; i++) flux[i] = NAN;
+}
+
+static void failed_steps_leave_it_as_it_was(void **unused) {
+    (void)unused;
+    SingeSim *sim = burning(1);
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId id;
+    bool fails = false;
+    source.kind = SINGE_SOURCE_CALLBACK, source.callback = flux_fails, source.callback_context = &fails;
+    test_ok(sim, singe_sim_add_source(sim, &source, &id));
+    test_steps(sim, 75);
+    assert_true(singe_sim_stats(sim).tears > 0);
+    TestBytes before = test_save(sim);
+    fails = true;
+    test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
+    TestBytes after = test_save(sim);
+    assert_int_equal(before.size, after.size);
+    assert_memory_equal(before.data, after.data, before.size);
+    fails = false;
+    test_steps(sim, 20);
+    free(before.data);
+    free(after.data);
+    singe_sim_destroy(sim);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pulled_apart_it_tears_at_its_weakest_line),
+        cmocka_unit_test(uniform_sheets_tear_too),
+        cmocka_unit_test(without_tearing_it_stays_whole),
+        cmocka_unit_test(same_bytes_and_from_a_snapshot),
+        cmocka_unit_test(failed_steps_leave_it_as_it_was),
+    };
+    return cmocka_run_group_tests_name("tear", tests, NULL, NULL);
+}
