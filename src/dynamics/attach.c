@@ -181,6 +181,7 @@ static void attach_spread(const Attachments *attachments, const float (*position
             float apart = vec_length(vec_sub(vec_load(spread->place[p]), vec_load(spread->place[q])));
             spread->apart[p][q] = apart;
             spread->ratio[p][q] = apart / attachments->length[source[p]][q];
+            spread->most = fmaxf(spread->most, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
             spread->tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
         }
     }

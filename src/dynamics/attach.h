@@ -12,7 +12,8 @@ enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
-    int count;
+    int count;  ///< 0 also where a tight sheet may tear
+    float most; ///< of the ratios
     bool tight; ///< two are farther apart than the sheet reaches
     float place[ATTACH_SOURCES][3]; ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
@@ -55,6 +56,9 @@ void attach_place(Attachments *attachments, const Shell *shell, const DynamicsSt
 /// Puts vertices among the particles [begin, end) that are too far from a source back on the sphere around it.
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end);
+
+/// The largest of the ratios, 1 at least.
+static inline float attach_stretched(const AttachSpread *spread) { return spread->most > 1 ? spread->most : 1; }
 
 /// Both, for all vertices.
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,

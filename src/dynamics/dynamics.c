@@ -45,7 +45,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->particle_count = shell->particle_count;
     plan->cell_count = shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
-        plan->spring_count[colour] = shell->springs[colour].count;
+        plan->spring_count[colour] = shell_strand_springs(shell, colour);
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
@@ -88,6 +88,10 @@ void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *sta
 }
 
 const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour) { return plan->patches.pull[colour]; }
+
+float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet) {
+    return plan->settings.solver.attachments ? attach_stretched(&plan->attachments.spread[sheet]) : 1;
+}
 
 void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare) {
     (void)shell, (void)state;

@@ -41,6 +41,9 @@ void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *sta
 /// Force over length of a colour's springs, N/m, mean of the step done; NULL where sheets cannot tear.
 const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
 
+/// How far apart a sheet is held in this step, over how far it reaches, at most; 1 where that is not known.
+float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet);
+
 /// To be called when a tear has split a vertex.
 void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare);
 

@@ -285,6 +285,11 @@ static inline const float *shell_corner_uv(const Shell *shell, uint32_t cell, in
 }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
 
+/// Springs of a colour that are in strands: the first ones. Those after them are the spares of tears.
+static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {
+    return shell->springs[colour].count - (colour == SINGE_BLUE ? shell->edge_spare_count : 0);
+}
+
 /// The cell across side i, at the other end of the green spring; SHELL_NONE at the boundary.
 static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i) {
     uint32_t spring = shell->cell_springs[cell].green[i], centre = shell_centre(shell, cell);

@@ -24,6 +24,10 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
     sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", index,
             1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
     float h = def->time_step / (float)dynamics_plan_substeps(sim->dynamics);
+    if (sim->tear)
+        sim_log(sim, SINGE_LOG_INFO,
+                "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", index,
+                (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
     float gravity = vec_length(vec_load(def->gravity));
     if (gravity * h * h > fall_most * sheet->cell_size)
         sim_log(sim, SINGE_LOG_WARNING,

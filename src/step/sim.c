@@ -232,7 +232,8 @@ SingeResult sim_build(SingeSim *sim) {
     ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
     ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
     ok = ok && (!def->gas.enabled || gas_plan_create(memory, shell, &gas, &sim->gas, &sim->state.gas) == SINGE_OK);
-    ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, &sim->tear) == SINGE_OK);
+    float h_sub = ok ? def->time_step / (float)dynamics_plan_substeps(sim->dynamics) : 0;
+    ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, h_sub, &sim->tear) == SINGE_OK);
     ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
     ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
     ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);

@@ -40,6 +40,8 @@ static void step_tear(SingeSim *sim, float h) {
     const float *pull[SINGE_COLOUR_COUNT];
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         pull[colour] = dynamics_pull(sim->dynamics, (SingeColour)colour);
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++)
+        tear_stretched(sim->tear, s, dynamics_stretch(sim->dynamics, s));
     uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, h, &short_of_spares);
     if (short_of_spares) sim_log_short_of_spares(sim);
     if (tears == 0) return;

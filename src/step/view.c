@@ -53,10 +53,10 @@ SingeCensus singe_sim_census(const SingeSim *sim) {
     SingeCensus census = {.cells = shell->cell_count, .memory = sim->memory.held};
     double springs = 0, strands = 0, size = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        census.springs[colour] = shell->springs[colour].count;
+        census.springs[colour] = shell_strand_springs(shell, colour);
         census.strands[colour] = shell->springs[colour].strand_count;
         census.families[colour] = shell->springs[colour].family_count;
-        springs += shell->springs[colour].count;
+        springs += census.springs[colour];
         strands += shell->springs[colour].strand_count;
     }
     census.mean_strand_length = strands > 0 ? springs / strands : 0;

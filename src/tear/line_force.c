@@ -23,12 +23,12 @@ static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
 enum { LINE_PASSES = 12 };
 
-float tear_strength(const Shell *shell, const State *state, uint32_t vertex) {
+float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     const Matter *matter = &shell->matter;
-    float fresh = field_at(matter->strength, vertex);
+    float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
     float progress = shell_burn_progress(state->burn.mass[vertex], field_at(matter->mass_min, vertex));
-    if (progress <= 0 || isinf(fresh)) return fresh;
-    return fresh * powf(field_at(matter->char_strength, vertex) / fresh, progress);
+    if (progress <= 0 || isinf(fresh)) return fresh * weakened;
+    return fresh * fminf(powf(field_at(matter->char_strength, vertex) / fresh, progress), weakened);
 }
 
 typedef struct Measure {
@@ -72,7 +72,7 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
     for (int i = 0; i < 4; i++) {
-        float strength = tear_strength(job->shell, job->state, job->shell->cells[cell][i]);
+        float strength = tear_strength(job->plan, job->shell, job->state, job->shell->cells[cell][i]);
         if (square > strength * strength) return true;
     }
     return false;
@@ -175,6 +175,6 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     float c = (tensor_across(pull.force, vec_add(e1, e2)) - a - b) / 2;
     float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = atan2f(c, (a - b) / 2) / 2;
     pull.across = vec_add(vec_scale(e1, cosf(angle)), vec_scale(e2, sinf(angle)));
-    pull.ratio = fmaxf(0, (mean + radius) / tear_strength(shell, state, vertex));
+    pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
     return pull;
 }

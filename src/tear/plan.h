@@ -36,10 +36,13 @@ struct TearPlan {
     uint32_t split_count; ///< of the shell that `torn` is for
     uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;    ///< [pool_blocks(cells)]
+    uint32_t sheet_count;
+    float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
+    float *least;       ///< [sheets] that factor where it is pulled farther apart than it reaches
 };
 
 /// N/m, the line force at which a vertex tears.
-float tear_strength(const Shell *shell, const State *state, uint32_t vertex);
+float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 
 /// The line force of every cell in this step, filtered (line_force.c). Returns how many cells come near their strength.
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],

@@ -11,8 +11,15 @@
 
 /// Scratch of the stage, built once.
 typedef struct TearPlan TearPlan;
-SingeResult tear_plan_create(Memory *memory, const Shell *shell, TearPlan **plan);
+/// For substeps of h seconds.
+SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **plan);
 void tear_plan_free(Memory *memory, TearPlan *plan);
+
+/// N/m, the line force that a sheet's substeps can carry; with more it stretches (tear_step.c).
+float tear_carried(const Shell *shell, uint32_t sheet, float h);
+
+/// How far apart a sheet is held, over how far it reaches; changes the strength that it is held against in this step.
+void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch);
 
 /// One step of length h. `pull` are the springs' forces over their lengths in that step, N/m, by colour. Returns the
 /// number of new splits, which are the last ones of state->tear. *short_of_spares: a tear found no vertex left.

@@ -5,9 +5,23 @@
 // already: those with the most line force across them for their strength. The tear so runs along the sides of cells,
 // roughly across the direction of N_1, an edge a step; while tears run in a piece, no other begins there, and of those
 // that could begin, one does.
+//
+// What line forces there can be. A sheet under tension T vibrates across itself at 4 T/(rho s^2) at most, in (1/s)^2,
+// which substeps of h follow as long as that is below about 1/h^2. Projections hold a sheet that is pulled apart farther
+// no better than to
+//
+//   T = 0.2 rho s^2/h^2     (measured: 0.19 to 0.35, from 20 to 3 substeps of 1/480 s)
+//
+// with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than it
+// reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
+// strengths are then lowered, all by one factor, so that the least is half of this.
 #include "tear/plan.h"
 
+#include <math.h>
 #include <string.h>
+
+static const float STEP_CARRIES = 0.2f;
+static const float STRETCH_MOST = 1.03f; ///< paper breaks at 2 to 4 %
 
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
@@ -15,18 +29,42 @@
 /// The least line force across an edge that tears, of N_1: half where N_1 pulls along the diagonal of square cells.
 static const float EDGE_LEAST = 0.3f;
 
-SingeResult tear_plan_create(Memory *memory, const Shell *shell, TearPlan **out) {
+float tear_carried(const Shell *shell, uint32_t index, float h) {
+    const Sheet *sheet = &shell->sheets[index];
+    double mass = 0, area = 0;
+    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        mass += 2 * (double)shell->matter.mass[shell_centre(shell, c)];
+        area += (double)shell->matter.area[shell_centre(shell, c)];
+    }
+    return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
+}
+
+/// A sheet's least strength, fresh.
+static float weakest(const Shell *shell, const Sheet *sheet) {
+    float least = INFINITY;
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
+        least = fminf(least, field_at(shell->matter.strength, v));
+    return least;
+}
+
+SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **out) {
     TearPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
     plan->cell_count = shell->cell_count, plan->vertex_count = shell->vertex_count;
-    plan->particle_count = shell->particle_count;
+    plan->particle_count = shell->particle_count, plan->sheet_count = shell->sheet_count;
     if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
         !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
-        !NEW(memory, plan->leader, plan->particle_count) ||
+        !NEW(memory, plan->leader, plan->particle_count) || !NEW(memory, plan->weakened, plan->sheet_count) ||
+        !NEW(memory, plan->least, plan->sheet_count) ||
         !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
+    }
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        float strength = weakest(shell, &shell->sheets[s]);
+        plan->least[s] = isinf(strength) ? 1 : fminf(1, 0.5f * tear_carried(shell, s, h) / strength);
+        plan->weakened[s] = 1;
     }
     *out = plan;
     return SINGE_OK;
@@ -38,8 +76,14 @@ void tear_plan_free(Memory *memory, TearPlan *plan) {
     FREE(memory, plan->ratio, plan->vertex_count);
     FREE(memory, plan->torn, plan->vertex_count);
     FREE(memory, plan->leader, plan->particle_count);
+    FREE(memory, plan->weakened, plan->sheet_count);
+    FREE(memory, plan->least, plan->sheet_count);
     FREE(memory, plan->partial, pool_blocks((int)plan->cell_count));
     FREE(memory, plan, 1);
+}
+
+void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch) {
+    plan->weakened[sheet] = stretch > STRETCH_MOST ? plan->least[sheet] : 1;
 }
 
 /// Marks the ends of torn edges.
@@ -101,12 +145,12 @@ static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
 }
 
 /// Line force across an edge over its strength, in TearPull's terms; 0 where it is too small a part of N_1.
-static float edge_pull(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex, uint32_t end,
+static float edge_pull(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex, uint32_t end,
                        Vec normal, Vec *along) {
     *along = vec_unit(vec_sub(vec_load(shell->rest_position[end]), vec_load(shell->rest_position[vertex])));
     float across = tensor_across(pull->force, vec_unit(vec_cross(normal, *along)));
     if (!(across > EDGE_LEAST * tensor_across(pull->force, pull->across))) return 0;
-    return across / (tear_strength(shell, state, vertex) + tear_strength(shell, state, end));
+    return across / (tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end));
 }
 
 /// The cells [first, last) of the turn, or the others where those are fewer.
@@ -124,7 +168,7 @@ static bool any_alive(const State *state, const Fan *fan, uint32_t cells, bool t
 }
 
 /// Which cells of a vertex are pulled off the others the hardest; 0 where no edge is pulled at enough.
-static uint32_t choose_part(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
+static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
                              const Fan *fan) {
     Turn turn = turn_order(fan);
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
@@ -138,7 +182,7 @@ static uint32_t choose_part(const Shell *shell, const State *state, const TearPu
     float force[SPLIT_FAN];
     int first = -1, second = -1;
     for (int j = turn.closed ? 0 : 1; j < turn.count; j++) {
-        force[j] = edge_pull(shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal, &along[j]);
+        force[j] = edge_pull(plan, shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal, &along[j]);
         if (force[j] > 0 && (first < 0 || force[j] > force[first])) first = j;
     }
     if (first < 0) return 0;
@@ -150,9 +194,9 @@ static uint32_t choose_part(const Shell *shell, const State *state, const TearPu
 }
 
 /// The same, where something of both parts is left.
-static uint32_t choose_cells(const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
+static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
                              const Fan *fan) {
-    uint32_t cells = choose_part(shell, state, pull, vertex, fan);
+    uint32_t cells = choose_part(plan, shell, state, pull, vertex, fan);
     return cells && any_alive(state, fan, cells, true) && any_alive(state, fan, cells, false) ? cells : 0;
 }
 
@@ -170,7 +214,7 @@ static void fill_ratios(void *task, int begin, int end) {
         Fan fan;
         if (pull.ratio > 1) {
             split_fan(job->shell, (uint32_t)v, &fan);
-            if (!choose_cells(job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;
+            if (!choose_cells(job->plan, job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;
         }
         job->plan->ratio[v] = pull.ratio;
     }
@@ -206,7 +250,7 @@ static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t ver
     Fan fan;
     SplitResult result;
     split_fan(shell, vertex, &fan);
-    ShellSplit split = {vertex, choose_cells(shell, state, &pull, vertex, &fan), SHELL_NONE};
+    ShellSplit split = {vertex, choose_cells(plan, shell, state, &pull, vertex, &fan), SHELL_NONE};
     if (split.cells == 0) return false;
     if (sheet->spare_used + 1 + SPLIT_EDGES > sheet->spare_count || !split_is_possible(shell, &fan, &split)) {
         *short_of_spares = true;
