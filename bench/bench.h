@@ -15,6 +15,9 @@ BenchFn bench_mesh;
 /// A sheet that hangs and shrinks to 0.8 of its size: cost, strain, speed.
 BenchFn bench_hang_and_shrink;
 
+/// A strip with a weak line that is pulled apart: the load at which it breaks, over cell size and time step.
+BenchFn bench_tear;
+
 /// The stage dynamics and its projection by size, against the machine's peaks.
 BenchFn bench_dynamics;
 /// Whole burning steps with a sphere and the ground, held against a limit if one is given (SINGE_ERROR_LIMIT).

@@ -31,6 +31,8 @@ static const struct {
      "The swinging sheet made of triangles, which become quads: cells, strands, strain, motion."},
     {"hang-and-shrink", "bench hang-and-shrink", bench_hang_and_shrink, TRAJECTORY,
      "A sheet that hangs from two corner patches shrinks to 0.8 of its size: the same numbers."},
+    {"tear", "bench tear", bench_tear, BENCH_BIT(THREADS) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
+     "A strip with a weak line is pulled apart: the load at which it breaks, by cell size and time step."},
     {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
      "The stage dynamics and its projection of springs by size, against the machine's peaks."},
     {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT),

@@ -60,7 +60,9 @@ enum {
 };
 
 /// Read-only arrays of the shell. Pointers stay valid until the simulation is destroyed; contents
-/// change with each step. `topology_version` grows whenever something is removed.
+/// change with each step. `topology_version` grows whenever something is removed or torn. Where sheets tear, vertices are
+/// in reserve at the end of each sheet's and springs at the end of the blue ones: not SINGE_ALIVE till a tear makes
+/// something of them; `cells` and `springs` then change, too.
 typedef struct SingeView {
     double time;                        ///< s
     uint64_t step;                      ///< steps done
@@ -86,6 +88,10 @@ typedef struct SingeView {
     const float *spring_length[SINGE_COLOUR_COUNT];   ///< [spring_count[c]] m, target length, eq 6
     const float *spring_rest[SINGE_COLOUR_COUNT];     ///< [spring_count[c]] m, initial length
     const uint8_t *spring_flags[SINGE_COLOUR_COUNT];  ///< [spring_count[c]]
+    /// [cell_count] N/m, line force in the sheet by which it tears, in rest coordinates: xx, yy, zz, yz, zx, xy; NULL
+    /// where sheets cannot tear
+    const float (*line_force)[6];
+    const uint32_t *source_vertex; ///< [vertex_count] of the input, numbered over all sheets; UINT32_MAX: in reserve
 } SingeView;
 
 /// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL.

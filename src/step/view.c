@@ -26,6 +26,8 @@ SingeView singe_sim_view(const SingeSim *sim) {
         .particle_flags = state->ablate.particle_flags,
         .cell_flags = state->ablate.cell_flags,
         .cells = (const uint32_t(*)[4])shell->cells,
+        .line_force = shell->spare_count ? (const float(*)[6])state->tear.line_force : NULL,
+        .source_vertex = shell->source_vertex,
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         view.spring_count[colour] = shell->springs[colour].count;

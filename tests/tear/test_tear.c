@@ -210,6 +210,63 @@ static void same_bytes_and_from_a_snapshot(void **unused) {
     singe_sim_destroy(resumed);
 }
 
+/// A square metre that falls from the horizontal, held at two corners, does not tear, however coarse its substeps.
+static void cold_sheets_swing_whole(void **unused) {
+    (void)unused;
+    const int substeps[] = {1, 7, 20};
+    for (int k = 0; k < 3; k++) {
+        SingeSimDef def = singe_default_sim();
+        TestMesh mesh = test_grid(20, 20, 0.05f, 0.05f);
+        SingePinDef pin = singe_default_pin();
+        SingePinId id;
+        def.solver.tearing = true, def.solver.substeps = substeps[k];
+        SingeSim *sim = test_sim(&def, mesh, NULL);
+        const uint32_t held[2] = {0, 20};
+        pin.vertex_count = 2, pin.vertices = held, pin.sheet.generation = 1;
+        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+        test_steps(sim, 480);
+        assert_int_equal(singe_sim_stats(sim).tears, 0);
+        singe_sim_destroy(sim);
+    }
+}
+
+/// Every allocation of the making fails once, and nothing is lost.
+static void out_of_memory(void **unused) {
+    (void)unused;
+    SingeResult result = SINGE_ERROR_MEMORY;
+    TestAllocator hook = {0};
+    for (long at = 1; result != SINGE_OK; at++) {
+        hook = (TestAllocator){.fail_at = at, .once = true};
+        SingeSimDef def = pull_def();
+        TestMesh mesh = test_grid(4, 4, side, side);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        SingeSheetId id;
+        SingeSim *sim;
+        def.allocator = test_allocator(&hook);
+        result = singe_sim_create(&def, &sim, NULL);
+        if (!result) result = singe_sim_add_sheet(sim, &sheet, &id);
+        if (!result) result = singe_sim_commit(sim);
+        singe_sim_destroy(sim);
+        test_mesh_free(&mesh);
+        assert_int_equal(hook.blocks, 0);
+        assert_int_equal(hook.faults, 0);
+        assert_true(at < 1000);
+    }
+}
+
+/// Stretched beyond what it reaches, a sheet tears though its substeps carry less than its strength.
+static void strong_sheets_tear_when_held_too_far_apart(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    def.solver.substeps = 2;
+    SingeSim *sim = pulled(&def, 500, 0.5f, NULL);
+    test_steps(sim, STEPS);
+    SingeStats stats = singe_sim_stats(sim);
+    assert_true(stats.tears > 0 && stats.pieces == 2);
+    assert_true(stats.strain_mean < 0.002);
+    singe_sim_destroy(sim);
+}
+
 static void flux_fails(void *context, const SingeView *view, float *flux, float *conductance, float *temperature) {
     (void)conductance, (void)temperature;
     for (uint32_t i = 0; i < view->particle_count && *(bool *)context; i++) flux[i] = NAN;
@@ -245,6 +302,9 @@ int main(void) {
         cmocka_unit_test(without_tearing_it_stays_whole),
         cmocka_unit_test(same_bytes_and_from_a_snapshot),
         cmocka_unit_test(failed_steps_leave_it_as_it_was),
+        cmocka_unit_test(cold_sheets_swing_whole),
+        cmocka_unit_test(strong_sheets_tear_when_held_too_far_apart),
+        cmocka_unit_test(out_of_memory),
     };
     return cmocka_run_group_tests_name("tear", tests, NULL, NULL);
 }
