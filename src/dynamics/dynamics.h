@@ -38,7 +38,8 @@ void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream
 /// To be called when other particles are pinned than before.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
 
-/// Force over length of a colour's springs, N/m, mean of the step done; NULL where sheets cannot tear.
+/// What a colour's springs pulled with in the step done, N/m: force over length, times target over rest length; NULL
+/// where sheets cannot tear.
 const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
 
 /// How far apart a sheet is held in this step, over how far it reaches, at most; 1 where that is not known.

@@ -5,9 +5,9 @@
 //
 //   mu = W E/((w_a + w_b) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D),   x_a += w_a d mu,  x_b -= w_b d mu
 //
-// The force of a spring over its length, from which line forces come: the sums of mu over the projections of a step,
+// The force f of a spring, from which line forces come, by the sums of mu = lambda/|d| over the projections of a step:
 //
-//   pull = sum mu/(substeps h^2)
+//   pull = f/|d| l/L = (sum mu) l/(L substeps h^2)    [N/m], target length l, length at rest L
 #include "dynamics/plan.h"
 
 #include "base/quad.h"
@@ -126,13 +126,13 @@ static void gather_strands(void *task, int begin, int end) {
     const Gather *job = task;
     const SpringSet *springs = &job->shell->springs[job->colour];
     const StrandSet *set = &job->plan->strands.sets[job->colour];
-    const float *inverse_mass = job->plan->inverse_mass;
+    const float *inverse_mass = job->plan->inverse_mass, *rest = springs->rest;
     float *pull = job->plan->patches.pull[job->colour];
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             bool moves = inverse_mass[springs->ends[k][0]] + inverse_mass[springs->ends[k][1]] > 0;
-            pull[k] = moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale : 0;
+            pull[k] = moves && set->weight[slot] > 0 ? set->pull[slot] * job->scale * set->length[slot] / rest[k] : 0;
         }
     }
 }
@@ -146,7 +146,8 @@ void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h) {
         pool_for(pool, (int)springs->strand_count, grain, gather_strands, &job);
         for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
             const Patch *patch = &plan->patches.items[colour][k];
-            plan->patches.pull[colour][patch->spring] = patch->pull * job.scale;
+            plan->patches.pull[colour][patch->spring] =
+                patch->pull * job.scale * patch->length / springs->rest[patch->spring];
         }
     }
 }

@@ -54,7 +54,7 @@ typedef struct Patches {
     uint32_t count[SINGE_COLOUR_COUNT];
     Patch *items[SINGE_COLOUR_COUNT];
     uint32_t split_count; ///< of the shell that they are for
-    float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, force over length, mean of the step done
+    float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, as in patch.c, of the step done
 } Patches;
 
 typedef struct Paper Paper;

@@ -2,8 +2,8 @@
 //
 //   N = (1/A) sum share f L (U x U),   f U L = (f/|d|) (l/L) D,   N = (1/A) sum share pull (l/L) (D x D)   [N/m]
 //
-//   f     N     force of the spring, pulling positive; pull = f/|d| is what the dynamics sums
-//   D     m     the spring at rest, its part in the plane of the cell; L its length; l its target length
+//   f     N     force of the spring, pulling positive; pull (l/L) is what the dynamics gives
+//   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
 //   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
 //
 // Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
@@ -40,30 +40,30 @@ typedef struct Measure {
     int from;   ///< which of plan->smooth is read
 } Measure;
 
-static void measure_spring(const Measure *job, SingeColour colour, uint32_t spring, Vec normal, float share, Tensor t) {
-    const SpringSet *set = &job->shell->springs[colour];
-    float pull = job->pull[colour][spring];
-    if (pull == 0) return;
-    const float(*rest)[4] = (const float(*)[4])job->shell->rest_position;
-    Vec d = vec_sub(vec_load(rest[set->ends[spring][1]]), vec_load(rest[set->ends[spring][0]]));
-    d = vec_mad(d, normal, -vec_dot(d, normal));
-    tensor_add(t, d, share * pull * job->state->burn.spring_length[colour][spring] / set->rest[spring]);
+/// The middle of a cell's corners at rest: where its centre is, seen along the normal.
+static Vec middle(const Shell *shell, uint32_t cell) {
+    const uint32_t *corner = shell->cells[cell];
+    const float(*rest)[4] = (const float(*)[4])shell->rest_position;
+    Vec a = vec_add(vec_load(rest[corner[0]]), vec_load(rest[corner[1]]));
+    return vec_scale(vec_add(a, vec_add(vec_load(rest[corner[2]]), vec_load(rest[corner[3]]))), 0.25f);
 }
 
 static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
-    Vec p[4];
+    const float *const *pull = job->pull;
+    Vec p[4], centre = middle(shell, cell);
     for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[shell->cells[cell][i]]);
-    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
     memset(now, 0, sizeof(Tensor));
     for (int i = 0; i < 4; i++) {
-        bool alone = springs->green[i] == SHELL_NONE;
-        measure_spring(job, SINGE_RED, springs->red[i], normal, 1, now);
-        measure_spring(job, SINGE_BLUE, springs->blue[i], normal, alone ? 1 : 0.5f, now);
-        if (!alone) measure_spring(job, SINGE_GREEN, springs->green[i], normal, 0.5f, now);
+        uint32_t other = shell_neighbour(shell, cell, i);
+        tensor_add(now, vec_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
+        float share = other == SHELL_NONE ? 1 : 0.5f;
+        tensor_add(now, vec_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
+        if (other != SHELL_NONE)
+            tensor_add(now, vec_sub(middle(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
     }
-    for (int i = 0; i < 2; i++) measure_spring(job, SINGE_YELLOW, springs->yellow[i], normal, 1, now);
+    for (int i = 0; i < 2; i++) tensor_add(now, vec_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
     float area = shell->matter.area[shell_centre(shell, cell)];
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
@@ -71,6 +71,7 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
 /// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+    if (square < job->plan->safe * job->plan->safe) return false;
     for (int i = 0; i < 4; i++) {
         float strength = tear_strength(job->plan, job->shell, job->state, job->shell->cells[cell][i]);
         if (square > strength * strength) return true;

@@ -37,6 +37,7 @@ struct TearPlan {
     uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;    ///< [pool_blocks(cells)]
     uint32_t sheet_count;
+    float safe;         ///< N/m, nothing tears below: the least strength of all, as char or weakened
     float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
     float *least;       ///< [sheets] that factor where it is pulled farther apart than it reaches
 };

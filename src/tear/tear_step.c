@@ -39,11 +39,11 @@ float tear_carried(const Shell *shell, uint32_t index, float h) {
     return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
 }
 
-/// A sheet's least strength, fresh.
-static float weakest(const Shell *shell, const Sheet *sheet) {
+/// A sheet's least strength.
+static float weakest(const Sheet *sheet, Field strength) {
     float least = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        least = fminf(least, field_at(shell->matter.strength, v));
+        least = fminf(least, field_at(strength, v));
     return least;
 }
 
@@ -61,9 +61,12 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+    plan->safe = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
-        float strength = weakest(shell, &shell->sheets[s]);
+        float strength = weakest(&shell->sheets[s], shell->matter.strength);
+        plan->safe = fminf(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
         plan->least[s] = isinf(strength) ? 1 : fminf(1, 0.5f * tear_carried(shell, s, h) / strength);
+        plan->safe = fminf(plan->safe, strength * plan->least[s]);
         plan->weakened[s] = 1;
     }
     *out = plan;
