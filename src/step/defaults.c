@@ -44,7 +44,7 @@ static SingeMaterialDef standard_material(void) {
         .crease_radius = singe_param(15e-3f),
         .crease_share = singe_param(0.8f),
         .strength = singe_param(100),
-        .char_strength = singe_param(0.2f),
+        .char_strength = singe_param(0.3f),
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);

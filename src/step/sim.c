@@ -189,10 +189,10 @@ SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSh
     return SINGE_OK;
 }
 
-/// Vertices that a sheet has in reserve for tears: a quarter, and some for small ones.
+/// Vertices that a sheet has in reserve for tears: half as many as it has, and some for small ones.
 static uint32_t sim_spares(const SingeSim *sim, const Sheet *sheet) {
     const SingeSolverDef *solver = &sim->def.solver;
-    return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 4 + 16 : 0;
+    return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 2 + 16 : 0;
 }
 
 SingeResult sim_build(SingeSim *sim) {

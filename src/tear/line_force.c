@@ -168,6 +168,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     TearPull pull = {0};
     Fan fan;
     if (!(state->ablate.particle_flags[vertex] & SINGE_ALIVE) || state->dynamics.pinned[vertex]) return pull;
+    if (state->ablate.piece[vertex] < 0) return pull;
     split_fan(shell, vertex, &fan);
     if (fan.count < 2 || !pull_force(plan, shell, state, &fan, plan->torn[vertex], pull.force)) return pull;
     Vec normal = pull_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? vec(1, 0, 0) : vec(0, 1, 0);

@@ -286,6 +286,24 @@ class HotIron(Example):
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
+class Tear(Example):
+    """A ticket is pulled apart along its perforation while it burns."""
+
+    NAME = "tear"
+
+    def test(self):
+        self.common()
+        tears = self.column("tears")
+        # the right hand pulls from the first second on: within the next second and a half the perforation has gone, top
+        # to bottom but for a corner at most
+        pulled, parted = (int(t * self.fps) for t in (1, 2.5))
+        self.assertGreater(tears[parted] - tears[pulled], 35)
+        self.assertLess(tears[-1], 2000) # of the vertices in reserve
+        self.assertLess(max(self.column("strain_mean")[:parted]), 0.008)
+        self.assertLess(max(self.column("strain_p99")[:parted]), 0.03)
+        self.assertGreater(self.column("pieces_freed")[-1], 1)
+
+
 class SameBytes(Example):
     """Any number of threads, and a run that is killed and goes on, give the same cache."""
 

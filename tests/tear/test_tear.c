@@ -161,6 +161,30 @@ static void uniform_sheets_tear_too(void **unused) {
     singe_sim_destroy(sim);
 }
 
+/// A tube, whose strands are rings, tears around.
+static void tubes_tear_around(void **unused) {
+    (void)unused;
+    enum { AROUND = 20, LONG = 16 };
+    SingeSimDef def = pull_def();
+    SingeMaterialDef material = singe_default_material();
+    material.strength = (SingeParam){.value = 1, .to = 1.4f, .field = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}};
+    SingeSim *sim = test_sim(&def, test_cylinder(AROUND, LONG, 0.016f, LONG * side), &material);
+    for (int k = 0; k < 2; k++) {
+        uint32_t held[2 * AROUND];
+        for (uint32_t i = 0; i < 2 * AROUND; i++) held[i] = (k ? (LONG - 1) * AROUND : 0) + i;
+        const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, 0, 0, k ? 9e-3f : 0)};
+        SingePinDef pin = singe_default_pin();
+        SingePinId id;
+        pin.vertex_count = 2 * AROUND, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet.generation = 1;
+        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    }
+    test_steps(sim, STEPS);
+    SingeStats stats = singe_sim_stats(sim);
+    assert_true(stats.tears >= AROUND && stats.pieces >= 2 && stats.strain_mean < 0.003);
+    check_view(sim);
+    singe_sim_destroy(sim);
+}
+
 static void without_tearing_it_stays_whole(void **unused) {
     (void)unused;
     SingeSimDef def = pull_def();
@@ -173,10 +197,10 @@ static void without_tearing_it_stays_whole(void **unused) {
 }
 
 /// Runs a strip that burns at one end while it tears.
-static SingeSim *burning(int threads) {
+static SingeSim *burning(int threads, SingeInstructions instructions) {
     SingeSimDef def = pull_def();
     SingeMaterialDef material = singe_default_material();
-    def.thread_count = threads;
+    def.thread_count = threads, def.instructions = instructions;
     def.pace = 8;
     def.surface_detail = 0.5e-3f;
     material.char_strength = singe_param(0.5f);
@@ -187,7 +211,7 @@ static SingeSim *burning(int threads) {
 
 static void same_bytes_and_from_a_snapshot(void **unused) {
     (void)unused;
-    SingeSim *one = burning(1), *three = burning(3), *resumed;
+    SingeSim *one = burning(1, SINGE_INSTRUCTIONS_BEST), *three = burning(3, SINGE_INSTRUCTIONS_PLAIN), *resumed;
     int half = 0;
     for (; half < STEPS && singe_sim_stats(one).tears < 3; half++) test_steps(one, 1);
     test_steps(three, half);
@@ -228,6 +252,77 @@ static void cold_sheets_swing_whole(void **unused) {
         assert_int_equal(singe_sim_stats(sim).tears, 0);
         singe_sim_destroy(sim);
     }
+}
+
+/// Vertices in reserve lie behind each sheet's own; the drawn mesh and the pins number them as they were given.
+static void several_sheets_keep_their_numbers(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    SingeSim *sim;
+    SingeSheetId id[2];
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    for (int k = 0; k < 2; k++) {
+        TestMesh mesh = test_grid(6, 4, side, side);
+        test_mesh_move(&mesh, 0, 0, (float)k);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id[k]));
+        test_mesh_free(&mesh);
+    }
+    test_ok(sim, singe_sim_commit(sim));
+    const uint32_t last = 7 * 5 - 1, beyond = 7 * 5;
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    pin.sheet = id[1], pin.vertex_count = 1, pin.vertices = &beyond;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_pin(sim, &pin, &pin_id));
+    pin.vertices = &last;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+    SingeView view = singe_sim_view(sim);
+    uint32_t own = 0;
+    for (uint32_t v = 0; v < view.vertex_count; v++) {
+        if (view.source_vertex[v] == UINT32_MAX) continue;
+        assert_int_equal(view.source_vertex[v], own++);
+        bool second = view.source_vertex[v] >= 7 * 5;
+        assert_true(view.rest_position[v][2] == (float)second);
+        assert_int_equal(view.particle_flags[v] & SINGE_PINNED, v && own == 2 * 7 * 5 ? SINGE_PINNED : 0);
+    }
+    assert_int_equal(own, 2 * 7 * 5);
+    SingeSurface surface = {0};
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    for (uint32_t v = 0; v < surface.vertex_count; v++)
+        if (surface.source_vertex[v] >= 0) assert_true(surface.rest_position[v][2] == (float)(surface.source_vertex[v] >= 7 * 5));
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+}
+
+/// When the vertices in reserve are used up nothing more tears, and the log says so once.
+static void count_lines(void *context, SingeLogLevel level, const char *line) {
+    if (level == SINGE_LOG_WARNING && strstr(line, "reserve")) ++*(int *)context;
+}
+
+static void without_reserve_it_tears_no_further(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    int lines = 0;
+    def.log = (SingeLog){count_lines, &lines};
+    def.solver.substeps = 60;
+    SingeMaterialDef material = singe_default_material();
+    material.strength = singe_param(0.02f);
+    material.char_strength = singe_param(0.01f);
+    SingeSim *sim = test_sim(&def, test_grid(12, 8, side, side), &material);
+    const float wide = 12 * side;
+    for (int k = 0; k < 2; k++) { // everything is torn at, all around
+        const float points[6] = {k * wide, 0, 0, k * wide, 8 * side, 0};
+        const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.5f, k ? 0.05f : -0.05f, k ? 0.05f : -0.05f, 0)};
+        SingePinDef pin = singe_default_pin();
+        SingePinId id;
+        pin.points = points, pin.point_count = 2, pin.sheet.generation = 1, pin.path_count = 2, pin.path = path;
+        test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
+    }
+    test_steps(sim, 300);
+    assert_true(singe_sim_stats(sim).tears <= 13 * 9 / 2 + 16);
+    assert_int_equal(lines, 1);
+    check_view(sim);
+    singe_sim_destroy(sim);
 }
 
 /// Every allocation of the making fails once, and nothing is lost.
@@ -274,7 +369,7 @@ static void flux_fails(void *context, const SingeView *view, float *flux, float 
 
 static void failed_steps_leave_it_as_it_was(void **unused) {
     (void)unused;
-    SingeSim *sim = burning(1);
+    SingeSim *sim = burning(1, SINGE_INSTRUCTIONS_BEST);
     SingeSourceDef source = singe_default_source();
     SingeSourceId id;
     bool fails = false;
@@ -299,11 +394,14 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pulled_apart_it_tears_at_its_weakest_line),
         cmocka_unit_test(uniform_sheets_tear_too),
+        cmocka_unit_test(tubes_tear_around),
         cmocka_unit_test(without_tearing_it_stays_whole),
         cmocka_unit_test(same_bytes_and_from_a_snapshot),
         cmocka_unit_test(failed_steps_leave_it_as_it_was),
         cmocka_unit_test(cold_sheets_swing_whole),
         cmocka_unit_test(strong_sheets_tear_when_held_too_far_apart),
+        cmocka_unit_test(several_sheets_keep_their_numbers),
+        cmocka_unit_test(without_reserve_it_tears_no_further),
         cmocka_unit_test(out_of_memory),
     };
     return cmocka_run_group_tests_name("tear", tests, NULL, NULL);
