@@ -1,6 +1,6 @@
 // A strip that is pulled apart. Paper of 120 mm x 60 mm, of a stretch stiffness of 500 N/m, is held at its short sides,
-// which part at 4 mm/s. Across it, at 50 mm, runs a line that a picture weakens from 2 to 1 N/m. The load is the mean over
-// the strip's cells, between the grips, of the line force along it; it should break at the weak line, at about its
+// which part at 4 mm/s. Across it, at 50 mm, runs a line that a picture weakens from 2 to 1 N/m. The load is the mean
+// over the strip's cells, between the grips, of the line force along it; it should break at the weak line, at about its
 // strength, whatever cells and steps.
 #include <math.h>
 #include <stdlib.h>

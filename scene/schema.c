@@ -222,8 +222,8 @@ static const SchemaRow material_rows[] = {
     PARAM("crease_share", crease_share, DIM_FRACTION, WITHIN(0, 1),
           "how much of the bend beyond that stays; char keeps less, ash nothing"),
     PARAM("strength", strength, DIM_STIFFNESS, OVER_OR_INF(0),
-          "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The model's "
-          "own, far below real paper's ([equations.md](equations.md#tearing))"),
+          "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The "
+          "model's own, far below real paper's ([equations.md](equations.md#tearing))"),
     PARAM("char_strength", char_strength, DIM_STIFFNESS, OVER(0),
           "the same of what is burnt to mass_min; geometric between the two in burn progress"),
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),

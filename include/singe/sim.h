@@ -60,9 +60,9 @@ enum {
 };
 
 /// Read-only arrays of the shell. Pointers stay valid until the simulation is destroyed; contents
-/// change with each step. `topology_version` grows whenever something is removed or torn. Where sheets tear, vertices are
-/// in reserve at the end of each sheet's and springs at the end of the blue ones: not SINGE_ALIVE till a tear makes
-/// something of them; `cells` and `springs` then change, too.
+/// change with each step. `topology_version` grows whenever something is removed or torn. Where sheets
+/// tear, vertices are in reserve at the end of each sheet's and springs at the end of the blue ones: not
+/// SINGE_ALIVE till a tear makes something of them; `cells` and `springs` then change, too.
 typedef struct SingeView {
     double time;                        ///< s
     uint64_t step;                      ///< steps done

@@ -1,7 +1,7 @@
-// Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs: where
-// a split has given one of them another end, it is gone from its lane (weight 0) and goes on here, and so do the springs
-// that a tear makes for its second lip. They are projected one by one, in order, after the strands of their colour: the
-// constraint is that of strand_kernel.h on a chain of one spring,
+// Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs:
+// where a split has given one of them another end, it is gone from its lane (weight 0) and goes on here, and so do the
+// springs that a tear makes for its second lip. They are projected one by one, in order, after the strands of their
+// colour: the constraint is that of strand_kernel.h on a chain of one spring,
 //
 //   mu = W E/((w_a + w_b) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D),   x_a += w_a d mu,  x_b -= w_b d mu
 //
@@ -105,7 +105,8 @@ void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, Dyn
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
         if (square < target * 0.17157288f) e = -patch->length * sqrtf(square); // crushed, as in strand_kernel.h
         float beyond = fmaxf(e - square * 0.01f, 0);
-        float diagonal = weights * (softness * square + beyond * STRAND_YIELD) + patch->compliance * inverse_h2 * square;
+        float stiff = patch->compliance * inverse_h2;
+        float diagonal = weights * (softness * square + beyond * STRAND_YIELD) + stiff * square;
         float mu = patch->weight * e / fmaxf(diagonal, 1e-20f);
         patch->pull += mu;
         d[3] = 0;

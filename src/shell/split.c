@@ -125,7 +125,8 @@ static float area_that_goes(const Shell *shell, const Fan *fan, const ShellSplit
 
 SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) {
     Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
-    uint32_t v = split->vertex, to = sheet->vertex_first + sheet->vertex_count - sheet->spare_count + sheet->spare_used++;
+    uint32_t first_spare = sheet->vertex_first + sheet->vertex_count - sheet->spare_count;
+    uint32_t v = split->vertex, to = first_spare + sheet->spare_used++;
     SplitResult result = {.spare = to};
     memcpy(shell->rest_position[to], shell->rest_position[v], sizeof shell->rest_position[to]);
     memcpy(shell->uv[to], shell->uv[v], sizeof shell->uv[to]);

@@ -1,10 +1,11 @@
 // Splitting a vertex: the one way in which a Shell changes after its build (src/tear decides where).
 //
-// A vertex v lends some cells of its fan to a spare vertex v': they get v' for a corner, and the springs that lie in them
-// alone end at v' from then on. Cells stay whole. Where a cell that goes borders on one that stays, their edge is torn:
-// the two are neighbours no more (their green spring is of no cell any more), and the one that goes gets a blue spring of
-// its own, a spare one behind those of the strands. v' has v's place at rest, uv and material; area, mass and capacity
-// are shared by the areas of the corners. What has been done is a list of ShellSplit, from which it can be done again.
+// A vertex v lends some cells of its fan to a spare vertex v': they get v' for a corner, and the springs that lie in
+// them alone end at v' from then on. Cells stay whole. Where a cell that goes borders on one that stays, their edge is
+// torn: the two are neighbours no more (their green spring is of no cell any more), and the one that goes gets a blue
+// spring of its own, a spare one behind those of the strands. v' has v's place at rest, uv and material; area, mass and
+// capacity are shared by the areas of the corners. What has been done is a list of ShellSplit, from which it can be
+// done again.
 #ifndef SHELL_SPLIT_H
 #define SHELL_SPLIT_H
 

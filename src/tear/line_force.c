@@ -12,8 +12,8 @@
 //   N <- N + (1 - exp(-h/tau)) (N_step - N)
 //
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
-// averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by s^2/4
-// (variance, an axis) at a time, and so does the mean over the cells at a vertex.
+// averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by
+// s^2/4 (variance, an axis) at a time, and so does the mean over the cells at a vertex.
 #include "tear/plan.h"
 
 #include <math.h>

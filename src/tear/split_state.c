@@ -60,11 +60,11 @@ static void open_lip(const Shell *shell, State *state, uint32_t vertex) {
     for (uint32_t k = first; k < last; k++)
         for (int i = 0; i < 4; i++)
             sum = vec_add(sum, vec_load(state->dynamics.position[shell->cells[shell->fan[k]][i]]));
-    Vec place = vec_load(state->dynamics.position[vertex]), way = vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
+    Vec place = vec_load(state->dynamics.position[vertex]);
+    Vec way = vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
     vec_store(state->dynamics.position[vertex], vec_mad(place, way, LIP_GAP));
 }
 
-/// What is open carries nothing across: takes the line force in a direction from a vertex's cells.
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result) {
     *result = split_vertex(shell, fan, split);
     state->tear.splits[state->tear.split_count++] = (ShellSplit){split->vertex, split->cells, result->spare};

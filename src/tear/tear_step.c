@@ -1,19 +1,19 @@
 // Where sheets tear, and which way.
 //
-// A vertex tears where the largest principal value N_1 of the line force exceeds its strength and no vertex of its cells
-// is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open there
-// already: those with the most line force across them for their strength. The tear so runs along the sides of cells,
-// roughly across the direction of N_1, an edge a step; while tears run in a piece, no other begins there, and of those
-// that could begin, one does.
+// A vertex tears where the largest principal value N_1 of the line force exceeds its strength and no vertex of its
+// cells is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open
+// there already: those with the most line force across them for their strength. The tear so runs along the sides of
+// cells, roughly across the direction of N_1, an edge a step; while tears run in a piece, no other begins there, and of
+// those that could begin, one does.
 //
 // What line forces there can be. A sheet under tension T vibrates across itself at 4 T/(rho s^2) at most, in (1/s)^2,
-// which substeps of h follow as long as that is below about 1/h^2. Projections hold a sheet that is pulled apart farther
-// no better than to
+// which substeps of h follow as long as that is below about 1/h^2. Projections hold a sheet that is pulled apart
+// farther no better than to
 //
 //   T = 0.2 rho s^2/h^2     (measured: 0.19 to 0.35, from 20 to 3 substeps of 1/480 s)
 //
-// with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than it
-// reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
+// with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
+// it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
 // strengths are then lowered, all by one factor, so that the least is half of this.
 #include "tear/plan.h"
 

@@ -85,10 +85,12 @@ static void check_surface(SingeSim *sim) {
         for (int k = 0; k < 3; k++) {
             uint32_t a = surface.triangles[t][k], b = surface.triangles[t][(k + 1) % 3];
             edges[3 * t + (uint32_t)k] = (Edge){a < b ? a : b, a < b ? b : a};
-            float way = 0;
-            for (int d = 0; d < 3; d++)
-                way += (surface.position[a][d] - surface.position[b][d]) * (surface.position[a][d] - surface.position[b][d]);
-            assert_true(sqrtf(way) < 2.5f * side);
+            float square = 0;
+            for (int d = 0; d < 3; d++) {
+                float way = surface.position[a][d] - surface.position[b][d];
+                square += way * way;
+            }
+            assert_true(sqrtf(square) < 2.5f * side);
         }
     qsort(edges, count, sizeof *edges, by_ends);
     for (size_t e = 2; e < count; e++) assert_true(by_ends(&edges[e], &edges[e - 2]) != 0);
@@ -144,7 +146,8 @@ static void pulled_apart_it_tears_at_its_weakest_line(void **unused) {
     check_view(sim);
     // each lip of the tear has the weak line's vertices
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
-        if (view.particle_flags[v] & SINGE_ALIVE) assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
+        if (view.particle_flags[v] & SINGE_ALIVE)
+            assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
     singe_sim_destroy(sim);
 }
 
@@ -175,7 +178,8 @@ static void tubes_tear_around(void **unused) {
         const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, 0, 0, k ? 9e-3f : 0)};
         SingePinDef pin = singe_default_pin();
         SingePinId id;
-        pin.vertex_count = 2 * AROUND, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet.generation = 1;
+        pin.vertex_count = 2 * AROUND, pin.vertices = held, pin.sheet.generation = 1;
+        pin.path_count = 2, pin.path = path;
         test_ok(sim, singe_sim_add_pin(sim, &pin, &id));
     }
     test_steps(sim, STEPS);
@@ -289,7 +293,8 @@ static void several_sheets_keep_their_numbers(void **unused) {
     SingeSurface surface = {0};
     test_ok(sim, singe_sim_surface(sim, &surface));
     for (uint32_t v = 0; v < surface.vertex_count; v++)
-        if (surface.source_vertex[v] >= 0) assert_true(surface.rest_position[v][2] == (float)(surface.source_vertex[v] >= 7 * 5));
+        if (surface.source_vertex[v] >= 0)
+            assert_true(surface.rest_position[v][2] == (float)(surface.source_vertex[v] >= 7 * 5));
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
 }
