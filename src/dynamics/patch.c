@@ -58,7 +58,9 @@ static void patch_push(Patches *patches, SingeColour colour, uint32_t spring, fl
 
 bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     Patches *patches = &plan->patches;
-    if (patches->split_count == shell->split_count) return false;
+    if (shell->spare_count == 0) return false;
+    // a step that was undone may have dropped what is alive again
+    if (patches->split_count == shell->split_count && plan->strands_written) return false;
     patches->split_count = shell->split_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
@@ -83,15 +85,19 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT && shell->spare_count > 0; colour++) {
         StrandSet *set = &plan->strands.sets[colour];
         if (set->pull) memset(set->pull, 0, (size_t)set->row_count * STRAND_LANES * sizeof *set->pull);
+        uint32_t left = 0;
         for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
-            Patch *patch = &plan->patches.items[colour][k];
+            Patch *patch = &plan->patches.items[colour][left];
+            *patch = plan->patches.items[colour][k];
+            plan->patches.pull[colour][patch->spring] = 0;
+            if (!(state->ablate.spring_flags[colour][patch->spring] & SINGE_ALIVE)) continue; // gone for good
             const uint32_t *ends = shell->springs[colour].ends[patch->spring];
-            bool alive = state->ablate.spring_flags[colour][patch->spring] & SINGE_ALIVE;
             patch->a = ends[0], patch->b = ends[1], patch->pull = 0;
             patch->length = state->burn.spring_length[colour][patch->spring];
-            patch->weight =
-                alive ? dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b) : 0;
+            patch->weight = dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b);
+            left++;
         }
+        plan->patches.count[colour] = left;
     }
 }
 
