@@ -160,7 +160,8 @@ typedef struct SingeStats {
     double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations.md
     double ledger_error;           ///< |in + combustion - lost - stored| over the largest of them
     double mass_ledger_error;      ///< |initial - left - burnt - removed| / initial
-    /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part.
+    /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part, and not held at both
+    /// ends.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
     uint32_t tangled_cells;        ///< that crossed others as the simulation started, and are left alone until they part

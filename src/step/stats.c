@@ -39,13 +39,15 @@ static float stats_select(float *values, size_t n, size_t k) {
     return values[k];
 }
 
-/// Strain of the mesh's edges: |length/target - 1| of blue springs that are drawn, wholly or in part.
+/// Strain of the mesh's edges: |length/target - 1| of blue springs that are drawn, wholly or in part. Those between two
+/// held particles are left out: nothing in the step can change them.
 static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     const SpringSet *blue = &sim->shell.springs[SINGE_BLUE];
     size_t n = 0;
     double sum = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
         if (!(sim->state.ablate.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
+        if (sim->state.dynamics.pinned[blue->ends[k][0]] && sim->state.dynamics.pinned[blue->ends[k][1]]) continue;
         if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 &&
             ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
             continue;

@@ -61,6 +61,7 @@ static void statistics_match_the_view(void **state) {
         for (uint32_t k = 0; k < view.spring_count[SINGE_BLUE]; k++) {
             const uint32_t *ends = view.springs[SINGE_BLUE][k];
             if (!(view.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
+            if (view.particle_flags[ends[0]] & view.particle_flags[ends[1]] & SINGE_PINNED) continue; // held
             if (view.mass[ends[0]] < mass_loss && view.mass[ends[1]] < mass_loss) continue; // not drawn
             const float *a = view.position[ends[0]], *b = view.position[ends[1]];
             float d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
