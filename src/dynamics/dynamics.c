@@ -96,6 +96,7 @@ float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet) {
 void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare) {
     (void)shell, (void)state;
     attach_split(&plan->attachments, vertex, spare);
+    if (plan->touch) touch_plan_forget(plan->touch); // cells that shared a corner may touch from now on
 }
 
 void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {

@@ -205,6 +205,7 @@ static SingeSim *burning(int threads, SingeInstructions instructions) {
     SingeSimDef def = pull_def();
     SingeMaterialDef material = singe_default_material();
     def.thread_count = threads, def.instructions = instructions;
+    def.contact.enabled = true;
     def.pace = 8;
     def.surface_detail = 0.5e-3f;
     material.char_strength = singe_param(0.5f);
