@@ -304,7 +304,7 @@ class Tear(Example):
         self.assertGreater(tears[parted] - tears[pulled], 35)
         self.assertLess(tears[-1], 2000) # of the vertices in reserve
         self.assertLess(max(self.column("strain_mean")[:parted]), 0.008)
-        self.assertLess(max(self.column("strain_p99")[:parted]), 0.03)
+        self.assertLess(max(self.column("strain_p99")[:parted]), 0.05) # it hangs from a corner then
         self.assertGreater(self.column("pieces_freed")[-1], 1)
 
 
