@@ -170,13 +170,10 @@ class LetterHanging(Example):
         self.say["hottest"] = f"{max(self.column('temperature_max')) - ZERO_CELSIUS:.0f} C"
         self.look("100-119")
         self.told()
-        self.assertLessEqual(max(self.column("strain_mean")), 0.01)
-        self.assertLessEqual(max(self.column("strain_p99")), 0.05)
-        self.assertEqual(max(self.column("inverted_cells")), 0)
         self.assertLessEqual(max(self.column("strain_mean")), 0.008)
         self.assertLessEqual(max(self.column("strain_p99")), 0.03)
         self.assertGreater(self.column("tears")[-1], 0)
-        self.assertLessEqual(max(self.column("inverted_cells")), 0.02 * self.cells)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
         self.assertLessEqual(rest, 5e-3)
         self.assertGreater(self.rows[-1]["burnt_fraction"], 0.3)  # it did burn
         self.assertLess(self.rows[-1]["burnt_fraction"], 0.9)  # and there is something left to be still
