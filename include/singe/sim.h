@@ -91,7 +91,7 @@ typedef struct SingeView {
     /// [cell_count] N/m, line force in the sheet by which it tears, in rest coordinates: xx, yy, zz, yz, zx, xy; NULL
     /// where sheets cannot tear
     const float (*line_force)[6];
-    const uint32_t *source_vertex; ///< [vertex_count] of the input, numbered over all sheets; UINT32_MAX: in reserve
+    const int32_t *source_vertex; ///< [vertex_count] of the input, numbered over all sheets; -1: new, or in reserve
 } SingeView;
 
 /// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL.
