@@ -365,7 +365,7 @@ static void test_mesh_files(void **state) {
     write_text(folder, "a.obj", "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
                                 "f 2 3 4\nf 5 6 7\n");
     static const char text[] = "sheets: [{mesh: a.obj, units: mm, up: y, scale: 2, translate: [0, 0, 1]}]\n"
-                               "pins: [{vertices: [4, 6]}]\n";
+                               "pins: [{vertices: [4, 6]}]\ntearing: no\n"; // no vertices in reserve
     Scene *scene;
     SceneAssets assets;
     SceneMessages messages = {0};
