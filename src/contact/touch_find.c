@@ -164,6 +164,20 @@ static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) 
     return shared;
 }
 
+/// See TouchPair.bridge. Across a tear or a hole two cells may share a corner and yet slide over each other.
+static uint32_t find_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
+    uint32_t shared = corners_shared(shell->cells[a], shell->cells[b]);
+    if (shared != 1) return shared ? a : SHELL_NONE;
+    for (int side = 0; side < 4; side++) {
+        uint32_t between = shell_neighbour(shell, a, side);
+        if (between != SHELL_NONE && plan->alive[between] &&
+            corners_shared(shell->cells[a], shell->cells[between]) > 1 &&
+            corners_shared(shell->cells[between], shell->cells[b]) > 1)
+            return between;
+    }
+    return SHELL_NONE;
+}
+
 /// Whether b's box, on its way relative to a, comes within reach of a's.
 static inline bool boxes_meet(const TouchPlan *plan, uint32_t a, uint32_t b) {
     const TouchBox *p = &plan->boxes[a], *q = &plan->boxes[b];
@@ -189,7 +203,7 @@ static uint32_t bucket_pairs(const Find *find, uint32_t first, uint32_t last, To
             if (cube_key(cube_of(quad_max(p->swept_low, q->swept_low), inverse)) != key) continue;
             if (out && count < room)
                 out[count] = (TouchPair){.a = a, .b = b, .distance = plan->reach, .hit = 2,
-                                         .ring = corners_shared(find->shell->cells[a], find->shell->cells[b]) > 0};
+                                         .bridge = find_bridge(plan, find->shell, a, b)};
             count++;
         }
     }
@@ -217,7 +231,7 @@ static void pair_blocks(void *task, int begin, int end) {
 static void add_cells(TouchPlan *plan) {
     for (uint32_t c = 0; c < plan->cell_count && plan->pair_count < plan->pair_capacity; c++)
         if (plan->alive[c])
-            plan->pairs[plan->pair_count++] = (TouchPair){.a = c, .b = c, .distance = 0, .hit = 2, .ring = 1};
+            plan->pairs[plan->pair_count++] = (TouchPair){.a = c, .b = c, .distance = 0, .hit = 2, .bridge = c};
 }
 
 static void find_pairs(Find *find, Pool *pool) {
@@ -273,7 +287,7 @@ static void add_stray_pair(TouchPlan *plan, const Shell *shell, uint32_t a, uint
         return;
     }
     plan->pairs[plan->pair_count++] = (TouchPair){
-        .a = a, .b = b, .distance = 0, .hit = 2, .ring = corners_shared(shell->cells[a], shell->cells[b]) > 0};
+        .a = a, .b = b, .distance = 0, .hit = 2, .bridge = find_bridge(plan, shell, a, b)};
 }
 
 /// Cells in their boxes that a strayed one may have met.
@@ -441,8 +455,8 @@ static void measure_pair(const Find *find, TouchPair *pair) {
     place_nodes(find->shell, pair->a, x, origin, &p);
     place_nodes(find->shell, pair->b, x, origin, &q);
     pair->distance = far;
-    if (!pair->ring && (normal_parts(&p, &q, far) || normal_parts(&q, &p, far))) return;
-    if (pair->ring && touch_is_unfolded(touch_normals(p.at), touch_normals(q.at), false)) {
+    if (pair->bridge == SHELL_NONE && (normal_parts(&p, &q, far) || normal_parts(&q, &p, far))) return;
+    if (pair->bridge != SHELL_NONE && touch_is_unfolded(touch_normals(p.at), touch_normals(q.at), false)) {
         pair->distance = 0;
         return;
     }

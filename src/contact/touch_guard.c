@@ -5,9 +5,9 @@
 //
 //   |mean way of a - mean way of b| + deviation of a + deviation of b < d
 //
-// Cells that share a corner are taken for free while their triangles' normals lie within TOUCH_CONE of each other: then
-// they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision detection, 1994). What is
-// left is swept, feature by feature. Where it meets, the corners of both cells form a zone, with all zones that they
+// Cells that hang together at a side, or at a corner by a cell between, are taken for free while their triangles' normals
+// lie within a cone: then they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision
+// detection, 1994). What is left is swept, feature by feature. Where it meets, the corners of both cells form a zone, with all zones that they
 // touch, and go
 //
 //   x0 + u + a (x1 - x0 - u),   u the mean way of the zone by mass,
@@ -144,7 +144,9 @@ static float sweep_pair(const Guard *guard, const TouchPair *pair) {
 static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
     const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
-    if (pair->ring && touch_is_unfolded(a->normal, b->normal, pair->a == pair->b)) return true;
+    if (pair->bridge != SHELL_NONE && is_alive(guard, pair->bridge) &&
+        touch_is_unfolded(a->normal, b->normal, pair->a == pair->b))
+        return true;
     return touch_differ(a->way, b->way) + plan->gap < pair->distance;
 }
 

@@ -30,7 +30,7 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
     plan->slack_most = fmaxf(0.3f * plan->cell_size, plan->thickness);
     plan->noise = 4e-7f * far;
-    plan->gap = 1e-3f * plan->cell_size + 4 * plan->noise;
+    plan->gap = 5e-3f * plan->cell_size + 4 * plan->noise;
 }
 
 static bool allocate(Memory *memory, TouchPlan *plan) {

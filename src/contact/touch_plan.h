@@ -31,7 +31,9 @@ typedef struct TouchPair {
     uint64_t nodes;  ///< bit 4 i + j: node i of a and triangle j of b, bit 20 + 4 i + j: the other way round
     uint64_t edges;  ///< bit 8 i + j; of both those that may come within plan->reach before the next search
     uint64_t push_nodes, push_edges; ///< of them, those that this step may have to push
-    uint32_t ring;   ///< they share a corner, or are one
+    /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each where
+    /// they share a corner; else SHELL_NONE
+    uint32_t bridge;
 } TouchPair;
 
 /// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.

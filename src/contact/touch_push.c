@@ -8,7 +8,7 @@
 // one after another. g is the thickness, or, of what is nearer already, so much more than it has that the two part by
 // TOUCH_PART m/s. Slip across n since the substep began is taken back by at most mu |C| (Coulomb), as contact with
 // colliders does. A virtual centre stands for its four corners by quarters. What lies
-// nearer at rest than twice the thickness (the lips of a tear), is not pushed.
+// nearer at rest than twice the thickness (the lips of a tear) is kept apart by four times the guard's gap only.
 #include "base/clock.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
@@ -126,7 +126,8 @@ static TouchPush open_feature(const Opening *job, const TouchPair *pair, const P
         speed += wa[i] * quad_load(job->dynamics->velocity[a[i]]) - wb[i] * quad_load(job->dynamics->velocity[b[i]]);
     float toward = -quad_dot(speed, push.normal) * plan->time_step;
     if (distance > 1.25f * thickness + 1.5f * (toward > 0 ? toward : 0)) return push;
-    if (rest_distance(job->shell, pair, wa, wb) < 2 * thickness) return push;
+    if (rest_distance(job->shell, pair, wa, wb) < 2 * thickness) thickness = fminf(thickness, 4 * plan->gap);
+    if (distance > 1.25f * thickness + 1.5f * (toward > 0 ? toward : 0)) return push;
     float parted = distance + TOUCH_PART * plan->time_step;
     push.target = parted < thickness ? parted : thickness;
     gather(&push, a, wa, 1);

@@ -4,8 +4,9 @@
 #include <string.h>
 
 /// How far each lip moves towards the middle of its own cells, of the way there: lips are never in one place, so that
-/// contact can tell their sides from the start.
-static const float LIP_GAP = 0.02f;
+/// contact can tell their sides from the start. It is less than contact keeps free (contact/touch_plan.h), for it does
+/// not look at what moves here.
+static const float LIP_GAP = 0.002f;
 
 #define COPY(array, to, from) memcpy((array) + (to), (array) + (from), sizeof *(array))
 
