@@ -25,7 +25,7 @@
 
 #include <string.h>
 
-enum { ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
+enum { IMPACT_ROUNDS = 4, ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
 
 /// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
 /// next step begins with a search.
@@ -119,26 +119,38 @@ static float sweep_edge(const Guard *guard, const Swept *p, int i, const Swept *
     return touch_sweep(&sweep, guard->plan->gap, guard->plan->noise);
 }
 
-/// The share of the step's way that two cells can go before they meet, or 2.
-static float sweep_pair(const Guard *guard, const TouchPair *pair) {
+static void note_hit(TouchPair *pair, float hit, int kind, int i, int j) {
+    if (!(hit < pair->hit)) return;
+    pair->hit = hit;
+    pair->kind = (uint8_t)kind;
+    pair->first[0] = (uint8_t)i, pair->first[1] = (uint8_t)j;
+}
+
+static void sweep_both(const Guard *guard, const TouchPair *pair, Swept *p, Swept *q) {
+    uint32_t first = guard->shell->cells[pair->a][0];
+    Quad origin = quad_load(guard->plan->start[first]);
+    Quad mean = quad_load(guard->dynamics->position[first]) - origin;
+    sweep_nodes(guard, pair->a, origin, mean, p);
+    sweep_nodes(guard, pair->b, origin, mean, q);
+}
+
+/// Finds the share of the step's way that two cells can go before they meet, and what meets.
+static void sweep_pair(const Guard *guard, TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
-    uint32_t a = pair->a, b = pair->b, first = guard->shell->cells[a][0];
+    uint32_t a = pair->a, b = pair->b;
     Swept p, q;
-    Quad origin = quad_load(plan->start[first]), mean = quad_load(guard->dynamics->position[first]) - origin;
-    sweep_nodes(guard, a, origin, mean, &p);
-    sweep_nodes(guard, b, origin, mean, &q);
-    float hit = 2;
+    sweep_both(guard, pair, &p, &q);
     for (int i = 0; i < 5; i++)
         for (int j = 0; j < 4; j++) {
-            if (touch_owns_node(plan, a, i)) hit = fminf(hit, sweep_node(guard, &p, i, &q, j));
-            if (a != b && touch_owns_node(plan, b, i)) hit = fminf(hit, sweep_node(guard, &q, i, &p, j));
+            if (touch_owns_node(plan, a, i)) note_hit(pair, sweep_node(guard, &p, i, &q, j), TOUCH_NODE_OF_A, i, j);
+            if (a != b && touch_owns_node(plan, b, i))
+                note_hit(pair, sweep_node(guard, &q, i, &p, j), TOUCH_NODE_OF_B, i, j);
         }
     for (int i = 0; i < 8; i++) {
         if (!touch_owns_edge(plan, a, i)) continue;
         for (int j = a == b ? i + 1 : 0; j < 8; j++)
-            if (touch_owns_edge(plan, b, j)) hit = fminf(hit, sweep_edge(guard, &p, i, &q, j));
+            if (touch_owns_edge(plan, b, j)) note_hit(pair, sweep_edge(guard, &p, i, &q, j), TOUCH_EDGES, i, j);
     }
-    return hit;
 }
 
 static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
@@ -159,10 +171,101 @@ static double sweep_range(void *task, int begin, int end) {
         pair->hit = 2;
         if (guard->changed && !plan->changed[pair->a] && !plan->changed[pair->b]) continue;
         if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(plan, pair)) continue;
-        if (!pair_is_free(guard, pair)) pair->hit = sweep_pair(guard, pair);
+        if (!pair_is_free(guard, pair)) sweep_pair(guard, pair);
         hits += pair->hit < 2;
     }
     return hits;
+}
+
+// ---- impacts
+
+/// Weights of a cell's corners that stand for its nodes.
+static void spread(float corner[4], int node, float weight) {
+    for (int i = 0; i < 4; i++) corner[i] += node == i ? weight : node == 4 ? 0.25f * weight : 0;
+}
+
+/// Where what meets first meets: weights of the corners of a and b, and from the second point to the first.
+static Quad impact_points(const TouchPair *pair, const Swept *p, const Swept *q, float wa[4], float wb[4]) {
+    const Swept *one = pair->kind == TOUCH_NODE_OF_B ? q : p, *two = pair->kind == TOUCH_NODE_OF_B ? p : q;
+    float *w1 = pair->kind == TOUCH_NODE_OF_B ? wb : wa, *w2 = pair->kind == TOUCH_NODE_OF_B ? wa : wb;
+    Quad x[5], y[5], apart;
+    for (int i = 0; i < 5; i++) x[i] = one->place[i] + pair->hit * one->way[i], y[i] = two->place[i] + pair->hit * two->way[i];
+    if (pair->kind == TOUCH_EDGES) {
+        const uint8_t *k = touch_edge[pair->first[0]], *l = touch_edge[pair->first[1]];
+        float s, t;
+        apart = touch_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
+        spread(w1, k[0], 1 - s), spread(w1, k[1], s);
+        spread(w2, l[0], 1 - t), spread(w2, l[1], t);
+        return apart;
+    }
+    const uint8_t *k = touch_triangle[pair->first[1]];
+    float weight[3];
+    apart = touch_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);
+    spread(w1, pair->first[0], 1);
+    for (int i = 0; i < 3; i++) spread(w2, k[i], weight[i]);
+    return pair->kind == TOUCH_NODE_OF_B ? -apart : apart;
+}
+
+/// Moves the points that meet by `shift` relative to each other, each by what it weighs.
+static void impact_move(const Guard *guard, const TouchPair *pair, const float wa[4], const float wb[4], Quad shift,
+                        float weight) {
+    const uint32_t *cells[2] = {guard->shell->cells[pair->a], guard->shell->cells[pair->b]};
+    for (int k = 0; k < 8; k++) {
+        uint32_t v = cells[k >> 2][k & 3];
+        float w = k < 4 ? wa[k] : -wb[k - 4], *x = guard->dynamics->position[v];
+        if (w != 0) quad_store(x, quad_load(x) + guard->plan->start[v][3] * w / weight * shift);
+    }
+}
+
+static Quad impact_slip(const Guard *guard, const TouchPair *pair, const float wa[4], const float wb[4],
+                        const float (*x)[4]) {
+    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
+    Quad sum = {0};
+    for (int i = 0; i < 4; i++) sum += wa[i] * quad_load(x[a[i]]) - wb[i] * quad_load(x[b[i]]);
+    sum[3] = 0;
+    return sum;
+}
+
+/// An impact without bounce, and with friction: the points part at the end as far as when they met.
+static void impact(const Guard *guard, const TouchPair *pair) {
+    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
+    Swept p, q;
+    float wa[4] = {0}, wb[4] = {0}, weight = 0;
+    sweep_both(guard, pair, &p, &q);
+    Quad normal = impact_points(pair, &p, &q, wa, wb);
+    float distance = sqrtf(quad_dot(normal, normal));
+    for (int i = 0; i < 4; i++)
+        weight += wa[i] * wa[i] * guard->plan->start[a[i]][3] + wb[i] * wb[i] * guard->plan->start[b[i]][3];
+    if (!(distance > 0) || weight <= 0) return;
+    normal = normal / distance;
+    Quad end = impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->dynamics->position);
+    Quad slip = end - impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->plan->start);
+    float push = distance + guard->plan->gap - quad_dot(end, normal);
+    if (push <= 0) return;
+    slip -= quad_dot(slip, normal) * normal;
+    float length = sqrtf(quad_dot(slip, slip)), most = guard->plan->def.friction * push;
+    Quad shift = push * normal - (length <= most ? 1 : most / length) * slip;
+    impact_move(guard, pair, wa, wb, shift, weight);
+}
+
+/// Marks the cells at a pair's corners.
+static void mark_around(const Guard *guard, const TouchPair *pair) {
+    const Shell *shell = guard->shell;
+    for (int k = 0; k < 8; k++) {
+        uint32_t v = shell->cells[k < 4 ? pair->a : pair->b][k & 3];
+        for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) guard->plan->changed[shell->fan[f]] = 1;
+    }
+}
+
+/// Impacts of all pairs that meet, one after another.
+static void impact_all(const Guard *guard) {
+    TouchPlan *plan = guard->plan;
+    memset(plan->changed, 0, plan->cell_count);
+    for (uint32_t k = 0; k < plan->pair_count; k++) {
+        if (!(plan->pairs[k].hit < 2)) continue;
+        impact(guard, &plan->pairs[k]);
+        mark_around(guard, &plan->pairs[k]);
+    }
 }
 
 // ---- zones
@@ -235,33 +338,28 @@ static void zone_move(const Guard *guard) {
         for (int i = 0; i < 4; i++) plan->changed[c] |= plan->zone[shell->cells[c][i]] != SHELL_NONE;
 }
 
-/// Velocities and centres follow what zones have changed; the zones are emptied.
-static void zone_close(const Guard *guard, float h) {
+/// Velocities and centres follow what has been changed; the zones are emptied.
+static void close_ways(const Guard *guard, float h) {
     TouchPlan *plan = guard->plan;
     DynamicsState *dynamics = guard->dynamics;
-    if (plan->stopped_count == 0) return;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (!plan->changed[c]) continue;
         uint32_t centre = shell_centre(guard->shell, c);
         Quad shift = {0}, place = quad_load(dynamics->position[centre]);
-        if (place[3] == 0) continue;
         for (int i = 0; i < 4; i++) {
             uint32_t v = guard->shell->cells[c][i];
-            if (plan->zone[v] != SHELL_NONE)
-                shift += 0.25f * (quad_load(dynamics->position[v]) - quad_load(plan->goal[v]));
+            shift += 0.25f * (quad_load(dynamics->position[v]) - quad_load(plan->want[v]));
         }
         shift[3] = 0;
+        if (place[3] == 0 || quad_dot(shift, shift) == 0) continue;
         quad_store(dynamics->position[centre], place + shift);
         quad_store(dynamics->velocity[centre], quad_load(dynamics->velocity[centre]) + shift / h);
     }
-    for (uint32_t k = 0; k < plan->stopped_count; k++) {
-        uint32_t v = plan->stopped[k];
-        Quad shift = quad_load(dynamics->position[v]) - quad_load(plan->goal[v]);
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        Quad shift = quad_load(dynamics->position[v]) - quad_load(plan->want[v]);
         shift[3] = 0;
-        if (plan->start[v][3] > 0)
-            quad_store(dynamics->velocity[v], quad_load(dynamics->velocity[v]) + shift / h);
-        plan->zone[v] = SHELL_NONE;
+        if (quad_dot(shift, shift) > 0) quad_store(dynamics->velocity[v], quad_load(dynamics->velocity[v]) + shift / h);
     }
+    for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;
 }
 
@@ -327,6 +425,7 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
     double start = clock_seconds();
     Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
                    h * (float)(state->step - plan->step + 1), false};
+    bool stopped = false;
     for (int round = 0;; round++) {
         uint32_t hits = look(&guard, state, pool, h);
         if (hits == 0) break;
@@ -334,13 +433,18 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
             plan->counters.unresolved += hits;
             break;
         }
+        if (round == 0) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
-        for (uint32_t k = 0; k < plan->pair_count; k++)
-            if (plan->pairs[k].hit < 2) zone_join(&guard, &plan->pairs[k], round);
-        zone_move(&guard);
-        guard.changed = true;
+        if (round < IMPACT_ROUNDS) {
+            impact_all(&guard);
+        } else {
+            for (uint32_t k = 0; k < plan->pair_count; k++)
+                if (plan->pairs[k].hit < 2) zone_join(&guard, &plan->pairs[k], round - IMPACT_ROUNDS);
+            zone_move(&guard);
+        }
+        guard.changed = stopped = true;
     }
     plan->pair_count = plan->listed_count;
-    zone_close(&guard, h);
+    if (stopped) close_ways(&guard, h);
     plan->counters.seconds += clock_seconds() - start;
 }

@@ -41,6 +41,7 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
            NEW(memory, plan->bucket_first, (size_t)plan->bucket_count + 2) &&
            NEW(memory, plan->block_count, plan->block_capacity) && NEW(memory, plan->pairs, plan->pair_capacity) &&
            NEW(memory, plan->pushes, plan->push_capacity) && NEW(memory, plan->start, vertices) &&
+           NEW(memory, plan->want, vertices) &&
            NEW(memory, plan->goal, vertices) && NEW(memory, plan->motion, cells) && NEW(memory, plan->zone, vertices) &&
            NEW(memory, plan->share, vertices) && NEW(memory, plan->drift, vertices) &&
            NEW(memory, plan->stopped, vertices) && NEW(memory, plan->changed, cells) && NEW(memory, plan->strayed, cells) &&
@@ -64,6 +65,7 @@ void touch_plan_free(Memory *memory, TouchPlan *plan) {
     FREE(memory, plan->pairs, plan->pair_capacity);
     FREE(memory, plan->pushes, plan->push_capacity);
     FREE(memory, plan->start, vertices);
+    FREE(memory, plan->want, vertices);
     FREE(memory, plan->goal, vertices);
     FREE(memory, plan->motion, cells);
     FREE(memory, plan->zone, vertices);

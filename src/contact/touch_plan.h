@@ -12,6 +12,9 @@ enum { TOUCH_BLOCK = 256 };
 /// Room for a cell, of each list.
 enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_PUSHES = 16 };
 
+/// What meets.
+enum { TOUCH_NODE_OF_A, TOUCH_NODE_OF_B, TOUCH_EDGES };
+
 /// A cell's box at the search and the way it was on, over plan->steps. The fourth numbers are 0.
 typedef struct TouchBox {
     Quad low, high, way;
@@ -28,6 +31,8 @@ typedef struct TouchPair {
     uint32_t a, b;
     float distance;  ///< m, at least that at the search
     float hit;       ///< of the step's way, the share after which they meet; 2: never
+    uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
+    uint8_t kind;     ///< TOUCH_NODE_OF_A, TOUCH_NODE_OF_B or TOUCH_EDGES
     uint64_t nodes;  ///< bit 4 i + j: node i of a and triangle j of b, bit 20 + 4 i + j: the other way round
     uint64_t edges;  ///< bit 8 i + j; of both those that may come within plan->reach before the next search
     uint64_t push_nodes, push_edges; ///< of them, those that this step may have to push
@@ -91,7 +96,8 @@ struct TouchPlan {
 
     // the step
     float (*start)[4];       ///< [vertices] m
-    float (*goal)[4];        ///< [vertices] m, where they were going
+    float (*want)[4];        ///< [vertices] m, where the step has brought them
+    float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
     TouchMotion *motion;     ///< [cells]
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
     float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
