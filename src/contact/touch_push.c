@@ -212,15 +212,21 @@ static void way_range(void *task, int begin, int end) {
     }
 }
 
+/// Notes where cells are and how they move: as since the last search, for what lies trembles; else by their velocities.
 static void note_search(TouchPlan *plan, const Shell *shell, const State *state, const DynamicsState *dynamics) {
-    memcpy(plan->place, dynamics->position, plan->vertex_count * sizeof *plan->place);
+    bool known = plan->searched && state->step > plan->step;
+    float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         const uint32_t *at = shell->cells[c];
         Quad sum = {0};
-        for (int i = 0; i < 4; i++) sum += quad_load(dynamics->velocity[at[i]]);
-        quad_store(plan->speed[c], 0.25f * sum);
+        for (int i = 0; i < 4; i++)
+            sum += known ? quad_load(dynamics->position[at[i]]) - quad_load(plan->place[at[i]])
+                         : quad_load(dynamics->velocity[at[i]]);
+        sum[3] = 0;
+        quad_store(plan->speed[c], 0.25f / since * sum);
         plan->alive[c] = state->ablate.cell_flags[c] & SINGE_ALIVE;
     }
+    memcpy(plan->place, dynamics->position, plan->vertex_count * sizeof *plan->place);
     plan->step = state->step;
 }
 
