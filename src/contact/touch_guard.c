@@ -25,7 +25,7 @@
 
 #include <string.h>
 
-enum { IMPACT_ROUNDS = 4, ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
+enum { IMPACT_ROUNDS = 12, ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
 
 /// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
 /// next step begins with a search.
@@ -405,7 +405,6 @@ static bool follow_strayed(Guard *guard, const State *state, Pool *pool, float h
         for (uint32_t c = count = 0; c < plan->cell_count; c++)
             if (plan->strayed[c]) plan->stray[count++] = c;
     }
-    if (count > STRAY_MOST) count = STRAY_MOST;
     touch_search_strayed(plan, guard->shell, count, (const float(*)[4])guard->dynamics->position);
     plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
     return true;
