@@ -1,5 +1,6 @@
 #include "cli/findings.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -202,6 +203,16 @@ static bool has_rest(const CacheFrame *frame, const Side *side) {
            is_finite_point(frame->rest[side->opposite]);
 }
 
+/// How far the length of an edge may be off because its ends are stored as floats, half a last bit each.
+static double rounding(const float from[3], const float to[3]) {
+    double squares = 0;
+    for (int k = 0; k < 3; k++) {
+        const double bits = 0.5 * FLT_EPSILON * (fabs((double)from[k]) + fabs((double)to[k]));
+        squares += bits * bits;
+    }
+    return sqrt(squares);
+}
+
 /// An edge and the `count` triangles at it.
 static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t count, Findings *findings) {
     const uint32_t low = sides->low, high = sides->high;
@@ -214,7 +225,9 @@ static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t coun
     if (!has_rest(frame, sides)) return;
     const double length = distance(frame->position[low], frame->position[high]);
     const double rest = distance(frame->rest[low], frame->rest[high]);
-    if (length > findings->stretch * rest)
+    const double shortest = length - rounding(frame->position[low], frame->position[high]);
+    const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
+    if (shortest > findings->stretch * longest)
         findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low, high,
                      sides->triangle, 1e3 * length, 1e3 * rest);
     if (count == 2 && has_rest(frame, &sides[1]) && bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&

@@ -315,6 +315,20 @@ class Verify(Case):
         self.finds("non_manifold_edges", third, "has 3 triangles", others=("stretched_edges", "winding"))
         self.finds("winding", turned, "run the same way along edge")
 
+    def test_rounding(self):
+        """An edge of the size of its coordinates' last bits is as long as they are rounded to, and not stretched."""
+        def sliver(s, bits):
+            for x, rest, y in ((1, 1, 1), (1 + bits * 2**-23, 1 + 2**-23, 1), (1, 1, 1.01)):
+                s.vertices.append(Surface.vertex([x, y, 1]))
+                s.vertices[-1]["rest_x"] = rest
+            s.triangles[-1] = [len(s.vertices) - k for k in (3, 2, 1)]
+        def rounded(s): sliver(s, 3)
+        def stretched(s): sliver(s, 12)
+        self.finds("stretched_edges", stretched, "mm at rest")
+        self.damage(rounded)
+        _, _, rows = self.verify()
+        self.assertEqual(sum(row["stretched_edges"] for row in rows), 0)
+
     def test_stats(self):
         path = self.path("o", "stats.csv")
         with open(path) as file:
@@ -343,6 +357,8 @@ class Verify(Case):
         self.assertIn("inverted cells are not known", err)
 
     def test_stretch(self):
+        self.damage(lambda s: [vertex.update(x=1.01 * vertex["x"]) for vertex in s.vertices], 6)
+        self.verify()
         _, err, rows = self.verify("--stretch", "1", expect=1)
         self.assertGreater(rows[-1]["stretched_edges"], 0)
         self.assertIn("further ones of this kind are only counted", err)
