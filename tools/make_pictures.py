@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the pictures of examples/newspaper, curtain-flame and page-hot. Only for changing them: they are in the repository.
+"""Makes the pictures of examples/newspaper, curtain, shirt and page-hot. Only for changing them: they are in the repository.
 
 Needs Pillow, numpy and the Debian package fonts-ebgaramond.
-Usage: python3 tools/make_pictures.py [newspaper] [curtain] [page]   (default: all)
+Usage: python3 tools/make_pictures.py [newspaper] [curtain] [shirt] [page]   (default: all)
 """
 
 import math
@@ -209,7 +209,26 @@ def curtain():
     slub = 1 + 0.03 * np.asarray(Image.fromarray((rng.random((h, 24)) * 255).astype("uint8")).resize((w, h), Image.BICUBIC),
                                  dtype=float)[:, :] / 255 + 0.03 * rng.random((h, 1)) + 0.02 * rng.random((1, w))
     colour *= (weave * slub / 1.06)[:, :, None]
-    save(Image.fromarray(np.clip(colour, 0, 255).astype("uint8")), EXAMPLES / "curtain-flame" / "curtain.jpg")
+    save(Image.fromarray(np.clip(colour, 0, 255).astype("uint8")), EXAMPLES / "curtain" / "curtain.jpg")
+
+
+# ---- a sailor's shirt, 1.2 m to a side, as its charts are: stripes around body and sleeves
+
+KNIT = (1200, 1200)
+
+
+def shirt():
+    rng = np.random.default_rng(3)
+    w, h = KNIT
+    u, v = np.meshgrid((np.arange(w) + 0.5) / w, (np.arange(h) + 0.5) / h)
+    up = 1 - v
+    height = 0.85 + 1.2 * (up - 0.03)  # of the body above the floor, m
+    stripe = np.where(up < 0.6, (height < 1.30) & (height > 0.89) & (height / 0.034 % 1 < 0.36), (up - 0.77) * 1.2 / 0.034 % 1 < 0.36)
+    stripe = np.asarray(Image.fromarray((stripe * 255).astype("uint8")).filter(ImageFilter.GaussianBlur(0.7)), dtype=float) / 255
+    rib = 1 + 0.03 * np.sin(u * w * 1.7) + 0.02 * rng.random((1, w)) + 0.02 * rng.random((h, w))
+    colour = np.array((236, 230, 216.0)) * (1 - stripe[:, :, None]) + np.array((38, 52, 92.0)) * stripe[:, :, None]
+    colour *= (rib / 1.05 * (1 + 0.03 * clouds(rng, w, h, 40, 3)))[:, :, None]
+    save(Image.fromarray(np.clip(colour, 0, 255).astype("uint8")), EXAMPLES / "shirt" / "shirt.jpg")
 
 
 # ---- how readily a page burns, 0 to 1: figure 12's texture
@@ -228,6 +247,6 @@ def page():
 
 
 if __name__ == "__main__":
-    wanted = sys.argv[1:] or ["newspaper", "curtain", "page"]
+    wanted = sys.argv[1:] or ["newspaper", "curtain", "shirt", "page"]
     for name in wanted:
-        {"newspaper": newspaper, "curtain": curtain, "page": page}[name]()
+        {"newspaper": newspaper, "curtain": curtain, "shirt": shirt, "page": page}[name]()
