@@ -255,6 +255,62 @@ class StackEdge(Example):
         self.assertEqual(max(self.column("inverted_cells")), 0)
 
 
+class Stack(Example):
+    """Five letters lie on each other; fire goes through all of them."""
+
+    NAME = "stack"
+    PENDING = ("crossings",) # of triangles that are side by side at rest, where it burns
+
+    def burnt_of_sheets(self):
+        """Mean char of what is left of each sheet in the last frame; a sheet that is gone counts as burnt."""
+        char = [[] for _ in range(5)]
+        for vertex in self.vertices(len(self.rows)):
+            char[int(vertex["sheet"])].append(vertex["char"])
+        return [statistics.mean(values) if values else 1.0 for values in char]
+
+    def test_burns_through_all(self):
+        self.common()
+        self.before_the_fire()
+        burnt = self.burnt_of_sheets()
+        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
+        self.say["char of the sheets"] = " ".join(f"{share:.2f}" for share in burnt)
+        self.told()
+        self.assertGreater(min(burnt), 0.01)
+        self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.95)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+        self.assertLessEqual(max(self.column("strain_mean")), 0.008)
+
+
+class CrumpledBall(Example):
+    """A letter is crumpled into a ball between planes, let go and lit."""
+
+    NAME = "crumpled-ball"
+    PENDING = ()
+
+    def extent(self, frame):
+        """The sheet's length along x, y and z."""
+        rows = self.vertices(frame)
+        return [max(row[axis] for row in rows) - min(row[axis] for row in rows) for axis in "xyz"]
+
+    def test_stays_a_ball_and_burns(self):
+        self.common()
+        flat, held, lying = (self.extent(int(t * self.fps) + 1) for t in (0, 1.9, 2.65))
+        lit = next(row["time"] for row in self.rows if row["ignited"] > 0)
+        self.say["size"] = ", ".join("x".join(f"{1e3 * side:.0f}" for side in size) for size in (flat, held, lying)) + " mm"
+        self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
+        self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
+        self.told()
+        # 21 cm long as it lay flat, less than half of that between the planes, and not flat again when they have gone
+        self.assertGreater(max(flat), 0.2)
+        self.assertLess(max(held), 0.1)
+        self.assertLess(max(lying), 0.17)
+        self.assertGreater(min(lying), 0.03)
+        self.assertGreater(lit, 2.65)
+        self.assertGreater(self.rows[-1]["burnt_fraction"], 0.3)
+        self.assertEqual(max(self.column("inverted_cells")), 0)
+        self.assertLessEqual(max(self.column("strain_mean")), 0.03) # it is squeezed hard
+
+
 class HotIron(Example):
     NAME = "hot-iron"
 
