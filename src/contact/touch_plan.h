@@ -10,7 +10,7 @@ enum { TOUCH_STEPS = 10 };
 /// Buckets or pairs that are worked on together.
 enum { TOUCH_BLOCK = 256 };
 /// Room for a cell, of each list.
-enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 28, TOUCH_PUSHES = 16 };
+enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 40, TOUCH_PUSHES = 24 };
 
 /// What meets.
 enum { TOUCH_NODE_OF_A, TOUCH_NODE_OF_B, TOUCH_EDGES };
