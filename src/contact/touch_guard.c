@@ -6,7 +6,7 @@
 //   |mean way of a - mean way of b| + deviation of a + deviation of b < d
 //
 // Cells that hang together at a side, or at a corner by a cell between, are taken for free while their triangles' normals
-// lie within a cone: then they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision
+// lie within a cone and their corners are in shape: then they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision
 // detection, 1994). What is left is swept, feature by feature. Where it meets, the corners of both cells form a zone, with all zones that they
 // touch, and go
 //
@@ -157,7 +157,8 @@ static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
     const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
     if (pair->bridge != SHELL_NONE && is_alive(guard, pair->bridge) &&
-        touch_is_unfolded(a->normal, b->normal, pair->a == pair->b))
+        touch_is_unfolded(a->normal, b->normal, pair->a == pair->b) &&
+        touch_is_unfolded(a->normal, plan->motion[pair->bridge].normal, pair->a == pair->bridge))
         return true;
     return touch_differ(a->way, b->way) + plan->gap < pair->distance;
 }

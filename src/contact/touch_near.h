@@ -24,7 +24,8 @@ typedef struct TouchSweep {
 /// Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest approach.
 float touch_sweep(const TouchSweep *sweep, float gap, float noise);
 
-/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 4 where one has none.
+/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 4 where one has none, or the
+/// cell is out of shape.
 Quad touch_normals(const Quad node[5]);
 
 /// Whether all normals of two cells, or of one, lie within a cone: then they are not folded onto each other.

@@ -283,6 +283,7 @@ class CrumpledBall(Example):
     """A letter is crumpled into a ball between planes, let go and lit."""
 
     NAME = "crumpled-ball"
+    STRETCHED = 6 # squeezed between the planes
 
     def extent(self, frame):
         """The sheet's length along x, y and z."""
