@@ -6,7 +6,7 @@
 FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
 
-.PHONY: all demo check pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all demo check check-examples pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -46,7 +46,11 @@ check:
 	ctest --preset tsan -R "^(base_pool|step_threads)$$"
 	ctest --preset asan -j2
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
-	ctest --preset release -j2
+	ctest --preset release -j2 -E '^example_(StackEdge|Newspaper|Curtain)$$' # those by check-examples: too long here
+
+# every example, run whole and verified: 15 minutes
+check-examples: build
+	ctest --preset release -j2 -R '^example_'
 
 pictures:
 	scripts/draw_gallery.sh
