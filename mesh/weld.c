@@ -12,7 +12,8 @@ uint32_t places_slot(const Places *places, const int64_t box[3]) {
 }
 
 void places_box(const Places *places, const double *place, int64_t box[3]) {
-    for (int k = 0; k < 3; k++) box[k] = (int64_t)floor(place[k] / places->size);
+    const double far = 0x1p62; // a place may be more boxes away than a number counts; those out there share the last
+    for (int k = 0; k < 3; k++) box[k] = (int64_t)fmin(fmax(floor(place[k] / places->size), -far), far);
 }
 
 Places places_make(Work *work, double size) {
