@@ -6,6 +6,11 @@
 FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
 
+# tests that measure, for a minute or more under a sanitizer, on code that others go through there
+MEASURING = cli_paper|cli_materials|cli_bench|heat_front
+# check-examples has them: together they would take longer than all the rest
+LONG_EXAMPLES = LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain
+
 .PHONY: all demo check check-examples pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
@@ -44,11 +49,11 @@ check:
 	$(MAKE) build build-asan build-fuzz build-shared build-tsan
 	build-shared/cli/singe --version
 	ctest --preset tsan -R "^(base_pool|step_threads)$$"
-	ctest --preset asan -j2
+	ctest --preset asan -j2 -E '^($(MEASURING))$$'
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
-	ctest --preset release -j2 -E '^example_(StackEdge|Newspaper|Curtain)$$' # those by check-examples: too long here
+	ctest --preset release -j2 -E '^example_($(LONG_EXAMPLES))$$'
 
-# every example, run whole and verified: 15 minutes
+# every example, run whole and verified: 25 minutes
 check-examples: build
 	ctest --preset release -j2 -R '^example_'
 
