@@ -85,8 +85,10 @@ class Example(Case):
         lines = header.decode().splitlines()
         count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
         kept = lines[: next(i for i, line in enumerate(lines) if line.startswith("element face"))]
-        names = [line.split()[2] for line in kept if line.startswith("property")]
-        rows = struct.iter_unpack("<" + "f" * len(names), data[: 4 * len(names) * count])
+        properties = [line.split()[1:] for line in kept if line.startswith("property")]
+        names = [name for _, name in properties]
+        kinds = "".join("i" if kind == "int" else "f" for kind, _ in properties)
+        rows = struct.iter_unpack("<" + kinds, data[: 4 * len(names) * count])
         return [dict(zip(names, row)) for row in rows]
 
     def ash_left(self):
@@ -257,7 +259,7 @@ class StackEdge(Example):
 
 
 class Stack(Example):
-    """Five letters lie on each other; fire goes through all of them."""
+    """Five letters lie on each other; fire climbs through them from the lowest."""
 
     NAME = "stack"
 
@@ -268,14 +270,30 @@ class Stack(Example):
             char[int(vertex["sheet"])].append(vertex["char"])
         return [statistics.mean(values) if values else 1.0 for values in char]
 
-    def test_burns_through_all(self):
+    def lit(self):
+        """When each sheet caught fire, in s, as far as what still lies there in some frames tells."""
+        first = [math.inf] * 5
+        for frame in range(25, len(self.rows) + 1, 15):
+            for vertex in self.vertices(frame):
+                if vertex["time_ignited"] >= 0:
+                    sheet = int(vertex["sheet"])
+                    first[sheet] = min(first[sheet], vertex["time_ignited"])
+        return first
+
+    def test_climbs_through_all(self):
         self.common()
         self.before_the_fire()
         burnt = self.burnt_of_sheets()
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["char of the sheets"] = " ".join(f"{share:.2f}" for share in burnt)
+        lit = self.lit()
+        self.say["lit"] = " ".join(f"{time:.1f}" for time in lit) + " s"
         self.told()
-        self.assertGreater(min(burnt), 0.01)
+        self.assertGreater(burnt[0], burnt[4])
+        self.assertGreater(burnt[4], 0.01)
+        self.assertLess(lit[0], 1.2)  # by the match, which reaches no other
+        self.assertGreater(min(lit[1:]), 1.5)
+        self.assertEqual(max(lit), lit[4])
         self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.95)
         self.assertEqual(max(self.column("inverted_cells")), 0)
         self.assertLessEqual(max(self.column("strain_mean")), 0.008)
