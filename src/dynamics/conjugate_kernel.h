@@ -17,7 +17,7 @@ static inline Pack pack_load(const double *from) { return *(const Pack *)from; }
 static inline void pack_store(double *to, Pack a) { *(Pack *)to = a; }
 
 static inline Pack pack_gather(const double *from, const uint32_t *at) {
-    Pack pack;
+    Pack pack = {0};
     for (int l = 0; l < PACK; l++) pack[l] = from[at[l]];
     return pack;
 }
