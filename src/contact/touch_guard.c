@@ -5,20 +5,20 @@
 //
 //   |mean way of a - mean way of b| + deviation of a + deviation of b < d
 //
-// Cells that hang together at a side, or at a corner by a cell between, are taken for free while their triangles' normals
-// lie within a cone and their corners are in shape: then they are not folded onto each other (Volino and Magnenat-Thalmann, Efficient self-collision
-// detection, 1994). What is left is swept, feature by feature. Where it meets, the corners of both cells form a zone, with all zones that they
-// touch, and go
+// Cells that hang together at a side, or at a corner by a cell between, are taken for free while their triangles'
+// normals lie within a cone and their corners are in shape: then they are not folded onto each other (Volino and
+// Magnenat-Thalmann, Efficient self-collision detection, 1994). What is left is swept, feature by feature. Where it
+// meets, the corners of both cells form a zone, with all zones that they touch, and go
 //
 //   x0 + u + a (x1 - x0 - u),   u the mean way of the zone by mass,
 //
 // with a the share of the way that was free: the zone keeps its momentum and loses what would have closed it. As other
-// cells may now be in the way, this is repeated with what has changed; a zone that meets again halves its share, and has 0
-// from round ZONE_PATIENCE on, when it moves as one piece (the impact zones of Provot, 1997). Both steps only ever join
-// zones or lessen shares, so the rounds end. Held corners go their own way.
+// cells may now be in the way, this is repeated with what has changed; a zone that meets again halves its share, and
+// has 0 from round ZONE_PATIENCE on, when it moves as one piece (the impact zones of Provot, 1997). Both steps only
+// ever join zones or lessen shares, so the rounds end. Held corners go their own way.
 //
-// A corner that has left the box that the search gave its cell may have met what the search did not list: then the search is
-// repeated for this step's own ways.
+// A corner that has left the box that the search gave its cell may have met what the search did not list: then the
+// search is repeated for this step's own ways.
 #include "base/clock.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
@@ -190,7 +190,10 @@ static Quad impact_points(const TouchPair *pair, const Swept *p, const Swept *q,
     const Swept *one = pair->kind == TOUCH_NODE_OF_B ? q : p, *two = pair->kind == TOUCH_NODE_OF_B ? p : q;
     float *w1 = pair->kind == TOUCH_NODE_OF_B ? wb : wa, *w2 = pair->kind == TOUCH_NODE_OF_B ? wa : wb;
     Quad x[5], y[5], apart;
-    for (int i = 0; i < 5; i++) x[i] = one->place[i] + pair->hit * one->way[i], y[i] = two->place[i] + pair->hit * two->way[i];
+    for (int i = 0; i < 5; i++) {
+        x[i] = one->place[i] + pair->hit * one->way[i];
+        y[i] = two->place[i] + pair->hit * two->way[i];
+    }
     if (pair->kind == TOUCH_EDGES) {
         const uint8_t *k = touch_edge[pair->first[0]], *l = touch_edge[pair->first[1]];
         float s, t;
@@ -254,7 +257,8 @@ static void mark_around(const Guard *guard, const TouchPair *pair) {
     const Shell *shell = guard->shell;
     for (int k = 0; k < 8; k++) {
         uint32_t v = shell->cells[k < 4 ? pair->a : pair->b][k & 3];
-        for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) guard->plan->changed[shell->fan[f]] = 1;
+        for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++)
+            guard->plan->changed[shell->fan[f]] = 1;
     }
 }
 

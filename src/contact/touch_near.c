@@ -35,13 +35,13 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
     return p - mix3(a, b, c, weight);
 }
 
-/// Mean normal of a cell's triangles, with the largest deviation as fourth; 4 where one has no normal.
 /// Whether a cell's corners have angles of 30 to 120 degrees, turning about `normal`.
 static bool is_in_shape(const Quad node[5], Quad normal) {
     for (int i = 0; i < 4; i++) {
         Quad next = node[(i + 1) & 3] - node[i], last = node[(i + 3) & 3] - node[i];
         float dot = quad_dot(next, last), square = quad_dot(next, next) * quad_dot(last, last);
-        if (quad_dot(quad_cross(next, last), normal) <= 0 || dot * dot > (dot > 0 ? 0.75f : 0.25f) * square) return false;
+        if (quad_dot(quad_cross(next, last), normal) <= 0) return false;
+        if (dot * dot > (dot > 0 ? 0.75f : 0.25f) * square) return false;
     }
     return true;
 }

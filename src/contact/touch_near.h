@@ -20,12 +20,13 @@ typedef struct TouchSweep {
 } TouchSweep;
 
 /// The share of its way, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is. What is
-/// as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li, Kaufman and Jiang,
-/// Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest approach.
+/// as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li, Kaufman and
+/// Jiang, Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest
+/// approach.
 float touch_sweep(const TouchSweep *sweep, float gap, float noise);
 
-/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 4 where one has none, or the
-/// cell is out of shape.
+/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 4 where one has none, or
+/// the cell is out of shape.
 Quad touch_normals(const Quad node[5]);
 
 /// Whether all normals of two cells, or of one, lie within a cone: then they are not folded onto each other.

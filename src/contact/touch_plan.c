@@ -21,10 +21,12 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->pair_capacity = capped(TOUCH_PAIRS * cells + 64);
     plan->push_capacity = capped(TOUCH_PUSHES * cells + 64);
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
-    plan->block_capacity = (plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity) / TOUCH_BLOCK + 2;
+    uint32_t longer = plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity;
+    plan->block_capacity = longer / TOUCH_BLOCK + 2;
     plan->cell_size = INFINITY;
     float far = 0;
-    for (uint32_t s = 0; s < shell->sheet_count; s++) plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        plan->cell_size = fminf(plan->cell_size, shell->sheets[s].cell_size);
     for (uint32_t v = 0; v < shell->vertex_count; v++)
         for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
     plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
@@ -33,49 +35,46 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->gap = 5e-3f * plan->cell_size + 4 * plan->noise;
 }
 
-static bool allocate(Memory *memory, TouchPlan *plan) {
+typedef struct Array {
+    void *at; ///< the plan's pointer
+    size_t count, size;
+} Array;
+
+enum { ARRAYS = 24 };
+
+/// The plan's arrays, for what makes and what frees them.
+static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
-    return NEW(memory, plan->place, vertices) && NEW(memory, plan->speed, cells) && NEW(memory, plan->alive, cells) &&
-           NEW(memory, plan->tangled, cells) && NEW(memory, plan->boxes, cells) && NEW(memory, plan->owned, cells) &&
-           NEW(memory, plan->owner, vertices) && NEW(memory, plan->entries, plan->entry_capacity) &&
-           NEW(memory, plan->bucket_first, (size_t)plan->bucket_count + 2) &&
-           NEW(memory, plan->block_count, plan->block_capacity) && NEW(memory, plan->pairs, plan->pair_capacity) &&
-           NEW(memory, plan->pushes, plan->push_capacity) && NEW(memory, plan->start, vertices) &&
-           NEW(memory, plan->want, vertices) &&
-           NEW(memory, plan->goal, vertices) && NEW(memory, plan->motion, cells) && NEW(memory, plan->zone, vertices) &&
-           NEW(memory, plan->share, vertices) && NEW(memory, plan->drift, vertices) &&
-           NEW(memory, plan->stopped, vertices) && NEW(memory, plan->changed, cells) && NEW(memory, plan->strayed, cells) &&
-           NEW(memory, plan->stray, cells) &&
-           NEW(memory, plan->partial, pool_blocks((int)plan->pair_capacity));
+#define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
+    const Array all[ARRAYS] = {
+        ARRAY(place, vertices), ARRAY(speed, cells), ARRAY(alive, cells), ARRAY(tangled, cells), ARRAY(boxes, cells),
+        ARRAY(owned, cells), ARRAY(owner, vertices), ARRAY(entries, plan->entry_capacity),
+        ARRAY(bucket_first, (size_t)plan->bucket_count + 2), ARRAY(block_count, plan->block_capacity),
+        ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
+        ARRAY(want, vertices), ARRAY(goal, vertices), ARRAY(motion, cells), ARRAY(zone, vertices),
+        ARRAY(share, vertices), ARRAY(drift, vertices), ARRAY(stopped, vertices), ARRAY(changed, cells),
+        ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
+    };
+#undef ARRAY
+    memcpy(list, all, sizeof all);
+}
+
+static bool allocate(Memory *memory, TouchPlan *plan) {
+    Array list[ARRAYS];
+    list_arrays(plan, list);
+    for (int k = 0; k < ARRAYS; k++) {
+        void *block = memory_new(memory, list[k].count, list[k].size);
+        if (!block) return false;
+        memcpy(list[k].at, &block, sizeof block);
+    }
+    return true;
 }
 
 void touch_plan_free(Memory *memory, TouchPlan *plan) {
     if (!plan) return;
-    size_t cells = plan->cell_count, vertices = plan->vertex_count;
-    FREE(memory, plan->place, vertices);
-    FREE(memory, plan->speed, cells);
-    FREE(memory, plan->alive, cells);
-    FREE(memory, plan->tangled, cells);
-    FREE(memory, plan->boxes, cells);
-    FREE(memory, plan->owned, cells);
-    FREE(memory, plan->owner, vertices);
-    FREE(memory, plan->entries, plan->entry_capacity);
-    FREE(memory, plan->bucket_first, (size_t)plan->bucket_count + 2);
-    FREE(memory, plan->block_count, plan->block_capacity);
-    FREE(memory, plan->pairs, plan->pair_capacity);
-    FREE(memory, plan->pushes, plan->push_capacity);
-    FREE(memory, plan->start, vertices);
-    FREE(memory, plan->want, vertices);
-    FREE(memory, plan->goal, vertices);
-    FREE(memory, plan->motion, cells);
-    FREE(memory, plan->zone, vertices);
-    FREE(memory, plan->share, vertices);
-    FREE(memory, plan->drift, vertices);
-    FREE(memory, plan->stopped, vertices);
-    FREE(memory, plan->changed, cells);
-    FREE(memory, plan->strayed, cells);
-    FREE(memory, plan->stray, cells);
-    FREE(memory, plan->partial, pool_blocks((int)plan->pair_capacity));
+    Array list[ARRAYS];
+    list_arrays(plan, list);
+    for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
     FREE(memory, plan, 1);
 }
 
