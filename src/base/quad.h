@@ -6,6 +6,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 typedef float Quad __attribute__((vector_size(16)));
 typedef int32_t QuadMask __attribute__((vector_size(16))); ///< -1 where it holds, 0 elsewhere
 
@@ -16,9 +20,20 @@ static inline Quad quad_all(float a) { return (Quad){a, a, a, a}; }
 static inline Quad quad_select(QuadMask mask, Quad yes, Quad no) {
     return (Quad)((mask & (QuadMask)yes) | (~mask & (QuadMask)no));
 }
+#ifdef __SSE2__ // compilers do not see one instruction in a comparison and a choice
+static inline Quad quad_min(Quad a, Quad b) { return (Quad)_mm_min_ps((__m128)a, (__m128)b); }
+static inline Quad quad_max(Quad a, Quad b) { return (Quad)_mm_max_ps((__m128)a, (__m128)b); }
+static inline Quad quad_sqrt(Quad a) { return (Quad)_mm_sqrt_ps((__m128)a); }
+/// Bit k is set where the mask holds in number k.
+static inline unsigned quad_bits(QuadMask mask) { return (unsigned)_mm_movemask_ps((__m128)mask); }
+#else
 static inline Quad quad_min(Quad a, Quad b) { return quad_select(a < b, a, b); }
 static inline Quad quad_max(Quad a, Quad b) { return quad_select(a > b, a, b); }
 static inline Quad quad_sqrt(Quad a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
+static inline unsigned quad_bits(QuadMask mask) {
+    return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+}
+#endif
 
 #ifdef __clang__
 #define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)

@@ -48,15 +48,16 @@ static void measure_cell(const Guard *guard, uint32_t c) {
     TouchPlan *plan = guard->plan;
     const uint32_t *corner = guard->shell->cells[c];
     const float(*x)[4] = (const float(*)[4])guard->dynamics->position;
-    Quad way[4], node[5], foreseen = guard->time * quad_load(plan->speed[c]);
+    Quad node[5];
     float astray = 0;
-    touch_ways(plan, corner, x, way);
     for (int i = 0; i < 4; i++) {
-        Quad stray = way[i] - foreseen;
-        astray = fmaxf(astray, quad_dot(stray, stray));
+        Quad foreseen = quad_load(plan->place[corner[i]]) + guard->time * quad_load(plan->speed[corner[i]]);
+        Quad stray = quad_load(x[corner[i]]) - foreseen;
+        float square = quad_dot(stray, stray);
+        astray = square > astray ? square : astray;
     }
     touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-    plan->motion[c].way = touch_mean(way);
+    plan->motion[c].way = touch_way(plan, corner, x);
     plan->motion[c].normal = touch_normals(node);
     plan->strayed[c] = !(astray < 0.25f * plan->slack * plan->slack);
 }
@@ -160,7 +161,9 @@ static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
         touch_is_unfolded(a->normal, b->normal, pair->a == pair->b) &&
         touch_is_unfolded(a->normal, plan->motion[pair->bridge].normal, pair->a == pair->bridge))
         return true;
-    return touch_differ(a->way, b->way) + plan->gap < pair->distance;
+    // so far apart that the sweep, which stops a little before the gap, would not stop either
+    return pair->distance > 2 * plan->gap &&
+           touch_differ(a->way, b->way) + plan->noise < 0.9f * (pair->distance - plan->gap);
 }
 
 static double sweep_range(void *task, int begin, int end) {
@@ -373,15 +376,13 @@ static void close_ways(const Guard *guard, float h) {
 /// Searches for the ways of this step.
 static void search_again(Guard *guard, const State *state, Pool *pool, float h) {
     TouchPlan *plan = guard->plan;
-    memcpy(plan->place, plan->start, plan->vertex_count * sizeof *plan->place);
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        const uint32_t *at = guard->shell->cells[c];
-        Quad sum = {0};
-        for (int i = 0; i < 4; i++)
-            sum += quad_load(guard->dynamics->position[at[i]]) - quad_load(plan->start[at[i]]);
-        quad_store(plan->speed[c], 0.25f / h * sum);
-        plan->alive[c] = guard->cell_flags[c] & SINGE_ALIVE;
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        Quad start = quad_load(plan->start[v]), speed = (quad_load(guard->dynamics->position[v]) - start) / h;
+        speed[3] = 0;
+        quad_store(plan->place[v], start);
+        quad_store(plan->speed[v], speed);
     }
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = guard->cell_flags[c] & SINGE_ALIVE;
     plan->step = state->step;
     guard->time = h;
     touch_search(plan, guard->shell, pool);
@@ -410,7 +411,7 @@ static bool follow_strayed(Guard *guard, const State *state, Pool *pool, float h
         for (uint32_t c = count = 0; c < plan->cell_count; c++)
             if (plan->strayed[c]) plan->stray[count++] = c;
     }
-    touch_search_strayed(plan, guard->shell, count, (const float(*)[4])guard->dynamics->position);
+    touch_search_strayed(plan, guard->shell, pool, count, (const float(*)[4])guard->dynamics->position);
     plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
     return true;
 }

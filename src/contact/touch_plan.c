@@ -21,8 +21,6 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->pair_capacity = capped(TOUCH_PAIRS * cells + 64);
     plan->push_capacity = capped(TOUCH_PUSHES * cells + 64);
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
-    uint32_t longer = plan->bucket_count > plan->pair_capacity ? plan->bucket_count : plan->pair_capacity;
-    plan->block_capacity = longer / TOUCH_BLOCK + 2;
     plan->cell_size = INFINITY;
     float far = 0;
     for (uint32_t s = 0; s < shell->sheet_count; s++)
@@ -40,20 +38,22 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 24 };
+enum { ARRAYS = 26 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
 #define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
     const Array all[ARRAYS] = {
-        ARRAY(place, vertices), ARRAY(speed, cells), ARRAY(alive, cells), ARRAY(tangled, cells), ARRAY(boxes, cells),
+        ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells), ARRAY(boxes, cells),
+        ARRAY(slabs, cells), ARRAY(rest, cells),
         ARRAY(owned, cells), ARRAY(owner, vertices), ARRAY(entries, plan->entry_capacity),
-        ARRAY(bucket_first, (size_t)plan->bucket_count + 2), ARRAY(block_count, plan->block_capacity),
+        ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
         ARRAY(want, vertices), ARRAY(goal, vertices), ARRAY(motion, cells), ARRAY(zone, vertices),
         ARRAY(share, vertices), ARRAY(drift, vertices), ARRAY(stopped, vertices), ARRAY(changed, cells),
-        ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
+        ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(stray_boxes, cells),
+        ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY
     memcpy(list, all, sizeof all);
@@ -67,7 +67,10 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
         if (!block) return false;
         memcpy(list[k].at, &block, sizeof block);
     }
-    return true;
+    uint32_t most = plan->pair_capacity, blocks = most / TOUCH_BLOCK + 1;
+    uint32_t buckets = plan->bucket_count / TOUCH_BUCKETS + 1, strays = plan->cell_count / TOUCH_STRAYS + 1;
+    return touch_list_create(memory, &plan->found_pairs, sizeof(TouchPair), most, buckets > strays ? buckets : strays) &&
+           touch_list_create(memory, &plan->found, sizeof(TouchFound), plan->push_capacity, blocks);
 }
 
 void touch_plan_free(Memory *memory, TouchPlan *plan) {
@@ -75,7 +78,18 @@ void touch_plan_free(Memory *memory, TouchPlan *plan) {
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
+    touch_list_free(memory, &plan->found_pairs);
+    touch_list_free(memory, &plan->found);
     FREE(memory, plan, 1);
+}
+
+/// Where cells are at rest, which tears do not change.
+static void place_at_rest(TouchPlan *plan, const Shell *shell) {
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        Quad place[4];
+        for (int i = 0; i < 4; i++) place[i] = quad_load(shell->rest_position[shell->cells[c][i]]);
+        plan->rest[c] = touch_mean(place);
+    }
 }
 
 SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
@@ -91,6 +105,7 @@ SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeCon
         return SINGE_ERROR_MEMORY;
     }
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
+    place_at_rest(plan, shell);
     *out = plan;
     return SINGE_OK;
 }
@@ -100,7 +115,7 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
     stream_data(stream, plan->place, plan->vertex_count * sizeof *plan->place);
-    stream_data(stream, plan->speed, plan->cell_count * sizeof *plan->speed);
+    stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
     stream_data(stream, plan->tangled, plan->cell_count);
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return;
@@ -109,6 +124,8 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     uint32_t restless = plan->restless;
     touch_search(plan, shell, NULL);
     plan->restless = restless;
+    // how far pairs have moved since is not known
+    for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
 }
 
 // a search from a later step than the present one counts as none

@@ -4,42 +4,59 @@
 
 #include "base/quad.h"
 #include "contact/touch.h"
+#include "contact/touch_list.h"
 
 /// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
 enum { TOUCH_STEPS = 10 };
-/// Buckets or pairs that are worked on together.
-enum { TOUCH_BLOCK = 256 };
+/// Buckets, pairs or cells that a thread works on together.
+enum { TOUCH_BUCKETS = 128, TOUCH_BLOCK = 256, TOUCH_STRAYS = 16 };
 /// Room for a cell, of each list.
 enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 40, TOUCH_PUSHES = 24 };
 
 /// What meets.
 enum { TOUCH_NODE_OF_A, TOUCH_NODE_OF_B, TOUCH_EDGES };
 
-/// A cell's box at the search and the way it was on, over plan->steps. The fourth numbers are 0.
+/// A cell's box at the search, in a frame that goes with the mean of its corners' ways over plan->steps, and that way,
+/// with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
 typedef struct TouchBox {
     Quad low, high, way;
     Quad swept_low, swept_high; ///< the region that the widened box passes over
 } TouchBox;
 
+/// A cell's corners at the search and the slab between two planes that holds them, about the first corner.
+typedef struct TouchSlab {
+    Quad x, y, z;
+    Quad normal;     ///< of length 1, or 0
+    float low, high; ///< m along it
+} TouchSlab;
+
 /// An entry of the grid: a cell in one of the cubes that its swept box overlaps.
 typedef struct TouchEntry {
-    uint32_t cell, key; ///< key: hash of the cube
+    float low[3];
+    uint32_t cell;
+    float high[3];
+    uint32_t key; ///< which cube; the highest three bits: whether it is the box's first along x, y, z
 } TouchEntry;
 
 /// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.
 typedef struct TouchPair {
     uint32_t a, b;
-    float distance;  ///< m, at least that at the search
-    float hit;       ///< of the step's way, the share after which they meet; 2: never
-    uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
-    uint8_t kind;     ///< TOUCH_NODE_OF_A, TOUCH_NODE_OF_B or TOUCH_EDGES
-    uint64_t nodes;  ///< bit 4 i + j: node i of a and triangle j of b, bit 20 + 4 i + j: the other way round
-    uint64_t edges;  ///< bit 8 i + j; of both those that may come within plan->reach before the next search
-    uint64_t push_nodes, push_edges; ///< of them, those that this step may have to push
     /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each where
     /// they share a corner; else SHELL_NONE
     uint32_t bridge;
+    float distance;   ///< m, at least that at plan->start
+    float hit;        ///< of the step's way, the share after which they meet; 2: never
+    uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
+    uint8_t kind;     ///< TOUCH_NODE_OF_A, TOUCH_NODE_OF_B or TOUCH_EDGES
 } TouchPair;
+
+/// Two points that are near as a step opens, before they are a TouchPush.
+typedef struct TouchFound {
+    uint32_t pair;
+    uint8_t kind, first, second; ///< as in a TouchPair
+    float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges
+    float normal[3], target;     ///< see TouchPush
+} TouchFound;
 
 /// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.
 typedef struct TouchPush {
@@ -47,15 +64,20 @@ typedef struct TouchPush {
     uint32_t node[8];
     float weight[8];
     float target; ///< m
-    uint32_t count; ///< 0: at rest
+    uint32_t count;
 } TouchPush;
 
-/// How a cell has moved since the search: mean of its corners' ways, with the largest deviation as fourth; and the mean
+/// How a cell has moved: mean of its corners' ways since plan->start, with the largest deviation as fourth; and the mean
 /// normal of its triangles, with their largest deviation as fourth.
 typedef struct TouchMotion {
     Quad way, normal;
     Quad speed; ///< m/s as the step opened: of the corners, with the largest deviation as fourth
 } TouchMotion;
+
+/// The region that a cell passes over in a step, a little widened.
+typedef struct TouchStray {
+    Quad low, high;
+} TouchStray;
 
 struct TouchPlan {
     SingeContactDef def;
@@ -72,7 +94,7 @@ struct TouchPlan {
     uint32_t restless;       ///< many cells have left their boxes since: search as the next step opens
     uint64_t step;           ///< it was for the way from this step's start
     float (*place)[4];       ///< [vertices] m
-    float (*speed)[4];       ///< [cells] m/s
+    float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
     uint8_t *tangled;        ///< [cells] crossed another at the start, and has not parted since
 
@@ -85,14 +107,16 @@ struct TouchPlan {
     uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
     uint32_t entry_capacity, pair_capacity, push_capacity;
     TouchBox *boxes;         ///< [cells]
+    TouchSlab *slabs;        ///< [cells]
+    Quad *rest;              ///< [cells] middle at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
     TouchEntry *entries;     ///< [entry_capacity] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
-    uint32_t *block_count;   ///< [blocks] found in each block of buckets or pairs
-    uint32_t block_capacity;
     TouchPair *pairs;        ///< [pair_capacity]
     TouchPush *pushes;       ///< [push_count]
+    TouchList found_pairs;   ///< TouchPair, as they are found
+    TouchList found;         ///< TouchFound
 
     // the step
     float (*start)[4];       ///< [vertices] m
@@ -107,27 +131,30 @@ struct TouchPlan {
     uint8_t *changed;        ///< [cells] that zones have moved in this round
     uint8_t *strayed;        ///< [cells] that have left their boxes
     uint32_t *stray;         ///< [cells] a list of them
+    TouchStray *stray_boxes; ///< [cells] theirs
     double *partial;         ///< [pool_blocks(pair_capacity)]
     TouchCounters counters;
 };
 
-/// Counts become starts; returns their sum.
-static inline uint64_t touch_sum_blocks(uint32_t *count, uint32_t blocks) {
-    uint64_t sum = 0;
-    for (uint32_t b = 0; b < blocks; b++) {
-        uint32_t here = count[b];
-        count[b] = (uint32_t)(sum < UINT32_MAX ? sum : UINT32_MAX);
-        sum += here;
-    }
-    return sum;
-}
-
-/// Finds the pairs and their features for plan->place, speed, alive.
+/// Finds the pairs for plan->place, speed, alive. Their distances are those at plan->place.
 void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
+
+/// The pairs of cells whose swept boxes meet, in touch_grid.c: sorts them into the grid, and lists those that `reach`
+/// allows. Returns how many there are, with or without room.
+uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool);
+
+/// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->place.
+bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *distance);
+
+/// See TouchPair.bridge.
+uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
 /// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from
 /// plan->start to `x`.
-void touch_search_strayed(TouchPlan *plan, const Shell *shell, uint32_t stray_count, const float (*x)[4]);
+void touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count, const float (*x)[4]);
+
+/// Marks cells that cross another: all of them at the first search, later those that have not parted since.
+void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first);
 
 /// Mean of four vectors; fourth: the largest deviation from it.
 static inline Quad touch_mean(const Quad vector[4]) {
@@ -142,9 +169,11 @@ static inline Quad touch_mean(const Quad vector[4]) {
     return mean;
 }
 
-/// Ways of a cell's corners since the search.
-static inline void touch_ways(const TouchPlan *plan, const uint32_t corner[4], const float (*x)[4], Quad way[4]) {
-    for (int i = 0; i < 4; i++) way[i] = quad_load(x[corner[i]]) - quad_load(plan->place[corner[i]]);
+/// Ways of a cell's corners since plan->start, as their mean.
+static inline Quad touch_way(const TouchPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
+    Quad way[4]; // fourths: of places inverse masses, which count for nothing
+    for (int i = 0; i < 4; i++) way[i] = quad_load(x[corner[i]]) - quad_load(plan->start[corner[i]]);
+    return touch_mean(way);
 }
 
 /// The most that any points of two cells differ in, given their means with deviations.

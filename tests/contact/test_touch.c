@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "contact/crossings.h"
+#include "contact/touch_feature.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
@@ -256,26 +257,30 @@ static void searched_free(Searched *s) {
     free(s);
 }
 
-/// Distance of two cells: the least of all their features'.
-static float cell_distance(const Searched *s, uint32_t a, uint32_t b) {
-    Quad p[5], q[5], origin = quad_load(s->plan->place[s->shell.cells[a][0]]);
+static float at_most(float a, Quad b) { return fminf(a, sqrtf(quad_dot(b, b))); }
+
+/// Distance of two cells: the least of all their features', or of those that they own.
+static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned) {
+    const TouchPlan *plan = s->plan;
+    Quad p[5], q[5], origin = quad_load(plan->place[s->shell.cells[a][0]]);
     float least = INFINITY, weight[3], u, t;
-    touch_nodes(s->shell.cells[a], (const float(*)[4])s->plan->place, origin, p);
-    touch_nodes(s->shell.cells[b], (const float(*)[4])s->plan->place, origin, q);
+    touch_nodes(s->shell.cells[a], (const float(*)[4])plan->place, origin, p);
+    touch_nodes(s->shell.cells[b], (const float(*)[4])plan->place, origin, q);
     for (int i = 0; i < 5; i++)
         for (int j = 0; j < 4; j++) {
             const uint8_t *k = touch_triangle[j];
             Quad first = touch_from_triangle(p[i], q[k[0]], q[k[1]], q[k[2]], weight);
             Quad second = touch_from_triangle(q[i], p[k[0]], p[k[1]], p[k[2]], weight);
-            least = fminf(least, fminf(quad_dot(first, first), quad_dot(second, second)));
+            if (!owned || touch_owns_node(plan, a, i)) least = at_most(least, first);
+            if (!owned || touch_owns_node(plan, b, i)) least = at_most(least, second);
         }
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 8; j++) {
             Quad apart = touch_from_segment(p[touch_edge[i][0]], p[touch_edge[i][1]], q[touch_edge[j][0]],
                                             q[touch_edge[j][1]], &u, &t);
-            least = fminf(least, quad_dot(apart, apart));
+            if (!owned || (touch_owns_edge(plan, a, i) && touch_owns_edge(plan, b, j))) least = at_most(least, apart);
         }
-    return sqrtf(least);
+    return least;
 }
 
 static void the_search_finds_all(void **unused) {
@@ -291,19 +296,67 @@ static void the_search_finds_all(void **unused) {
     }
     for (uint32_t a = 0; a < n; a++)
         for (uint32_t b = a + 1; b < n; b++) {
-            float distance = cell_distance(s, a, b);
+            float distance = cell_distance(s, a, b, false);
             if (distance >= plan->reach) continue;
             near++;
             assert_true(listed[a * n + b] || listed[b * n + a]);
         }
     assert_true(near > 4 * n);
-    // no listed pair is said to be farther apart than it is, but for features that other cells own
+    // no listed pair is said to be farther apart than it is; those that are near are measured
+    uint32_t measured = 0;
     for (uint32_t k = 0; k < plan->listed_count; k++) {
         const TouchPair *pair = &plan->pairs[k];
-        if (pair->bridge == SHELL_NONE && pair->distance < plan->reach)
-            assert_true(pair->distance >= cell_distance(s, pair->a, pair->b) - 1e-6f);
+        if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
+        float distance = cell_distance(s, pair->a, pair->b, true);
+        assert_true(pair->distance <= distance + 1e-6f);
+        measured += fabsf(pair->distance - distance) < 1e-6f;
     }
+    assert_true(measured > n / 2);
     free(listed);
+    searched_free(s);
+}
+
+/// All features of listed pairs at once against one after another.
+static void features_are_measured(void **unused) {
+    (void)unused;
+    Searched *s = searched(20);
+    const TouchPlan *plan = s->plan;
+    const float(*x)[4] = (const float(*)[4])plan->place;
+    uint32_t found = 0;
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
+        Quad origin = quad_load(x[s->shell.cells[pair->a][0]]);
+        TouchCell a, b;
+        TouchNear near[TOUCH_NEAR];
+        touch_cell_place(plan, &s->shell, pair->a, x, origin, &a);
+        touch_cell_place(plan, &s->shell, pair->b, x, origin, &b);
+        float nearest, least = cell_distance(s, pair->a, pair->b, true);
+        assert_true(touch_cells_apart(&a, &b) <= least + 1e-6f);
+        int count = touch_features(&s->shell, pair, &a, &b, plan->reach, near, &nearest);
+        assert_true(fabsf(nearest - fminf(least, plan->reach)) < 1e-6f);
+        for (int i = 0; i < count; i++) {
+            const TouchNear *n = &near[i];
+            float weight[3], u, v;
+            Quad apart;
+            if (n->kind == TOUCH_EDGES) {
+                const uint8_t *e = touch_edge[n->first], *f = touch_edge[n->second];
+                apart = touch_from_segment(a.node[e[0]], a.node[e[1]], b.node[f[0]], b.node[f[1]], &u, &v);
+            } else {
+                const TouchCell *own = n->kind == TOUCH_NODE_OF_A ? &a : &b, *other = own == &a ? &b : &a;
+                const uint8_t *t = touch_triangle[n->second];
+                apart = touch_from_triangle(own->node[n->first], other->node[t[0]], other->node[t[1]],
+                                            other->node[t[2]], weight);
+                if (own == &b) apart = -apart;
+                u = weight[1], v = weight[2];
+            }
+            Quad off = apart - n->apart;
+            assert_true(quad_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
+            assert_true(fabsf(u - n->u) < 1e-3f && fabsf(v - n->v) < 1e-3f);
+        }
+        found += (uint32_t)count;
+    }
+    assert_true(found > 1000);
     searched_free(s);
 }
 
@@ -335,7 +388,8 @@ int main(void) {
         cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
         cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone), cmocka_unit_test(any_number_of_threads),
-        cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
+        cmocka_unit_test(the_search_is_linear),
         cmocka_unit_test(bad_values_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,206 @@
+// Nearest points of all features of two cells: a node against the four triangles of the other at once, an edge against
+// its four sides and against the four lines to its middle. The regions are those of Ericson, Real-time collision
+// detection (2005), 5.1.5 and 5.1.9, as in touch_near.c, but chosen by masks.
+#include "contact/touch_feature.h"
+
+// ---- four at once
+
+static inline FourVectors four_all(Quad a) { return (FourVectors){quad_all(a[0]), quad_all(a[1]), quad_all(a[2])}; }
+static inline FourVectors four_minus(FourVectors a, FourVectors b) {
+    return (FourVectors){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+/// a + s b
+static inline FourVectors four_along(FourVectors a, Quad s, FourVectors b) {
+    return (FourVectors){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+static inline Quad four_dot(FourVectors a, FourVectors b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline FourVectors four_min(FourVectors a, FourVectors b) {
+    return (FourVectors){quad_min(a.x, b.x), quad_min(a.y, b.y), quad_min(a.z, b.z)};
+}
+static inline FourVectors four_max(FourVectors a, FourVectors b) {
+    return (FourVectors){quad_max(a.x, b.x), quad_max(a.y, b.y), quad_max(a.z, b.z)};
+}
+static inline Quad clamp01(Quad a) { return quad_min(quad_max(a, quad_all(0)), quad_all(1)); }
+
+/// Bit k is set where box k meets the box from `low` to `high`.
+static inline unsigned which_meet(const FourBoxes *four, Quad low, Quad high) {
+    QuadMask meet = (four->low.x <= quad_all(high[0])) & (four->high.x >= quad_all(low[0]));
+    meet &= (four->low.y <= quad_all(high[1])) & (four->high.y >= quad_all(low[1]));
+    meet &= (four->low.z <= quad_all(high[2])) & (four->high.z >= quad_all(low[2]));
+    return quad_bits(meet);
+}
+
+/// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
+typedef struct FourNear {
+    FourVectors apart;
+    Quad square, u, v;
+    QuadMask faces;
+} FourNear;
+
+/// Point p and triangles a b c: u, v are the weights of b and c.
+static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, FourVectors c) {
+    FourVectors ab = four_minus(b, a), ac = four_minus(c, a);
+    FourVectors ap = four_minus(p, a), bp = four_minus(p, b), cp = four_minus(p, c);
+    Quad d1 = four_dot(ab, ap), d2 = four_dot(ac, ap), d3 = four_dot(ab, bp), d4 = four_dot(ac, bp);
+    Quad d5 = four_dot(ab, cp), d6 = four_dot(ac, cp), zero = {0}, one = quad_all(1);
+    Quad vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    Quad sum = va + vb + vc, e43 = d4 - d3, e56 = d5 - d6;
+    FourNear out;
+    out.faces = (va > 0) & (vb > 0) & (vc > 0);
+    Quad u = vb / sum, v = vc / sum;
+    // regions later in this list come before the others
+    QuadMask on_bc = (va <= 0) & (e43 >= 0) & (e56 >= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0);
+    QuadMask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
+    Quad w = e43 / (e43 + e56);
+    u = quad_select(on_bc, one - w, u), v = quad_select(on_bc, w, v);
+    u = quad_select(on_ac, zero, u), v = quad_select(on_ac, d2 / (d2 - d6), v);
+    u = quad_select(on_ab, d1 / (d1 - d3), u), v = quad_select(on_ab, zero, v);
+    QuadMask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
+    u = quad_select(at_c, zero, u), v = quad_select(at_c, one, v);
+    u = quad_select(at_b, one, u), v = quad_select(at_b, zero, v);
+    // a triangle without area has no weights in its middle: then its first corner stands for it
+    at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
+    out.u = quad_select(at_a, zero, u), out.v = quad_select(at_a, zero, v);
+    out.apart = four_along(four_along(ap, -out.u, ab), -out.v, ac);
+    out.square = four_dot(out.apart, out.apart);
+    return out;
+}
+
+/// Segment a b and segments c d: u is along the one, v along the others.
+static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourVectors d) {
+    FourVectors along = four_minus(b, a), others = four_minus(d, c), r = four_minus(a, c);
+    Quad uu = four_dot(along, along), vv = four_dot(others, others), uv = four_dot(along, others);
+    Quad ur = four_dot(along, r), vr = four_dot(others, r), zero = {0}, one = quad_all(1);
+    Quad determinant = uu * vv - uv * uv;
+    Quad s = clamp01((uv * vr - ur * vv) / determinant);
+    s = quad_select(determinant > 4e-7f * uu * vv, s, zero);
+    Quad t = quad_select(vv > 0, (uv * s + vr) / vv, zero);
+    QuadMask out_of_range = ~((t >= 0) & (t <= 1));
+    t = clamp01(t);
+    Quad mended = quad_select(uu > 0, clamp01((t * uv - ur) / uu), zero);
+    s = quad_select(out_of_range, mended, s);
+    FourNear out = {.u = s, .v = t};
+    out.apart = four_along(four_along(r, s, along), -t, others);
+    out.square = four_dot(out.apart, out.apart);
+    // where an end is the nearest point, that node's triangles see it too; and edges side by side, less than 10 degrees
+    // apart, would make ridges of a flat sheet
+    out.faces = (s > 0) & (s < one) & (t > 0) & (t < one) & (uv * uv < 0.97f * uu * vv);
+    return out;
+}
+
+// ---- cells
+
+void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin,
+                      TouchCell *out) {
+    touch_nodes(shell->cells[cell], x, origin, out->node);
+    Quad q[4] = {out->node[0], out->node[1], out->node[2], out->node[3]};
+    quad_transpose(q);
+    out->corner = (FourVectors){q[0], q[1], q[2]};
+    out->turned = (FourVectors){QUAD_SHUFFLE(q[0], q[0], 1, 2, 3, 0), QUAD_SHUFFLE(q[1], q[1], 1, 2, 3, 0),
+                                QUAD_SHUFFLE(q[2], q[2], 1, 2, 3, 0)};
+    uint32_t owned = plan->owned[cell];
+    out->owned = (owned & 15) | 16 | (owned >> 4) << 8 | 15u << 12;
+}
+
+static void cell_boxes(TouchCell *cell) {
+    FourVectors middle = four_all(cell->node[4]);
+    cell->sides = (FourBoxes){four_min(cell->corner, cell->turned), four_max(cell->corner, cell->turned)};
+    cell->spokes = (FourBoxes){four_min(cell->corner, middle), four_max(cell->corner, middle)};
+    cell->triangles = (FourBoxes){four_min(cell->sides.low, middle), four_max(cell->sides.high, middle)};
+}
+
+/// The same for the planes through a's diagonals only.
+static float apart_along(const TouchCell *a, const TouchCell *b) {
+    Quad normal = quad_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
+    float square = quad_dot(normal, normal);
+    if (!(square > 0)) return -1;
+    FourVectors n = four_all(normal);
+    Quad p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the middles lie between
+    Quad low_p = quad_min(p, QUAD_SHUFFLE(p, p, 2, 3, 0, 1)), high_p = quad_max(p, QUAD_SHUFFLE(p, p, 2, 3, 0, 1));
+    Quad low_q = quad_min(q, QUAD_SHUFFLE(q, q, 2, 3, 0, 1)), high_q = quad_max(q, QUAD_SHUFFLE(q, q, 2, 3, 0, 1));
+    low_p = quad_min(low_p, QUAD_SHUFFLE(low_p, low_p, 1, 0, 3, 2));
+    high_p = quad_max(high_p, QUAD_SHUFFLE(high_p, high_p, 1, 0, 3, 2));
+    low_q = quad_min(low_q, QUAD_SHUFFLE(low_q, low_q, 1, 0, 3, 2));
+    high_q = quad_max(high_q, QUAD_SHUFFLE(high_q, high_q, 1, 0, 3, 2));
+    float above = low_p[0] - high_q[0], below = low_q[0] - high_p[0];
+    return (above > below ? above : below) / sqrtf(square);
+}
+
+float touch_cells_apart(const TouchCell *a, const TouchCell *b) {
+    float one = apart_along(a, b), two = apart_along(b, a);
+    return one > two ? one : two;
+}
+
+// ---- all features
+
+typedef struct Search {
+    TouchNear *near;
+    int count;
+    float square, far; ///< of the nearest; that are looked for
+} Search;
+
+/// Notes those of four that are near enough; `meet` are those that count.
+static void note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
+    meet &= quad_bits(four->square < search->far * search->far);
+    for (; meet; meet &= meet - 1) {
+        int k = __builtin_ctz(meet);
+        search->square = four->square[k] < search->square ? four->square[k] : search->square;
+        search->near[search->count++] = (TouchNear){
+            .apart = sign * (Quad){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
+            .distance = sqrtf(four->square[k]), .u = four->u[k], .v = four->v[k], .kind = (uint8_t)kind,
+            .first = (uint8_t)first, .second = (uint8_t)(second + k), .faces = four->faces[k] != 0};
+    }
+}
+
+/// Bit k: triangle or side k has one of the corners `bits`.
+static inline unsigned around(unsigned bits) { return (bits | bits << 3 | bits >> 1) & 15; }
+
+/// Nodes that p owns against triangles of q; bits of same[i] are the corners of q that are corner i of p.
+static void find_nodes(Search *search, const TouchCell *p, const TouchCell *q, const unsigned same[4], int kind) {
+    FourVectors middle = four_all(q->node[4]);
+    for (int i = 0; i < 5; i++) {
+        if (!(p->owned >> i & 1)) continue;
+        unsigned meet = which_meet(&q->triangles, p->node[i] - search->far, p->node[i] + search->far);
+        if (i < 4) meet &= ~around(same[i]);
+        if (!meet) continue;
+        FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, middle);
+        note(search, &four, meet, kind, i, 0, kind == TOUCH_NODE_OF_B ? -1 : 1);
+    }
+}
+
+static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, const unsigned same[4]) {
+    FourVectors middle = four_all(q->node[4]);
+    for (int i = 0; i < 8; i++) {
+        if (!(p->owned >> (8 + i) & 1)) continue;
+        const uint8_t *k = touch_edge[i];
+        unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
+        Quad a = p->node[k[0]], b = p->node[k[1]];
+        Quad low = quad_min(a, b) - search->far, high = quad_max(a, b) + search->far;
+        unsigned sides = which_meet(&q->sides, low, high) & q->owned >> 8 & ~around(corners);
+        unsigned spokes = which_meet(&q->spokes, low, high) & ~corners;
+        if (sides) {
+            FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
+            note(search, &four, sides, TOUCH_EDGES, i, 0, 1);
+        }
+        if (spokes) {
+            FourNear four = from_segments(four_all(a), four_all(b), q->corner, middle);
+            note(search, &four, spokes, TOUCH_EDGES, i, 4, 1);
+        }
+    }
+}
+
+int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, TouchNear *near,
+                   float *nearest) {
+    const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
+    unsigned of_b[4] = {0}, of_a[4] = {0};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            if (p[i] == q[j]) of_b[i] |= 1u << j, of_a[j] |= 1u << i;
+    Search search = {.near = near, .square = far * far, .far = far};
+    cell_boxes(a), cell_boxes(b);
+    find_nodes(&search, a, b, of_b, TOUCH_NODE_OF_A);
+    find_nodes(&search, b, a, of_a, TOUCH_NODE_OF_B);
+    find_edges(&search, a, b, of_b);
+    *nearest = sqrtf(search.square);
+    return search.count;
+}

@@ -1,0 +1,33 @@
+// The grid's cubes.
+#ifndef CONTACT_TOUCH_GRID_H
+#define CONTACT_TOUCH_GRID_H
+
+#include "contact/touch_plan.h"
+
+typedef QuadMask Cube; ///< three whole numbers
+
+/// Rounds down; places too far for whole numbers share the last cube.
+static inline Cube touch_cube(Quad p, float inverse_edge) {
+    Quad most = quad_all(1e9f), q = quad_max(quad_min(p * inverse_edge, most), -most);
+    Cube whole = __builtin_convertvector(q, Cube);
+    return whole + (__builtin_convertvector(whole, Quad) > q); // a mask is -1
+}
+
+/// Cubes of one key are so far apart that no box is in two of them.
+static inline uint32_t touch_key(Cube cube) {
+    return ((uint32_t)cube[0] & 1023) | ((uint32_t)cube[1] & 1023) << 10 | ((uint32_t)cube[2] & 511) << 20;
+}
+enum { TOUCH_KEY = (1 << 29) - 1 };
+
+static inline uint32_t touch_bucket(const TouchPlan *plan, uint32_t key) {
+    uint32_t h = key;
+    h = (h ^ h >> 16) * 0x7feb352du;
+    h = (h ^ h >> 15) * 0x846ca68bu;
+    return (h ^ h >> 16) & (plan->bucket_count - 1);
+}
+
+static inline bool quads_meet(Quad low_a, Quad high_a, Quad low_b, Quad high_b) {
+    return !(quad_bits((low_a > high_b) | (low_b > high_a)) & 7);
+}
+
+#endif

@@ -1,0 +1,282 @@
+// What a step opens with: pairs of cells that are near, and what of them its substeps may have to push.
+//
+// A pair's distance is kept as a bound: it is at least that of the last time it was measured, less what the two cells
+// have moved against each other since. Only where the bound does not tell that all features stay apart in this step are
+// they looked at. So what is found hangs on the pair's places and speeds alone, not on when it was measured.
+#include "base/clock.h"
+#include "contact/touch_feature.h"
+#include "contact/touch_near.h"
+
+#include <string.h>
+
+/// m/s with which is mended what is too near.
+#define TOUCH_PART 0.1f
+
+typedef struct Opening {
+    TouchPlan *plan;
+    const Shell *shell;
+    const DynamicsState *dynamics;
+    const uint8_t *cell_flags;
+} Opening;
+
+// ---- how cells move
+
+static void way_range(void *task, int begin, int end) {
+    const Opening *job = task;
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    for (int c = begin; c < end; c++) {
+        const uint32_t *corner = job->shell->cells[c];
+        TouchMotion *motion = &job->plan->motion[c];
+        Quad speed[4], node[5];
+        for (int i = 0; i < 4; i++) speed[i] = quad_load(job->dynamics->velocity[corner[i]]);
+        touch_nodes(corner, x, quad_load(x[corner[0]]), node);
+        motion->way = touch_way(job->plan, corner, x);
+        motion->speed = touch_mean(speed);
+        motion->normal = touch_normals(node);
+    }
+}
+
+/// Notes where corners are and how they move: as since the last search, for what lies trembles; else by their velocities.
+static void note_search(TouchPlan *plan, const State *state, const DynamicsState *dynamics) {
+    bool known = plan->searched && state->step > plan->step;
+    float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        Quad now = quad_load(dynamics->position[v]);
+        Quad speed = known ? (now - quad_load(plan->place[v])) / since : quad_load(dynamics->velocity[v]);
+        speed[3] = 0;
+        quad_store(plan->speed[v], speed);
+        quad_store(plan->place[v], now);
+    }
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate.cell_flags[c] & SINGE_ALIVE;
+    plan->step = state->step;
+}
+
+// ---- what is near
+
+/// Two cells that are looked at.
+typedef struct Look {
+    TouchCell a, b;
+    Quad speed_a[5], speed_b[5]; ///< m/s, of nodes
+    float due; ///< m, distance from which on nothing can touch in this step
+} Look;
+
+/// Distance at which features that near each other by `approach` m/s may touch.
+static inline float due(const TouchPlan *plan, float approach) {
+    return 1.25f * plan->thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
+}
+
+static Quad point_speed(const Look *look, const TouchNear *near) {
+    Quad one, two;
+    if (near->kind == TOUCH_EDGES) {
+        const uint8_t *k = touch_edge[near->first], *l = touch_edge[near->second];
+        one = look->speed_a[k[0]] + near->u * (look->speed_a[k[1]] - look->speed_a[k[0]]);
+        two = look->speed_b[l[0]] + near->v * (look->speed_b[l[1]] - look->speed_b[l[0]]);
+        return one - two;
+    }
+    bool turned = near->kind == TOUCH_NODE_OF_B;
+    const Quad *own = turned ? look->speed_b : look->speed_a, *other = turned ? look->speed_a : look->speed_b;
+    const uint8_t *k = touch_triangle[near->second];
+    one = own[near->first];
+    two = other[k[0]] + near->u * (other[k[1]] - other[k[0]]) + near->v * (other[k[2]] - other[k[0]]);
+    return turned ? two - one : one - two;
+}
+
+/// Adds a node's weight to the corners of its cell.
+static void add_node(float corner[4], int node, float weight) {
+    if (node < 4) {
+        corner[node] += weight;
+        return;
+    }
+    for (int i = 0; i < 4; i++) corner[i] += 0.25f * weight;
+}
+
+/// Weights of the corners of a and of b at two features' points.
+static void point_weights(int kind, int first, int second, float u, float v, float wa[4], float wb[4]) {
+    if (kind == TOUCH_EDGES) {
+        const uint8_t *k = touch_edge[first], *l = touch_edge[second];
+        add_node(wa, k[0], 1 - u), add_node(wa, k[1], u);
+        add_node(wb, l[0], 1 - v), add_node(wb, l[1], v);
+        return;
+    }
+    float *own = kind == TOUCH_NODE_OF_B ? wb : wa, *other = kind == TOUCH_NODE_OF_B ? wa : wb;
+    const uint8_t *k = touch_triangle[second];
+    add_node(own, first, 1);
+    add_node(other, k[0], 1 - u - v), add_node(other, k[1], u), add_node(other, k[2], v);
+}
+
+/// Whether two points of one sheet are nearer at rest than `far`.
+static bool near_at_rest(const Opening *job, const TouchPair *pair, const TouchNear *near, float far) {
+    const Shell *shell = job->shell;
+    Quad apart = job->plan->rest[pair->a] - job->plan->rest[pair->b];
+    float most = far + job->plan->rest[pair->a][3] + job->plan->rest[pair->b][3];
+    if (quad_dot(apart, apart) > most * most) return false;
+    const uint16_t *sheet = shell->matter.sheet;
+    if (sheet[shell_centre(shell, pair->a)] != sheet[shell_centre(shell, pair->b)]) return false;
+    float wa[4] = {0}, wb[4] = {0};
+    point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
+    apart = (Quad){0};
+    for (int i = 0; i < 4; i++)
+        apart += wa[i] * quad_load(shell->rest_position[shell->cells[pair->a][i]]) -
+                 wb[i] * quad_load(shell->rest_position[shell->cells[pair->b][i]]);
+    return quad_dot(apart, apart) < far * far;
+}
+
+/// How far two features are to be kept apart in this step; 0 where they need not be looked after.
+static float target(const Opening *job, const TouchPair *pair, const Look *look, const TouchNear *near) {
+    const TouchPlan *plan = job->plan;
+    float thickness = plan->thickness, distance = near->distance;
+    if (near->kind == TOUCH_EDGES && !near->faces) return 0;
+    // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
+    if (!near->faces && distance > thickness) return 0;
+    if (!(distance > 0) || distance > look->due) return 0;
+    float toward = -quad_dot(point_speed(look, near), near->apart) / distance;
+    if (distance > due(plan, toward)) return 0;
+    if (near_at_rest(job, pair, near, 2 * thickness)) {
+        thickness = fminf(thickness, 4 * plan->gap);
+        if (distance > 1.25f * thickness + 1.5f * plan->time_step * (toward > 0 ? toward : 0)) return 0;
+    }
+    float parted = distance + TOUCH_PART * plan->time_step;
+    return parted < thickness ? parted : thickness;
+}
+
+static void place_speeds(const Opening *job, uint32_t cell, Quad speed[5]) {
+    for (int i = 0; i < 4; i++) speed[i] = quad_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
+    speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
+}
+
+/// Measures a pair that may touch, and lists what of it does.
+static void measure_pair(const Opening *job, uint32_t k, float due_distance, TouchWriter *writer) {
+    TouchPlan *plan = job->plan;
+    TouchPair *pair = &plan->pairs[k];
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    Quad origin = quad_load(x[job->shell->cells[pair->a][0]]);
+    Look look = {.due = due_distance};
+    touch_cell_place(plan, job->shell, pair->a, x, origin, &look.a);
+    touch_cell_place(plan, job->shell, pair->b, x, origin, &look.b);
+    float apart = touch_cells_apart(&look.a, &look.b) - plan->noise;
+    pair->distance = apart > pair->distance ? apart : pair->distance;
+    if (pair->distance > look.due) return;
+    // looking a little farther, not every step has to look again
+    TouchNear near[TOUCH_NEAR];
+    float nearest;
+    int count = touch_features(job->shell, pair, &look.a, &look.b, look.due + 0.25f * plan->thickness, near, &nearest);
+    pair->distance = nearest > pair->distance ? nearest : pair->distance;
+    if (count == 0) return;
+    place_speeds(job, pair->a, look.speed_a);
+    place_speeds(job, pair->b, look.speed_b);
+    for (int i = 0; i < count; i++) {
+        float keep = target(job, pair, &look, &near[i]);
+        TouchFound *found = keep > 0 ? touch_list_add(writer) : NULL;
+        if (!found) continue;
+        *found = (TouchFound){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
+        for (int d = 0; d < 3; d++) found->normal[d] = near[i].apart[d] / near[i].distance;
+    }
+}
+
+static void look_at_pair(const Opening *job, uint32_t k, TouchWriter *writer) {
+    const TouchPlan *plan = job->plan;
+    TouchPair *pair = &plan->pairs[k];
+    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
+    if (pair->a == pair->b) return;
+    if (pair->bridge != SHELL_NONE && touch_is_unfolded(a->normal, b->normal, false)) {
+        pair->distance = 0;
+        return;
+    }
+    if (pair->distance > 0) {
+        pair->distance -= touch_differ(a->way, b->way) + plan->noise;
+        float due_distance = due(plan, touch_differ(a->speed, b->speed));
+        if (pair->distance > due_distance) return;
+    }
+    if (pair->distance < 0) pair->distance = 0;
+    if (!(job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) || touch_is_tangled(plan, pair)) return;
+    measure_pair(job, k, due(plan, touch_differ(a->speed, b->speed)), writer);
+}
+
+static void look_block(void *context, TouchList *list, int block) {
+    const Opening *job = context;
+    TouchWriter writer = touch_list_begin(list);
+    uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK;
+    if (last > job->plan->listed_count) last = job->plan->listed_count;
+    for (uint32_t k = first; k < last; k++) look_at_pair(job, k, &writer);
+    touch_list_end(&writer, block);
+}
+
+// ---- what is pushed
+
+static void gather(TouchPush *push, const uint32_t corner[4], const float weight[4], float sign) {
+    for (int i = 0; i < 4; i++) {
+        if (weight[i] == 0) continue;
+        uint32_t k = 0;
+        while (k < push->count && push->node[k] != corner[i]) k++;
+        if (k == push->count) {
+            push->node[push->count] = corner[i];
+            push->weight[push->count++] = 0;
+        }
+        push->weight[k] += sign * weight[i];
+    }
+}
+
+static void open_push(void *context, const void *item, uint32_t number) {
+    const Opening *job = context;
+    TouchFound found;
+    memcpy(&found, item, sizeof found);
+    const TouchPair *pair = &job->plan->pairs[found.pair];
+    TouchPush *push = &job->plan->pushes[number];
+    float wa[4] = {0}, wb[4] = {0};
+    point_weights(found.kind, found.first, found.second, found.u, found.v, wa, wb);
+    push->normal = (Quad){found.normal[0], found.normal[1], found.normal[2], 0};
+    push->target = found.target;
+    push->count = 0;
+    gather(push, job->shell->cells[pair->a], wa, 1);
+    gather(push, job->shell->cells[pair->b], wb, -1);
+}
+
+static void open_pushes(Opening *job, Pool *pool) {
+    TouchPlan *plan = job->plan;
+    int blocks = (int)((plan->listed_count + TOUCH_BLOCK - 1) / TOUCH_BLOCK);
+    uint64_t count = touch_list_write(&plan->found, pool, blocks, plan->push_capacity, look_block, job);
+    plan->push_count = (uint32_t)(count < plan->push_capacity ? count : plan->push_capacity);
+    plan->counters.dropped += count - plan->push_count;
+    touch_list_read(&plan->found, pool, blocks, plan->push_count, open_push, job);
+}
+
+void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics) {
+    double start = clock_seconds();
+    Opening job = {plan, shell, dynamics, state->ablate.cell_flags};
+    bool search = !plan->searched || plan->restless || state->step < plan->step ||
+                  state->step - plan->step >= plan->steps;
+    if (search) {
+        note_search(plan, state, dynamics);
+        touch_search(plan, shell, pool);
+        memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
+    }
+    pool_for(pool, (int)plan->cell_count, 512, way_range, &job);
+    if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
+    open_pushes(&job, pool);
+    plan->counters.touches += plan->push_count;
+    plan->counters.seconds += clock_seconds() - start;
+}
+
+// ---- for drawing
+
+void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
+    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
+    float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
+    TouchNear found[TOUCH_NEAR];
+    TouchCell p, q;
+    for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        const uint32_t *a = shell->cells[pair->a], *b = shell->cells[pair->b];
+        if (pair->a == pair->b ||
+            !(state->ablate.cell_flags[pair->a] & state->ablate.cell_flags[pair->b] & SINGE_ALIVE))
+            continue;
+        touch_cell_place(plan, shell, pair->a, x, quad_load(x[a[0]]), &p);
+        touch_cell_place(plan, shell, pair->b, x, quad_load(x[a[0]]), &q);
+        if (pair->bridge != SHELL_NONE && touch_is_unfolded(touch_normals(p.node), touch_normals(q.node), false))
+            continue;
+        float nearest;
+        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, bulges, found, &nearest))
+            continue;
+        for (int i = 0; i < 4; i++) near[a[i]] = near[b[i]] = 1;
+    }
+}
