@@ -5,10 +5,9 @@
 //
 //   |mean way of a - mean way of b| + deviation of a + deviation of b < d
 //
-// Cells that hang together at a side, or at a corner by a cell between, are taken for free while their triangles'
-// normals lie within a cone and their corners are in shape: then they are not folded onto each other (Volino and
-// Magnenat-Thalmann, Efficient self-collision detection, 1994). What is left is swept, feature by feature. Where it
-// meets, the corners of both cells form a zone, with all zones that they touch, and go
+// Cells that share a side or a corner are free where they can be shown not to cross as the step ends, by their normals
+// or by a plane between them (touch_near.c). What is left is swept, feature by feature. Where it meets, the corners of
+// both cells form a zone, with all zones that they touch, and go
 //
 //   x0 + u + a (x1 - x0 - u),   u the mean way of the zone by mass,
 //
@@ -154,16 +153,44 @@ static void sweep_pair(const Guard *guard, TouchPair *pair) {
     }
 }
 
+/// Cells that hang together, by their normals: touch_near.c has the proof.
+static bool normals_part(const Guard *guard, const TouchPair *pair) {
+    const TouchPlan *plan = guard->plan;
+    Quad a = plan->motion[pair->a].normal, b = plan->motion[pair->b].normal;
+    if (pair->a == pair->b) return touch_is_open(a);
+    if (pair->bridge == SHELL_NONE || !is_alive(guard, pair->bridge)) return false;
+    if (pair->bridge == pair->a) return touch_is_within(a, b, TOUCH_CONE_SIDE);
+    Quad between = plan->motion[pair->bridge].normal;
+    return touch_is_within(a, between, TOUCH_CONE_CORNER) && touch_is_within(b, between, TOUCH_CONE_CORNER);
+}
+
+/// The same by a plane that parts them at both ends of the step, and has not been turned over: then they have not passed
+/// through each other about what they share.
+static bool plane_parts(const Guard *guard, const TouchPair *pair) {
+    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
+    const float(*places[2])[4] = {(const float(*)[4])guard->plan->start, (const float(*)[4])guard->dynamics->position};
+    unsigned shared[2] = {0, 0};
+    for (int i = 0; i < 16; i++)
+        if (a[i >> 2] == b[i & 3]) shared[0] |= 1u << (i >> 2), shared[1] |= 1u << (i & 3);
+    if (!shared[0] || pair->a == pair->b) return false;
+    Quad p[5], q[5], normal[2];
+    for (int k = 0; k < 2; k++) {
+        Quad origin = quad_load(places[k][a[0]]);
+        touch_nodes(a, places[k], origin, p);
+        touch_nodes(b, places[k], origin, q);
+        if (!touch_is_parted(p, q, shared, guard->plan->gap, &normal[k])) return false;
+    }
+    return quad_dot(normal[0], normal[1]) > 0;
+}
+
 static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
     const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
-    if (pair->bridge != SHELL_NONE && is_alive(guard, pair->bridge) &&
-        touch_is_unfolded(a->normal, b->normal, pair->a == pair->b) &&
-        touch_is_unfolded(a->normal, plan->motion[pair->bridge].normal, pair->a == pair->bridge))
-        return true;
     // so far apart that the sweep, which stops a little before the gap, would not stop either
-    return pair->distance > 2 * plan->gap &&
-           touch_differ(a->way, b->way) + plan->noise < 0.9f * (pair->distance - plan->gap);
+    if (pair->distance > 2 * plan->gap &&
+        touch_differ(a->way, b->way) + plan->noise < 0.9f * (pair->distance - plan->gap))
+        return true;
+    return normals_part(guard, pair) || plane_parts(guard, pair);
 }
 
 static double sweep_range(void *task, int begin, int end) {

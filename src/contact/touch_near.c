@@ -1,9 +1,6 @@
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
-/// Chord between unit normals: about 70 degrees.
-#define TOUCH_CONE 1.15f
-
 static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
 
 /// Weights of the triangle's point nearest to p.
@@ -35,42 +32,98 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
     return p - mix3(a, b, c, weight);
 }
 
-/// Whether a cell's corners have angles of 30 to 120 degrees, turning about `normal`.
+// ---- cells that hang together
+//
+// Two cells that share a side or a corner do not cross where
+//
+//   a plane through what they share has the rest of one on one side and the rest of the other on the other
+//   (touch_is_parted), or, which costs less and holds nearly everywhere,
+//
+//   all their triangles' normals lie within a cone, and all corners have angles of at most 115 degrees (Volino and
+//   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the condition on the contour made one on angles).
+//
+// For seen along the first one's mean normal n, all triangles of both are turned the same way, so that each cell is
+// a star about its middle, and its corners' angles, which are at most 115 degrees seen along its own normal, are less than
+// 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex, on either side
+// of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of which share a
+// side each with the third, take less than a full turn, and convex ones stay within their angles.
+
+/// Whether a cell's corners have angles of 30 to 115 degrees, seen along the unit `normal`.
 static bool is_in_shape(const Quad node[5], Quad normal) {
+    Quad side[4];
     for (int i = 0; i < 4; i++) {
-        Quad next = node[(i + 1) & 3] - node[i], last = node[(i + 3) & 3] - node[i];
+        side[i] = node[(i + 1) & 3] - node[i];
+        side[i] -= quad_dot(side[i], normal) * normal;
+    }
+    for (int i = 0; i < 4; i++) {
+        Quad next = side[i], last = -side[(i + 3) & 3];
         float dot = quad_dot(next, last), square = quad_dot(next, next) * quad_dot(last, last);
         if (quad_dot(quad_cross(next, last), normal) <= 0) return false;
-        if (dot * dot > (dot > 0 ? 0.75f : 0.25f) * square) return false;
+        if (dot * dot > (dot > 0 ? 0.75f : 0.1786f) * square) return false;
     }
     return true;
 }
 
 Quad touch_normals(const Quad node[5]) {
+    const Quad none = {0, 0, 0, 8};
     Quad normal[4], sum = {0};
     float spread = 0;
     for (int t = 0; t < 4; t++) {
         const uint8_t *k = touch_triangle[t];
         Quad cross = quad_cross(node[k[1]] - node[k[0]], node[k[2]] - node[k[0]]);
         float length = sqrtf(quad_dot(cross, cross));
-        if (!(length > 0)) return (Quad){0, 0, 0, 4};
+        if (!(length > 0)) return none;
         normal[t] = cross / length;
         sum += normal[t];
     }
     float length = sqrtf(quad_dot(sum, sum));
-    if (!(length > 0) || !is_in_shape(node, sum)) return (Quad){0, 0, 0, 4};
+    if (!(length > 0)) return none;
     sum = sum / length;
     for (int t = 0; t < 4; t++) {
         Quad off = normal[t] - sum;
         spread = fmaxf(spread, quad_dot(off, off));
     }
-    sum[3] = sqrtf(spread);
+    spread = sqrtf(spread);
+    sum[3] = 0;
+    sum[3] = is_in_shape(node, sum) ? spread : 2 + spread;
     return sum;
 }
 
-bool touch_is_unfolded(Quad a, Quad b, bool same) {
+bool touch_is_within(Quad a, Quad b, float cone) {
     Quad off = a - b;
-    return sqrtf(quad_dot(off, off)) + (same ? a[3] : a[3] + b[3]) < TOUCH_CONE;
+    return sqrtf(quad_dot(off, off)) + a[3] + b[3] < cone;
+}
+
+bool touch_is_open(Quad normals) { return normals[3] < TOUCH_CONE || (normals[3] >= 2 && normals[3] < 2 + TOUCH_CONE); }
+
+/// Whether the corners that are not shared lie beyond the plane.
+static bool is_beyond(const Quad corner[4], unsigned shared, Quad origin, Quad normal, float margin) {
+    float least = margin * sqrtf(quad_dot(normal, normal));
+    for (int i = 0; i < 4; i++)
+        if (!(shared >> i & 1) && !(quad_dot(corner[i] - origin, normal) > least)) return false;
+    return true;
+}
+
+/// The corners of a that are shared: how many, and the first and the last.
+static int shared_corners(const Quad a[4], unsigned shared, Quad *first, Quad *last) {
+    int count = 0;
+    for (int i = 0; i < 4; i++)
+        if (shared >> i & 1) {
+            if (count++ == 0) *first = a[i];
+            *last = a[i];
+        }
+    return count;
+}
+
+bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2], float margin, Quad *normal) {
+    Quad first = {0}, last = {0};
+    int count = shared_corners(a, shared[0], &first, &last);
+    if (count < 1 || count > 2) return false;
+    Quad away = ((a[0] + a[1]) + (a[2] + a[3])) - ((b[0] + b[1]) + (b[2] + b[3])), side = last - first;
+    float square = quad_dot(side, side);
+    if (count == 2 && square > 0) away -= quad_dot(away, side) / square * side;
+    *normal = away;
+    return is_beyond(a, shared[0], first, away, margin) && is_beyond(b, shared[1], first, -away, margin);
 }
 
 static float clamp01(float a) { return a > 0 ? (a < 1 ? a : 1) : 0; }

@@ -178,7 +178,7 @@ static void look_at_pair(const Opening *job, uint32_t k, TouchWriter *writer) {
     TouchPair *pair = &plan->pairs[k];
     const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
     if (pair->a == pair->b) return;
-    if (pair->bridge != SHELL_NONE && touch_is_unfolded(a->normal, b->normal, false)) {
+    if (pair->bridge != SHELL_NONE && touch_is_within(a->normal, b->normal, TOUCH_CONE)) {
         pair->distance = 0;
         return;
     }
@@ -272,7 +272,7 @@ void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *sta
             continue;
         touch_cell_place(plan, shell, pair->a, x, quad_load(x[a[0]]), &p);
         touch_cell_place(plan, shell, pair->b, x, quad_load(x[a[0]]), &q);
-        if (pair->bridge != SHELL_NONE && touch_is_unfolded(touch_normals(p.node), touch_normals(q.node), false))
+        if (pair->bridge != SHELL_NONE && touch_is_within(touch_normals(p.node), touch_normals(q.node), TOUCH_CONE))
             continue;
         float nearest;
         if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, bulges, found, &nearest))
