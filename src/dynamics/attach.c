@@ -12,14 +12,18 @@
 // are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
 // sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
 // length step by step till the next measurement, for a length that shortens at once jerks what hangs on it; so does
-// what a source that takes over from one that has burnt finds too far. What has come free of a source is let go at the
-// end of the step. A sheet whose mesh may stretch by its compliance has no attachments.
+// what a source that takes over from one that has burnt finds too far, and what has gone too far while a tight sheet
+// that may tear was left to its springs. What has come free of a source is let go at the end of the step. A sheet whose
+// mesh may stretch by its compliance has no attachments.
 #include "dynamics/attach.h"
 
 #include "base/vec.h"
 
 /// Vertices that any kernel takes in whole blocks of lanes.
 enum { ATTACH_BLOCK = 16 };
+
+/// Of itself, what a length shortens by in a step at most.
+static const float ATTACH_HASTE = 0.003f;
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
     *attachments = (Attachments){0};
@@ -122,8 +126,30 @@ static void attach_let_go(Attachments *attachments, const Shell *shell, const in
     }
 }
 
-/// A step of what shortens, so that it arrives when the next measurement is due: all at once would jerk what hangs on
-/// it.
+/// Whether sources hold nothing for now: what is held farther apart than it reaches may tear, where it can, and nothing
+/// but its springs pulls at it then.
+static bool attach_rests(const Shell *shell, const AttachSpread *spread) {
+    return spread->tight && shell->spare_count > 0;
+}
+
+/// What rests is as long as it has become.
+static void attach_follow(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
+    for (uint32_t s = 0; s < shell->sheet_count; s++) {
+        const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
+        if (!attach_rests(shell, &attachments->spread[s])) continue;
+        for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
+            Vec place = vec_load(dynamics->position[source[k]]);
+            for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
+                Vec way = vec_sub(vec_load(dynamics->position[v]), place);
+                float *length = &attachments->length[v][k];
+                if (vec_dot(way, way) > *length * *length) *length = vec_length(way), attachments->settled = false;
+            }
+        }
+    }
+}
+
+/// A step of what shortens, so that it arrives when the next measurement is due or as fast as may be: all at once would
+/// jerk what hangs on it.
 static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_t step) {
     if (attachments->settled) return;
     attachments->settled = true;
@@ -132,7 +158,7 @@ static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_
         for (int k = 0; k < ATTACH_SOURCES; k++) {
             float *length = &attachments->length[v][k], goal = attachments->goal[v][k];
             if (!(goal < *length)) continue;
-            *length += (goal - *length) * share;
+            *length -= fminf((*length - goal) * share, ATTACH_HASTE * *length);
             attachments->settled = false;
         }
 }
@@ -141,7 +167,10 @@ void attach_update(Attachments *attachments, const Shell *shell, const State *st
     if (attachments->topology != state->ablate.topology_version)
         attach_let_go(attachments, shell, state->ablate.piece);
     attachments->topology = state->ablate.topology_version;
-    if (!pins_changed) attach_shorten(attachments, shell, state->step);
+    if (!pins_changed) {
+        attach_shorten(attachments, shell, state->step);
+        attach_follow(attachments, shell, &state->dynamics);
+    }
     bool changed = attachments->mass_burnt != state->burn.mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
     bool torn = attachments->split_count != shell->split_count && (state->step + 1) % ATTACH_TORN_PERIOD == 0;
     if (!pins_changed && !changed && !torn) return;
@@ -191,8 +220,7 @@ void attach_place(Attachments *attachments, const Shell *shell, const DynamicsSt
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         AttachSpread *spread = &attachments->spread[s];
         attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
-        // what is held farther apart than it reaches may tear: nothing but its springs pulls at it then
-        if (spread->tight && shell->spare_count > 0) spread->count = 0;
+        if (attach_rests(shell, spread)) spread->count = 0;
     }
 }
 
