@@ -94,12 +94,70 @@ static void what_is_near_may_only_part(void **unused) {
     assert_true(touch_sweep(&sweep, 1e-3f, 1e-6f) > 1);
 }
 
+/// The middle of four corners for a fifth node.
+static void close_cell(Quad node[5]) { node[4] = 0.25f * ((node[0] + node[1]) + (node[2] + node[3])); }
+
+/// Whether edges of one cell pass through triangles of the other that have none of their nodes.
+static bool cells_pierce(const Quad a[5], const Quad b[5], const unsigned shared[2]) {
+    static const int edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
+    for (int e = 0; e < 8; e++)
+        for (int t = 0; t < 4; t++) {
+            const int corner[3] = {t, (t + 1) & 3, 4};
+            bool joined = false;
+            for (int k = 0; k < 2; k++)
+                for (int i = 0; i < 3; i++)
+                    joined |= (shared[0] >> edge[e][k] & 1) && (shared[1] >> corner[i] & 1) &&
+                              length(a[edge[e][k]] - b[corner[i]]) == 0;
+            if (!joined && touch_pierces(a[edge[e][0]], a[edge[e][1]], b[corner[0]], b[corner[1]], b[corner[2]]))
+                return true;
+        }
+    return false;
+}
+
+/// What is shown not to cross does not: two cells at a side, and two at a corner with one between that shares a side with
+/// each, bent and sheared at random.
+static void what_is_parted_does_not_cross(void **unused) {
+    (void)unused;
+    int level[2] = {0}, parted[2] = {0}, crossed[2] = {0};
+    for (int trial = 0; trial < 200000; trial++) {
+        Quad grid[3][3], cell[3][5];
+        const float bend = 0.2f + 0.4f * (float)(trial % 4);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) grid[i][j] = (Quad){(float)i, (float)j, 0, 0} + point(bend);
+        for (int c = 0; c < 3; c++) { // at the corner 1, 1: below to the left, to the right of that, above that
+            const int x = c > 0, y = c > 1;
+            cell[c][0] = grid[x][y], cell[c][1] = grid[x + 1][y], cell[c][2] = grid[x + 1][y + 1];
+            cell[c][3] = grid[x][y + 1];
+            close_cell(cell[c]);
+        }
+        Quad normals[3], normal;
+        for (int c = 0; c < 3; c++) normals[c] = touch_normals(cell[c]);
+        const unsigned side[2] = {2 | 4, 1 | 8}, corner[2] = {4, 1};
+        for (int kind = 0; kind < 2; kind++) {
+            const Quad *a = cell[0], *b = cell[kind ? 2 : 1];
+            const unsigned *shared = kind ? corner : side;
+            bool crosses = cells_pierce(a, b, shared) || cells_pierce(b, a, (const unsigned[2]){shared[1], shared[0]});
+            bool within = kind ? touch_is_within(normals[0], normals[1], TOUCH_CONE_CORNER) &&
+                                     touch_is_within(normals[2], normals[1], TOUCH_CONE_CORNER)
+                               : touch_is_within(normals[0], normals[1], TOUCH_CONE_SIDE);
+            bool part = touch_is_parted(a, b, shared, 5e-3f, &normal);
+            assert_false(crosses && (within || part));
+            level[kind] += within, parted[kind] += part, crossed[kind] += crosses;
+        }
+    }
+    print_message("level %d and %d, parted %d and %d, crossed %d and %d\n", level[0], level[1], parted[0], parted[1],
+                  crossed[0], crossed[1]);
+    assert_true(level[0] > 1000 && level[1] > 100 && parted[0] > 10000 && parted[1] > 10000);
+    assert_true(crossed[0] > 10000 && crossed[1] > 10000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangle_distance),
         cmocka_unit_test(segment_distance),
         cmocka_unit_test(sweeps_stop_in_time),
         cmocka_unit_test(what_is_near_may_only_part),
+        cmocka_unit_test(what_is_parted_does_not_cross),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
