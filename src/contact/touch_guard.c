@@ -373,26 +373,39 @@ static void zone_move(const Guard *guard) {
         for (int i = 0; i < 4; i++) plan->changed[c] |= plan->zone[shell->cells[c][i]] != SHELL_NONE;
 }
 
+/// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has been
+/// gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small part.
+static Quad shifted_velocity(Quad before, Quad shift, Quad way, float h) {
+    Quad after = before + shift / h, gone = way / h;
+    float most = fmaxf(quad_dot(before, before), quad_dot(gone, gone)), square = quad_dot(after, after);
+    return square > most ? sqrtf(most / square) * after : after;
+}
+
 /// Velocities and centres follow what has been changed; the zones are emptied.
 static void close_ways(const Guard *guard, float h) {
     TouchPlan *plan = guard->plan;
     DynamicsState *dynamics = guard->dynamics;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         uint32_t centre = shell_centre(guard->shell, c);
-        Quad shift = {0}, place = quad_load(dynamics->position[centre]);
+        Quad shift = {0}, way = {0}, place = quad_load(dynamics->position[centre]);
         for (int i = 0; i < 4; i++) {
             uint32_t v = guard->shell->cells[c][i];
-            shift += 0.25f * (quad_load(dynamics->position[v]) - quad_load(plan->want[v]));
+            Quad corner = quad_load(dynamics->position[v]);
+            shift += 0.25f * (corner - quad_load(plan->want[v]));
+            way += 0.25f * (corner - quad_load(plan->start[v]));
         }
-        shift[3] = 0;
+        shift[3] = way[3] = 0;
         if (place[3] == 0 || quad_dot(shift, shift) == 0) continue;
         quad_store(dynamics->position[centre], place + shift);
-        quad_store(dynamics->velocity[centre], quad_load(dynamics->velocity[centre]) + shift / h);
+        quad_store(dynamics->velocity[centre],
+                   shifted_velocity(quad_load(dynamics->velocity[centre]), shift, way, h));
     }
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Quad shift = quad_load(dynamics->position[v]) - quad_load(plan->want[v]);
-        shift[3] = 0;
-        if (quad_dot(shift, shift) > 0) quad_store(dynamics->velocity[v], quad_load(dynamics->velocity[v]) + shift / h);
+        Quad corner = quad_load(dynamics->position[v]), shift = corner - quad_load(plan->want[v]);
+        Quad way = corner - quad_load(plan->start[v]);
+        shift[3] = way[3] = 0;
+        if (quad_dot(shift, shift) > 0)
+            quad_store(dynamics->velocity[v], shifted_velocity(quad_load(dynamics->velocity[v]), shift, way, h));
     }
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;
