@@ -9,10 +9,11 @@
 
 #include <string.h>
 
-/// Blocks of what sums go over: particles, or green springs, which are more where a sheet has many handles.
+/// Blocks of what sums go over: particles, or the springs of a colour.
 static int plan_partials(const Shell *shell) {
-    uint32_t particles = shell->particle_count, springs = shell->springs[SINGE_GREEN].count;
-    return pool_blocks((int)(particles > springs ? particles : springs));
+    uint32_t most = shell->particle_count;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) most = most > shell->springs[i].count ? most : shell->springs[i].count;
+    return pool_blocks((int)most);
 }
 
 static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory) {
@@ -200,6 +201,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     }
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
+    dynamics_limit(plan, shell, state, pool, dynamics);
     if (plan->touch) touch_guard(plan->touch, shell, state, pool, h, dynamics);
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);

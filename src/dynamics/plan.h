@@ -90,7 +90,7 @@ struct DynamicsPlan {
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
-    double *partial;         ///< [pool_blocks(particles or green springs)]
+    double *partial;         ///< [pool_blocks(particles or springs of a colour)]
     uint32_t particle_count, cell_count, spring_count[SINGE_COLOUR_COUNT];
 };
 
@@ -141,6 +141,9 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 /// Internal friction of both layers over a step of h seconds (smooth.c).
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics);
+
+/// Shortens edges and diagonals that a step has left far too long (limit.c).
+void dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics);
 
 /// Puts centres that have gone through their corners back over them: the last pass of a step (order.c).
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
