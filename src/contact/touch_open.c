@@ -124,7 +124,7 @@ static bool near_at_rest(const Opening *job, const TouchPair *pair, const TouchN
 /// How far two features are to be kept apart in this step; 0 where they need not be looked after.
 static float target(const Opening *job, const TouchPair *pair, const Look *look, const TouchNear *near) {
     const TouchPlan *plan = job->plan;
-    float thickness = plan->thickness, distance = near->distance;
+    float thickness = fminf(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (near->kind == TOUCH_EDGES && !near->faces) return 0;
     // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
     if (!near->faces && distance > thickness) return 0;

@@ -33,12 +33,26 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->gap = 5e-3f * plan->cell_size + 4 * plan->noise;
 }
 
+/// Cells far smaller than the rest of their sheet would be torn apart by what keeps their own corners apart.
+static void measure_cells(TouchPlan *plan, const Shell *shell) {
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        float shortest = INFINITY;
+        for (int i = 0; i < 4; i++) {
+            const float *a = shell->rest_position[shell->cells[c][i]];
+            const float *b = shell->rest_position[shell->cells[c][(i + 1) & 3]];
+            Quad side = quad_load(b) - quad_load(a);
+            shortest = fminf(shortest, quad_dot(side, side));
+        }
+        plan->thin[c] = fminf(plan->thickness, 0.4f * sqrtf(shortest));
+    }
+}
+
 typedef struct Array {
     void *at; ///< the plan's pointer
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 26 };
+enum { ARRAYS = 27 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
@@ -46,7 +60,7 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
 #define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
     const Array all[ARRAYS] = {
         ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells), ARRAY(boxes, cells),
-        ARRAY(slabs, cells), ARRAY(rest, cells),
+        ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(thin, cells),
         ARRAY(owned, cells), ARRAY(owner, vertices), ARRAY(entries, plan->entry_capacity),
         ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
@@ -104,6 +118,7 @@ SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeCon
         touch_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+    measure_cells(plan, shell);
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
     place_at_rest(plan, shell);
     *out = plan;

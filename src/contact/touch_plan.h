@@ -84,7 +84,8 @@ struct TouchPlan {
     uint32_t cell_count, vertex_count;
     float time_step;  ///< s
     float cell_size;  ///< m, of the smallest
-    float thickness;  ///< m, of contact; at most 2/5 of the smallest cell
+    float thickness;  ///< m, of contact; at most 2/5 of a sheet's typical cell
+    float *thin;      ///< [cells] m, the same; at most 2/5 of this cell's shortest side
     float slack_most; ///< m, that cells may move otherwise than foreseen before the search is repeated
     float gap;        ///< m, that ways keep free in front of what they would meet
     float noise;      ///< m, that rounding moves places by
