@@ -189,8 +189,8 @@ static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, c
     }
 }
 
-int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, TouchNear *near,
-                   float *nearest) {
+int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, bool edges,
+                   TouchNear *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
     unsigned of_b[4] = {0}, of_a[4] = {0};
     for (int i = 0; i < 4; i++)
@@ -200,7 +200,7 @@ int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, Touc
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, TOUCH_NODE_OF_A);
     find_nodes(&search, b, a, of_a, TOUCH_NODE_OF_B);
-    find_edges(&search, a, b, of_b);
+    if (edges) find_edges(&search, a, b, of_b);
     *nearest = sqrtf(search.square);
     return search.count;
 }

@@ -40,9 +40,9 @@ void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, 
 /// How far apart two cells are at least, by the slabs that they lie in; negative where slabs do not tell.
 float touch_cells_apart(const TouchCell *a, const TouchCell *b);
 
-/// Finds features that share no node and are nearer than `far`; each is counted by the cell that owns it. *nearest is
-/// their least distance, or `far`.
-int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, TouchNear *near,
-                   float *nearest);
+/// Finds nodes and triangles, and edges if they count, that share no node and are nearer than `far`; each is counted by
+/// the cell that owns it. *nearest is their least distance, or `far`.
+int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, bool edges,
+                   TouchNear *near, float *nearest);
 
 #endif

@@ -1,8 +1,8 @@
 // The search for cells that are near each other.
 //
 // A cell is a box that moves along: its box at the search, widened by half of thickness + slack, on the way that its
-// corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as long
-// as no corner leaves its way by more than half the slack; touch_guard.c watches that.
+// corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
+// long as no corner leaves its way by more than half the slack; touch_guard.c watches that.
 #include "contact/touch_plan.h"
 
 typedef struct Find {

@@ -1,7 +1,7 @@
 // No way through: continuous detection at the end of a step, and what is done where ways meet.
 //
-// Every corner has gone from x0, where the step began, to x1. A pair of cells that were d apart at the last search and
-// have moved since by less, relative to each other, cannot have met:
+// Every corner has gone from x0, where the step began, to x1. A pair of cells that were at least d apart at x0 and have
+// moved since by less, relative to each other, cannot have met:
 //
 //   |mean way of a - mean way of b| + deviation of a + deviation of b < d
 //
@@ -164,8 +164,8 @@ static bool normals_part(const Guard *guard, const TouchPair *pair) {
     return touch_is_within(a, between, TOUCH_CONE_CORNER) && touch_is_within(b, between, TOUCH_CONE_CORNER);
 }
 
-/// The same by a plane that parts them at both ends of the step, and has not been turned over: then they have not passed
-/// through each other about what they share.
+/// The same by a plane that parts them at both ends of the step, and has not been turned over: then they have not
+/// passed through each other about what they share.
 static bool plane_parts(const Guard *guard, const TouchPair *pair) {
     const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
     const float(*places[2])[4] = {(const float(*)[4])guard->plan->start, (const float(*)[4])guard->dynamics->position};
@@ -185,10 +185,9 @@ static bool plane_parts(const Guard *guard, const TouchPair *pair) {
 
 static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
-    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
     // so far apart that the sweep, which stops a little before the gap, would not stop either
-    if (pair->distance > 2 * plan->gap &&
-        touch_differ(a->way, b->way) + plan->noise < 0.9f * (pair->distance - plan->gap))
+    if (pair->distance > 2 * plan->gap && touch_differ(plan->motion[pair->a].way, plan->motion[pair->b].way) +
+                                                  plan->noise < 0.9f * (pair->distance - plan->gap))
         return true;
     return normals_part(guard, pair) || plane_parts(guard, pair);
 }
@@ -373,8 +372,9 @@ static void zone_move(const Guard *guard) {
         for (int i = 0; i < 4; i++) plan->changed[c] |= plan->zone[shell->cells[c][i]] != SHELL_NONE;
 }
 
-/// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has been
-/// gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small part.
+/// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has
+/// been gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small
+/// part.
 static Quad shifted_velocity(Quad before, Quad shift, Quad way, float h) {
     Quad after = before + shift / h, gone = way / h;
     float most = fmaxf(quad_dot(before, before), quad_dot(gone, gone)), square = quad_dot(after, after);

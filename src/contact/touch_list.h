@@ -63,7 +63,8 @@ typedef void TouchWriteFn(void *context, TouchList *list, int block);
 
 /// Has `blocks` blocks written, at most block_count. Returns the number of items; where these are more than `capacity`,
 /// those that come first in the order of blocks are there, at least `capacity`.
-uint64_t touch_list_write(TouchList *list, Pool *pool, int blocks, uint32_t capacity, TouchWriteFn *write, void *context);
+uint64_t touch_list_write(TouchList *list, Pool *pool, int blocks, uint32_t capacity, TouchWriteFn *write,
+                          void *context);
 
 /// Calls for each item, its number in the order of blocks, up to `count` of them.
 typedef void TouchReadFn(void *context, const void *item, uint32_t number);

@@ -43,10 +43,10 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
 //   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the condition on the contour made one on angles).
 //
 // For seen along the first one's mean normal n, all triangles of both are turned the same way, so that each cell is
-// a star about its middle, and its corners' angles, which are at most 115 degrees seen along its own normal, are less than
-// 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex, on either side
-// of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of which share a
-// side each with the third, take less than a full turn, and convex ones stay within their angles.
+// a star about its middle, and its corners' angles, which are at most 115 degrees seen along its own normal, are less
+// than 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex, on
+// either side of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of
+// which share a side each with the third, take less than a full turn, and convex ones stay within their angles.
 
 /// Whether a cell's corners have angles of 30 to 115 degrees, seen along the unit `normal`.
 static bool is_in_shape(const Quad node[5], Quad normal) {

@@ -25,8 +25,8 @@ typedef struct TouchSweep {
 /// approach.
 float touch_sweep(const TouchSweep *sweep, float gap, float noise);
 
-/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 2 more where, seen along it,
-/// a corner has no angle of 30 to 115 degrees; and 8 where there is no mean.
+/// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 2 more where, seen along
+/// it, a corner has no angle of 30 to 115 degrees; and 8 where there is no mean.
 Quad touch_normals(const Quad node[5]);
 
 /// Chords between unit normals: of what is not folded onto itself, about 70 degrees; 35 and 20 degrees.
@@ -41,8 +41,8 @@ bool touch_is_within(Quad a, Quad b, float cone);
 bool touch_is_open(Quad normals);
 
 /// Whether a plane through the corners that two cells share, bits of `shared`, has the other corners of a on one side,
-/// and those of b on the other, at least `margin` away from it; *normal points to a's. Then the cells share no more. The
-/// fourth numbers must be 0.
+/// and those of b on the other, at least `margin` away from it; *normal points to a's. Then the cells share no more.
+/// The fourth numbers must be 0.
 bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2], float margin, Quad *normal);
 
 /// Whether segment p-q passes through triangle a, b, c.

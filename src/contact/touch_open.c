@@ -12,6 +12,10 @@
 /// m/s with which is mended what is too near.
 #define TOUCH_PART 0.1f
 
+/// Of the thickness: where a slab as thick parts two cells, their nodes keep them apart well enough without their
+/// edges.
+#define TOUCH_PARTED 0.6f
+
 typedef struct Opening {
     TouchPlan *plan;
     const Shell *shell;
@@ -36,7 +40,8 @@ static void way_range(void *task, int begin, int end) {
     }
 }
 
-/// Notes where corners are and how they move: as since the last search, for what lies trembles; else by their velocities.
+/// Notes where corners are and how they move: as since the last search, for what lies trembles; else by their
+/// velocities.
 static void note_search(TouchPlan *plan, const State *state, const DynamicsState *dynamics) {
     bool known = plan->searched && state->step > plan->step;
     float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
@@ -159,8 +164,10 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     // looking a little farther, not every step has to look again
     TouchNear near[TOUCH_NEAR];
     float nearest;
-    int count = touch_features(job->shell, pair, &look.a, &look.b, look.due + 0.25f * plan->thickness, near, &nearest);
-    pair->distance = nearest > pair->distance ? nearest : pair->distance;
+    bool edges = apart < TOUCH_PARTED * plan->thickness;
+    int count = touch_features(job->shell, pair, &look.a, &look.b, look.due + 0.25f * plan->thickness, edges, near,
+                               &nearest);
+    if (edges) pair->distance = nearest > pair->distance ? nearest : pair->distance;
     if (count == 0) return;
     place_speeds(job, pair->a, look.speed_a);
     place_speeds(job, pair->b, look.speed_b);
@@ -275,7 +282,7 @@ void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *sta
         if (pair->bridge != SHELL_NONE && touch_is_within(touch_normals(p.node), touch_normals(q.node), TOUCH_CONE))
             continue;
         float nearest;
-        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, bulges, found, &nearest))
+        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, bulges, true, found, &nearest))
             continue;
         for (int i = 0; i < 4; i++) near[a[i]] = near[b[i]] = 1;
     }

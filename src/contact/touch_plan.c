@@ -33,20 +33,6 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->gap = 5e-3f * plan->cell_size + 4 * plan->noise;
 }
 
-/// Cells far smaller than the rest of their sheet would be torn apart by what keeps their own corners apart.
-static void measure_cells(TouchPlan *plan, const Shell *shell) {
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        float shortest = INFINITY;
-        for (int i = 0; i < 4; i++) {
-            const float *a = shell->rest_position[shell->cells[c][i]];
-            const float *b = shell->rest_position[shell->cells[c][(i + 1) & 3]];
-            Quad side = quad_load(b) - quad_load(a);
-            shortest = fminf(shortest, quad_dot(side, side));
-        }
-        plan->thin[c] = fminf(plan->thickness, 0.4f * sqrtf(shortest));
-    }
-}
-
 typedef struct Array {
     void *at; ///< the plan's pointer
     size_t count, size;
@@ -59,8 +45,9 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
 #define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
     const Array all[ARRAYS] = {
-        ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells), ARRAY(boxes, cells),
-        ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(thin, cells),
+        ARRAY(thin, cells), ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells),
+        ARRAY(boxes, cells),
+        ARRAY(slabs, cells), ARRAY(rest, cells),
         ARRAY(owned, cells), ARRAY(owner, vertices), ARRAY(entries, plan->entry_capacity),
         ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
@@ -83,7 +70,8 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
     }
     uint32_t most = plan->pair_capacity, blocks = most / TOUCH_BLOCK + 1;
     uint32_t buckets = plan->bucket_count / TOUCH_BUCKETS + 1, strays = plan->cell_count / TOUCH_STRAYS + 1;
-    return touch_list_create(memory, &plan->found_pairs, sizeof(TouchPair), most, buckets > strays ? buckets : strays) &&
+    if (buckets < strays) buckets = strays;
+    return touch_list_create(memory, &plan->found_pairs, sizeof(TouchPair), most, buckets) &&
            touch_list_create(memory, &plan->found, sizeof(TouchFound), plan->push_capacity, blocks);
 }
 
@@ -97,12 +85,19 @@ void touch_plan_free(Memory *memory, TouchPlan *plan) {
     FREE(memory, plan, 1);
 }
 
-/// Where cells are at rest, which tears do not change.
-static void place_at_rest(TouchPlan *plan, const Shell *shell) {
+/// Where cells are at rest, and how thick they may be: those far smaller than the rest of their sheet would be torn
+/// apart by what keeps their own corners apart.
+static void measure_cells(TouchPlan *plan, const Shell *shell) {
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Quad place[4];
+        float shortest = INFINITY;
         for (int i = 0; i < 4; i++) place[i] = quad_load(shell->rest_position[shell->cells[c][i]]);
+        for (int i = 0; i < 4; i++) {
+            Quad side = place[(i + 1) & 3] - place[i];
+            shortest = fminf(shortest, quad_dot(side, side));
+        }
         plan->rest[c] = touch_mean(place);
+        plan->thin[c] = fminf(plan->thickness, 0.4f * sqrtf(shortest));
     }
 }
 
@@ -118,9 +113,8 @@ SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeCon
         touch_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
-    measure_cells(plan, shell);
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
-    place_at_rest(plan, shell);
+    measure_cells(plan, shell);
     *out = plan;
     return SINGE_OK;
 }

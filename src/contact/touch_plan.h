@@ -41,8 +41,8 @@ typedef struct TouchEntry {
 /// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.
 typedef struct TouchPair {
     uint32_t a, b;
-    /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each where
-    /// they share a corner; else SHELL_NONE
+    /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each
+    /// where they share a corner; else SHELL_NONE
     uint32_t bridge;
     float distance;   ///< m, at least that at plan->start
     float hit;        ///< of the step's way, the share after which they meet; 2: never
@@ -67,8 +67,8 @@ typedef struct TouchPush {
     uint32_t count;
 } TouchPush;
 
-/// How a cell has moved: mean of its corners' ways since plan->start, with the largest deviation as fourth; and the mean
-/// normal of its triangles, with their largest deviation as fourth.
+/// How a cell has moved: mean of its corners' ways since plan->start, with the largest deviation as fourth; and the
+/// mean normal of its triangles, with their largest deviation as fourth.
 typedef struct TouchMotion {
     Quad way, normal;
     Quad speed; ///< m/s as the step opened: of the corners, with the largest deviation as fourth
