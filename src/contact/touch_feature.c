@@ -3,32 +3,7 @@
 // detection (2005), 5.1.5 and 5.1.9, as in touch_near.c, but chosen by masks.
 #include "contact/touch_feature.h"
 
-// ---- four at once
-
-static inline FourVectors four_all(Quad a) { return (FourVectors){quad_all(a[0]), quad_all(a[1]), quad_all(a[2])}; }
-static inline FourVectors four_minus(FourVectors a, FourVectors b) {
-    return (FourVectors){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-/// a + s b
-static inline FourVectors four_along(FourVectors a, Quad s, FourVectors b) {
-    return (FourVectors){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
-static inline Quad four_dot(FourVectors a, FourVectors b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline FourVectors four_min(FourVectors a, FourVectors b) {
-    return (FourVectors){quad_min(a.x, b.x), quad_min(a.y, b.y), quad_min(a.z, b.z)};
-}
-static inline FourVectors four_max(FourVectors a, FourVectors b) {
-    return (FourVectors){quad_max(a.x, b.x), quad_max(a.y, b.y), quad_max(a.z, b.z)};
-}
 static inline Quad clamp01(Quad a) { return quad_min(quad_max(a, quad_all(0)), quad_all(1)); }
-
-/// Bit k is set where box k meets the box from `low` to `high`.
-static inline unsigned which_meet(const FourBoxes *four, Quad low, Quad high) {
-    QuadMask meet = (four->low.x <= quad_all(high[0])) & (four->high.x >= quad_all(low[0]));
-    meet &= (four->low.y <= quad_all(high[1])) & (four->high.y >= quad_all(low[1]));
-    meet &= (four->low.z <= quad_all(high[2])) & (four->high.z >= quad_all(low[2]));
-    return quad_bits(meet);
-}
 
 /// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
 typedef struct FourNear {
@@ -93,20 +68,14 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
 void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin,
                       TouchCell *out) {
     touch_nodes(shell->cells[cell], x, origin, out->node);
-    Quad q[4] = {out->node[0], out->node[1], out->node[2], out->node[3]};
-    quad_transpose(q);
-    out->corner = (FourVectors){q[0], q[1], q[2]};
-    out->turned = (FourVectors){QUAD_SHUFFLE(q[0], q[0], 1, 2, 3, 0), QUAD_SHUFFLE(q[1], q[1], 1, 2, 3, 0),
-                                QUAD_SHUFFLE(q[2], q[2], 1, 2, 3, 0)};
+    out->corner = four_of(out->node);
+    out->turned = four_turned(out->corner);
     uint32_t owned = plan->owned[cell];
     out->owned = (owned & 15) | 16 | (owned >> 4) << 8 | 15u << 12;
 }
 
 static void cell_boxes(TouchCell *cell) {
-    FourVectors middle = four_all(cell->node[4]);
-    cell->sides = (FourBoxes){four_min(cell->corner, cell->turned), four_max(cell->corner, cell->turned)};
-    cell->spokes = (FourBoxes){four_min(cell->corner, middle), four_max(cell->corner, middle)};
-    cell->triangles = (FourBoxes){four_min(cell->sides.low, middle), four_max(cell->sides.high, middle)};
+    touch_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
 }
 
 /// The same for the planes through a's diagonals only.
@@ -116,13 +85,7 @@ static float apart_along(const TouchCell *a, const TouchCell *b) {
     if (!(square > 0)) return -1;
     FourVectors n = four_all(normal);
     Quad p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the middles lie between
-    Quad low_p = quad_min(p, QUAD_SHUFFLE(p, p, 2, 3, 0, 1)), high_p = quad_max(p, QUAD_SHUFFLE(p, p, 2, 3, 0, 1));
-    Quad low_q = quad_min(q, QUAD_SHUFFLE(q, q, 2, 3, 0, 1)), high_q = quad_max(q, QUAD_SHUFFLE(q, q, 2, 3, 0, 1));
-    low_p = quad_min(low_p, QUAD_SHUFFLE(low_p, low_p, 1, 0, 3, 2));
-    high_p = quad_max(high_p, QUAD_SHUFFLE(high_p, high_p, 1, 0, 3, 2));
-    low_q = quad_min(low_q, QUAD_SHUFFLE(low_q, low_q, 1, 0, 3, 2));
-    high_q = quad_max(high_q, QUAD_SHUFFLE(high_q, high_q, 1, 0, 3, 2));
-    float above = low_p[0] - high_q[0], below = low_q[0] - high_p[0];
+    float above = quad_least(p) - quad_most(q), below = quad_least(q) - quad_most(p);
     return (above > below ? above : below) / sqrtf(square);
 }
 
@@ -152,16 +115,13 @@ static void note(Search *search, const FourNear *four, unsigned meet, int kind, 
     }
 }
 
-/// Bit k: triangle or side k has one of the corners `bits`.
-static inline unsigned around(unsigned bits) { return (bits | bits << 3 | bits >> 1) & 15; }
-
 /// Nodes that p owns against triangles of q; bits of same[i] are the corners of q that are corner i of p.
 static void find_nodes(Search *search, const TouchCell *p, const TouchCell *q, const unsigned same[4], int kind) {
     FourVectors middle = four_all(q->node[4]);
     for (int i = 0; i < 5; i++) {
         if (!(p->owned >> i & 1)) continue;
-        unsigned meet = which_meet(&q->triangles, p->node[i] - search->far, p->node[i] + search->far);
-        if (i < 4) meet &= ~around(same[i]);
+        unsigned meet = four_meet(&q->boxes.triangles, p->node[i] - search->far, p->node[i] + search->far);
+        if (i < 4) meet &= ~touch_around(same[i]);
         if (!meet) continue;
         FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, middle);
         note(search, &four, meet, kind, i, 0, kind == TOUCH_NODE_OF_B ? -1 : 1);
@@ -176,8 +136,8 @@ static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, c
         unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
         Quad a = p->node[k[0]], b = p->node[k[1]];
         Quad low = quad_min(a, b) - search->far, high = quad_max(a, b) + search->far;
-        unsigned sides = which_meet(&q->sides, low, high) & q->owned >> 8 & ~around(corners);
-        unsigned spokes = which_meet(&q->spokes, low, high) & ~corners;
+        unsigned sides = four_meet(&q->boxes.sides, low, high) & q->owned >> 8 & ~touch_around(corners);
+        unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
         if (sides) {
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
             note(search, &four, sides, TOUCH_EDGES, i, 0, 1);

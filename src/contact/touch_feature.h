@@ -2,16 +2,8 @@
 #ifndef CONTACT_TOUCH_FEATURE_H
 #define CONTACT_TOUCH_FEATURE_H
 
+#include "contact/touch_four.h"
 #include "contact/touch_plan.h"
-
-/// A number of four things at once.
-typedef struct FourVectors {
-    Quad x, y, z;
-} FourVectors;
-
-typedef struct FourBoxes {
-    FourVectors low, high;
-} FourBoxes;
 
 /// A cell's nodes about an origin, and all that follows from them.
 typedef struct TouchCell {
@@ -19,7 +11,7 @@ typedef struct TouchCell {
     FourVectors corner;  ///< 0 to 3
     FourVectors turned;  ///< 1, 2, 3, 0
     uint32_t owned;      ///< bit i: node i is this cell's, the middle too; bit 8 + i: edge i
-    FourBoxes triangles, sides, spokes; ///< after touch_cell_boxes
+    TouchBoxes boxes;
 } TouchCell;
 
 /// Two features and their nearest points.

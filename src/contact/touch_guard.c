@@ -19,6 +19,7 @@
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
 // search is repeated for this step's own ways.
 #include "base/clock.h"
+#include "contact/touch_four.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
@@ -56,8 +57,8 @@ static void measure_cell(const Guard *guard, uint32_t c) {
         astray = square > astray ? square : astray;
     }
     touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-    plan->motion[c].way = touch_way(plan, corner, x);
-    plan->motion[c].normal = touch_normals(node);
+    plan->way[c] = touch_way(plan, corner, x);
+    plan->normal[c] = touch_normals(node);
     plan->strayed[c] = !(astray < 0.25f * plan->slack * plan->slack);
 }
 
@@ -74,7 +75,7 @@ static void measure_range(void *task, int begin, int end) {
 
 typedef struct Swept {
     Quad place[5], way[5], low[5], high[5]; ///< of nodes
-    uint32_t id[5];
+    TouchBoxes boxes;
 } Swept;
 
 static void sweep_nodes(const Guard *guard, uint32_t c, Quad origin, Quad mean, Swept *out) {
@@ -86,22 +87,12 @@ static void sweep_nodes(const Guard *guard, uint32_t c, Quad origin, Quad mean, 
         out->way[i] = end[i] - out->place[i];
         out->low[i] = quad_min(out->place[i], end[i]);
         out->high[i] = quad_max(out->place[i], end[i]);
-        out->id[i] = touch_id(guard->shell, c, i);
     }
-}
-
-static inline bool apart(Quad low_a, Quad high_a, Quad low_b, Quad high_b, float wide) {
-    QuadMask out = (low_a > high_b + wide) | (low_b > high_a + wide);
-    return (out[0] | out[1] | out[2]) != 0;
+    touch_boxes(four_of(out->low), four_of(out->high), out->low[4], out->high[4], &out->boxes);
 }
 
 static float sweep_node(const Guard *guard, const Swept *p, int i, const Swept *q, int j) {
     const uint8_t *k = touch_triangle[j];
-    for (int n = 0; n < 3; n++)
-        if (q->id[k[n]] == p->id[i]) return 2;
-    Quad low = quad_min(quad_min(q->low[k[0]], q->low[k[1]]), q->low[k[2]]);
-    Quad high = quad_max(quad_max(q->high[k[0]], q->high[k[1]]), q->high[k[2]]);
-    if (apart(p->low[i], p->high[i], low, high, guard->plan->gap)) return 2;
     TouchSweep sweep = {{p->place[i], q->place[k[0]], q->place[k[1]], q->place[k[2]]},
                         {p->way[i], q->way[k[0]], q->way[k[1]], q->way[k[2]]}, false};
     return touch_sweep(&sweep, guard->plan->gap, guard->plan->noise);
@@ -109,11 +100,6 @@ static float sweep_node(const Guard *guard, const Swept *p, int i, const Swept *
 
 static float sweep_edge(const Guard *guard, const Swept *p, int i, const Swept *q, int j) {
     const uint8_t *k = touch_edge[i], *l = touch_edge[j];
-    for (int n = 0; n < 4; n++)
-        if (p->id[k[n >> 1]] == q->id[l[n & 1]]) return 2;
-    if (apart(quad_min(p->low[k[0]], p->low[k[1]]), quad_max(p->high[k[0]], p->high[k[1]]),
-              quad_min(q->low[l[0]], q->low[l[1]]), quad_max(q->high[l[0]], q->high[l[1]]), guard->plan->gap))
-        return 2;
     TouchSweep sweep = {{p->place[k[0]], p->place[k[1]], q->place[l[0]], q->place[l[1]]},
                         {p->way[k[0]], p->way[k[1]], q->way[l[0]], q->way[l[1]]}, true};
     return touch_sweep(&sweep, guard->plan->gap, guard->plan->noise);
@@ -134,33 +120,63 @@ static void sweep_both(const Guard *guard, const TouchPair *pair, Swept *p, Swep
     sweep_nodes(guard, pair->b, origin, mean, q);
 }
 
+/// Nodes that cell c owns, of p, against triangles of q that do not have them; bits of same[i] are the corners of q that
+/// are corner i of p.
+static void sweep_all_nodes(const Guard *guard, TouchPair *pair, uint32_t c, const Swept *p, const Swept *q,
+                            const unsigned same[4], int kind) {
+    for (int i = 0; i < 5; i++) {
+        if (!touch_owns_node(guard->plan, c, i)) continue;
+        // of one cell, the middle is in all triangles
+        unsigned meet = i < 4 ? 15 & ~touch_around(same[i]) : pair->a == pair->b ? 0 : 15;
+        if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - guard->plan->gap, p->high[i] + guard->plan->gap);
+        for (; meet; meet &= meet - 1) {
+            int j = __builtin_ctz(meet);
+            note_hit(pair, sweep_node(guard, p, i, q, j), kind, i, j);
+        }
+    }
+}
+
+static void sweep_all_edges(const Guard *guard, TouchPair *pair, const Swept *p, const Swept *q,
+                            const unsigned same[4]) {
+    const TouchPlan *plan = guard->plan;
+    for (int i = 0; i < 8; i++) {
+        if (!touch_owns_edge(plan, pair->a, i)) continue;
+        const uint8_t *k = touch_edge[i];
+        unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
+        Quad low = quad_min(p->low[k[0]], p->low[k[1]]) - plan->gap;
+        Quad high = quad_max(p->high[k[0]], p->high[k[1]]) + plan->gap;
+        unsigned sides = four_meet(&q->boxes.sides, low, high) & plan->owned[pair->b] >> 4 & ~touch_around(corners);
+        unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
+        if (pair->a == pair->b) sides &= 14u << i, spokes = i < 4 ? spokes : 0; // each two once
+        for (unsigned meet = sides | spokes << 4; meet; meet &= meet - 1) {
+            int j = __builtin_ctz(meet);
+            note_hit(pair, sweep_edge(guard, p, i, q, j), TOUCH_EDGES, i, j);
+        }
+    }
+}
+
 /// Finds the share of the step's way that two cells can go before they meet, and what meets.
 static void sweep_pair(const Guard *guard, TouchPair *pair) {
-    const TouchPlan *plan = guard->plan;
-    uint32_t a = pair->a, b = pair->b;
+    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
+    unsigned of_b[4] = {0}, of_a[4] = {0};
     Swept p, q;
     sweep_both(guard, pair, &p, &q);
-    for (int i = 0; i < 5; i++)
-        for (int j = 0; j < 4; j++) {
-            if (touch_owns_node(plan, a, i)) note_hit(pair, sweep_node(guard, &p, i, &q, j), TOUCH_NODE_OF_A, i, j);
-            if (a != b && touch_owns_node(plan, b, i))
-                note_hit(pair, sweep_node(guard, &q, i, &p, j), TOUCH_NODE_OF_B, i, j);
-        }
-    for (int i = 0; i < 8; i++) {
-        if (!touch_owns_edge(plan, a, i)) continue;
-        for (int j = a == b ? i + 1 : 0; j < 8; j++)
-            if (touch_owns_edge(plan, b, j)) note_hit(pair, sweep_edge(guard, &p, i, &q, j), TOUCH_EDGES, i, j);
-    }
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            if (a[i] == b[j]) of_b[i] |= 1u << j, of_a[j] |= 1u << i;
+    sweep_all_nodes(guard, pair, pair->a, &p, &q, of_b, TOUCH_NODE_OF_A);
+    if (pair->a != pair->b) sweep_all_nodes(guard, pair, pair->b, &q, &p, of_a, TOUCH_NODE_OF_B);
+    sweep_all_edges(guard, pair, &p, &q, of_b);
 }
 
 /// Cells that hang together, by their normals: touch_near.c has the proof.
 static bool normals_part(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
-    Quad a = plan->motion[pair->a].normal, b = plan->motion[pair->b].normal;
+    Quad a = plan->normal[pair->a], b = plan->normal[pair->b];
     if (pair->a == pair->b) return touch_is_open(a);
     if (pair->bridge == SHELL_NONE || !is_alive(guard, pair->bridge)) return false;
     if (pair->bridge == pair->a) return touch_is_within(a, b, TOUCH_CONE_SIDE);
-    Quad between = plan->motion[pair->bridge].normal;
+    Quad between = plan->normal[pair->bridge];
     return touch_is_within(a, between, TOUCH_CONE_CORNER) && touch_is_within(b, between, TOUCH_CONE_CORNER);
 }
 
@@ -186,8 +202,8 @@ static bool plane_parts(const Guard *guard, const TouchPair *pair) {
 static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
     // so far apart that the sweep, which stops a little before the gap, would not stop either
-    if (pair->distance > 2 * plan->gap && touch_differ(plan->motion[pair->a].way, plan->motion[pair->b].way) +
-                                                  plan->noise < 0.9f * (pair->distance - plan->gap))
+    if (pair->distance > 2 * plan->gap &&
+        touch_differ(plan->way[pair->a], plan->way[pair->b]) + plan->noise < 0.9f * (pair->distance - plan->gap))
         return true;
     return normals_part(guard, pair) || plane_parts(guard, pair);
 }
@@ -198,7 +214,7 @@ static double sweep_range(void *task, int begin, int end) {
     double hits = 0;
     for (int k = begin; k < end; k++) {
         TouchPair *pair = &plan->pairs[k];
-        pair->hit = 2;
+        if (pair->hit < 2) pair->hit = 2;
         if (guard->changed && !plan->changed[pair->a] && !plan->changed[pair->b]) continue;
         if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(plan, pair)) continue;
         if (!pair_is_free(guard, pair)) sweep_pair(guard, pair);

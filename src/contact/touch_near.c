@@ -1,4 +1,5 @@
 #include "contact/touch_near.h"
+#include "contact/touch_four.h"
 #include "contact/touch_plan.h"
 
 static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
@@ -49,44 +50,31 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
 // which share a side each with the third, take less than a full turn, and convex ones stay within their angles.
 
 /// Whether a cell's corners have angles of 30 to 115 degrees, seen along the unit `normal`.
-static bool is_in_shape(const Quad node[5], Quad normal) {
-    Quad side[4];
-    for (int i = 0; i < 4; i++) {
-        side[i] = node[(i + 1) & 3] - node[i];
-        side[i] -= quad_dot(side[i], normal) * normal;
-    }
-    for (int i = 0; i < 4; i++) {
-        Quad next = side[i], last = -side[(i + 3) & 3];
-        float dot = quad_dot(next, last), square = quad_dot(next, next) * quad_dot(last, last);
-        if (quad_dot(quad_cross(next, last), normal) <= 0) return false;
-        if (dot * dot > (dot > 0 ? 0.75f : 0.1786f) * square) return false;
-    }
-    return true;
+static bool is_in_shape(FourVectors corner, FourVectors normal) {
+    FourVectors next = four_minus(four_turned(corner), corner);
+    next = four_along(next, -four_dot(next, normal), normal);
+    FourVectors last = {-QUAD_SHUFFLE(next.x, next.x, 3, 0, 1, 2), -QUAD_SHUFFLE(next.y, next.y, 3, 0, 1, 2),
+                        -QUAD_SHUFFLE(next.z, next.z, 3, 0, 1, 2)};
+    Quad dot = four_dot(next, last), square = four_dot(next, next) * four_dot(last, last);
+    Quad most = quad_select(dot > 0, quad_all(0.75f), quad_all(0.1786f)) * square;
+    return quad_bits((four_dot(four_cross(next, last), normal) > 0) & (dot * dot <= most)) == 15;
 }
 
 Quad touch_normals(const Quad node[5]) {
     const Quad none = {0, 0, 0, 8};
-    Quad normal[4], sum = {0};
-    float spread = 0;
-    for (int t = 0; t < 4; t++) {
-        const uint8_t *k = touch_triangle[t];
-        Quad cross = quad_cross(node[k[1]] - node[k[0]], node[k[2]] - node[k[0]]);
-        float length = sqrtf(quad_dot(cross, cross));
-        if (!(length > 0)) return none;
-        normal[t] = cross / length;
-        sum += normal[t];
-    }
-    float length = sqrtf(quad_dot(sum, sum));
-    if (!(length > 0)) return none;
-    sum = sum / length;
-    for (int t = 0; t < 4; t++) {
-        Quad off = normal[t] - sum;
-        spread = fmaxf(spread, quad_dot(off, off));
-    }
-    spread = sqrtf(spread);
-    sum[3] = 0;
-    sum[3] = is_in_shape(node, sum) ? spread : 2 + spread;
-    return sum;
+    FourVectors corner = four_minus(four_of(node), four_all(node[4]));
+    FourVectors normal = four_cross(corner, four_turned(corner));
+    Quad length = quad_sqrt(four_dot(normal, normal));
+    if (quad_bits(length > 0) != 15) return none;
+    normal = (FourVectors){normal.x / length, normal.y / length, normal.z / length};
+    Quad mean = {quad_sum(normal.x), quad_sum(normal.y), quad_sum(normal.z), 0};
+    float size = sqrtf(quad_dot(mean, mean));
+    if (!(size > 0)) return none;
+    mean = mean / size;
+    FourVectors along = four_all(mean), off = four_minus(normal, along);
+    float spread = sqrtf(quad_most(four_dot(off, off)));
+    mean[3] = is_in_shape(corner, along) ? spread : 2 + spread;
+    return mean;
 }
 
 bool touch_is_within(Quad a, Quad b, float cone) {

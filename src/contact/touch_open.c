@@ -30,13 +30,12 @@ static void way_range(void *task, int begin, int end) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
-        TouchMotion *motion = &job->plan->motion[c];
         Quad speed[4], node[5];
         for (int i = 0; i < 4; i++) speed[i] = quad_load(job->dynamics->velocity[corner[i]]);
         touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-        motion->way = touch_way(job->plan, corner, x);
-        motion->speed = touch_mean(speed);
-        motion->normal = touch_normals(node);
+        job->plan->way[c] = touch_way(job->plan, corner, x);
+        job->plan->velocity[c] = touch_mean(speed);
+        job->plan->normal[c] = touch_normals(node);
     }
 }
 
@@ -183,20 +182,19 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
 static void look_at_pair(const Opening *job, uint32_t k, TouchWriter *writer) {
     const TouchPlan *plan = job->plan;
     TouchPair *pair = &plan->pairs[k];
-    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
     if (pair->a == pair->b) return;
-    if (pair->bridge != SHELL_NONE && touch_is_within(a->normal, b->normal, TOUCH_CONE)) {
+    if (pair->bridge != SHELL_NONE && touch_is_within(plan->normal[pair->a], plan->normal[pair->b], TOUCH_CONE)) {
         pair->distance = 0;
         return;
     }
+    float due_distance = due(plan, touch_differ(plan->velocity[pair->a], plan->velocity[pair->b]));
     if (pair->distance > 0) {
-        pair->distance -= touch_differ(a->way, b->way) + plan->noise;
-        float due_distance = due(plan, touch_differ(a->speed, b->speed));
-        if (pair->distance > due_distance) return;
+        float left = pair->distance - touch_differ(plan->way[pair->a], plan->way[pair->b]) - plan->noise;
+        pair->distance = left > 0 ? left : 0;
+        if (left > due_distance) return;
     }
-    if (pair->distance < 0) pair->distance = 0;
     if (!(job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) || touch_is_tangled(plan, pair)) return;
-    measure_pair(job, k, due(plan, touch_differ(a->speed, b->speed)), writer);
+    measure_pair(job, k, due_distance, writer);
 }
 
 static void look_block(void *context, TouchList *list, int block) {

@@ -38,7 +38,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 27 };
+enum { ARRAYS = 29 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
@@ -51,7 +51,8 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
         ARRAY(owned, cells), ARRAY(owner, vertices), ARRAY(entries, plan->entry_capacity),
         ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
-        ARRAY(want, vertices), ARRAY(goal, vertices), ARRAY(motion, cells), ARRAY(zone, vertices),
+        ARRAY(want, vertices), ARRAY(goal, vertices), ARRAY(way, cells), ARRAY(velocity, cells), ARRAY(normal, cells),
+        ARRAY(zone, vertices),
         ARRAY(share, vertices), ARRAY(drift, vertices), ARRAY(stopped, vertices), ARRAY(changed, cells),
         ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(stray_boxes, cells),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),

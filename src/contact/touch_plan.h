@@ -67,13 +67,6 @@ typedef struct TouchPush {
     uint32_t count;
 } TouchPush;
 
-/// How a cell has moved: mean of its corners' ways since plan->start, with the largest deviation as fourth; and the
-/// mean normal of its triangles, with their largest deviation as fourth.
-typedef struct TouchMotion {
-    Quad way, normal;
-    Quad speed; ///< m/s as the step opened: of the corners, with the largest deviation as fourth
-} TouchMotion;
-
 /// The region that a cell passes over in a step, a little widened.
 typedef struct TouchStray {
     Quad low, high;
@@ -123,7 +116,9 @@ struct TouchPlan {
     float (*start)[4];       ///< [vertices] m
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
-    TouchMotion *motion;     ///< [cells]
+    Quad *way;               ///< [cells] m, mean of the corners' since plan->start; fourth: the largest deviation
+    Quad *velocity;          ///< [cells] m/s as the step opened, the same of the corners
+    Quad *normal;            ///< [cells] of touch_normals
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
     float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
     Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
