@@ -38,6 +38,7 @@ typedef struct Guard {
     const uint8_t *cell_flags;
     float time;   ///< s since the search
     bool changed; ///< look at cells that have changed only
+    uint32_t first; ///< look at pairs from this one on
 } Guard;
 
 // ---- how cells have moved
@@ -213,7 +214,7 @@ static double sweep_range(void *task, int begin, int end) {
     TouchPlan *plan = guard->plan;
     double hits = 0;
     for (int k = begin; k < end; k++) {
-        TouchPair *pair = &plan->pairs[k];
+        TouchPair *pair = &plan->pairs[guard->first + (uint32_t)k];
         if (pair->hit < 2) pair->hit = 2;
         if (guard->changed && !plan->changed[pair->a] && !plan->changed[pair->b]) continue;
         if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(plan, pair)) continue;
@@ -448,44 +449,48 @@ static void measure(Guard *guard, Pool *pool) {
     pool_for(pool, (int)guard->plan->cell_count, 512, measure_range, guard);
 }
 
-static uint32_t sweep(Guard *guard, Pool *pool) {
-    return (uint32_t)pool_sum(pool, (int)guard->plan->pair_count, sweep_range, guard, guard->plan->partial);
+static uint32_t sweep(Guard *guard, Pool *pool, uint32_t first) {
+    guard->first = first;
+    return (uint32_t)pool_sum(pool, (int)(guard->plan->pair_count - first), sweep_range, guard, guard->plan->partial);
 }
 
-/// Lists what cells that have left their boxes may have met; all anew where these are many. False where there are none.
-static bool follow_strayed(Guard *guard, const State *state, Pool *pool, float h) {
-    TouchPlan *plan = guard->plan;
+static uint32_t list_strayed(TouchPlan *plan) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
         if (plan->strayed[c]) plan->stray[count++] = c;
-    if (count == 0) return false;
-    if (count > STRAY_MOST || plan->edge <= 0) {
+    return count;
+}
+
+/// Lists what cells that have left their boxes may have met; all anew where these are many. Returns the first pair that
+/// is new.
+static uint32_t follow_strayed(Guard *guard, const State *state, Pool *pool, float h) {
+    TouchPlan *plan = guard->plan;
+    uint32_t count = list_strayed(plan);
+    if (count == 0) return plan->pair_count;
+    bool all = count > STRAY_MOST || plan->edge <= 0;
+    guard->changed = false;
+    if (all) {
         search_again(guard, state, pool, h);
-        guard->changed = false;
         measure(guard, pool);
-        // what has been bent by more than half the slack in this one step
-        for (uint32_t c = count = 0; c < plan->cell_count; c++)
-            if (plan->strayed[c]) plan->stray[count++] = c;
+        count = list_strayed(plan);
     }
     touch_search_strayed(plan, guard->shell, pool, count, (const float(*)[4])guard->dynamics->position);
     plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
-    return true;
+    return all ? 0 : plan->listed_count;
 }
 
 /// One look at all that may have met, or at what the last round has changed. Returns the number of pairs that have.
 static uint32_t look(Guard *guard, const State *state, Pool *pool, float h) {
     measure(guard, pool);
-    uint32_t hits = sweep(guard, pool);
-    if (hits > 0 || !follow_strayed(guard, state, pool, h)) return hits;
-    guard->changed = false;
-    return sweep(guard, pool);
+    uint32_t hits = sweep(guard, pool, 0);
+    return hits > 0 ? hits : sweep(guard, pool, follow_strayed(guard, state, pool, h));
 }
 
 void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                  DynamicsState *dynamics) {
     double start = clock_seconds();
     Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
-                   h * (float)(state->step - plan->step + 1), false};
+                   h * (float)(state->step - plan->step + 1), false, 0};
     bool stopped = false;
     for (int round = 0;; round++) {
         uint32_t hits = look(&guard, state, pool, h);
