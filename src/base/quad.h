@@ -41,6 +41,12 @@ static inline unsigned quad_bits(QuadMask mask) {
 #define QUAD_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, (QuadMask){i, j, k, l})
 #endif
 
+/// The fourth number made 0, or something else.
+static inline Quad quad_flat(Quad a) { return (Quad)((QuadMask)a & (QuadMask){-1, -1, -1, 0}); }
+static inline Quad quad_with(Quad a, float fourth) {
+    return quad_select((QuadMask){-1, -1, -1, 0}, a, quad_all(fourth));
+}
+
 /// Of the first three numbers; the fourth of the product is 0.
 static inline Quad quad_cross(Quad a, Quad b) {
     Quad turned = a * QUAD_SHUFFLE(b, b, 1, 2, 0, 3) - QUAD_SHUFFLE(a, a, 1, 2, 0, 3) * b;

@@ -152,10 +152,9 @@ static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, c
 int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, bool edges,
                    TouchNear *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
-    unsigned of_b[4] = {0}, of_a[4] = {0};
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            if (p[i] == q[j]) of_b[i] |= 1u << j, of_a[j] |= 1u << i;
+    unsigned of_b[4], of_a[4];
+    touch_same(p, q, of_b);
+    touch_same(q, p, of_a);
     Search search = {.near = near, .square = far * far, .far = far};
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, TOUCH_NODE_OF_A);

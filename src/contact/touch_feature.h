@@ -2,7 +2,6 @@
 #ifndef CONTACT_TOUCH_FEATURE_H
 #define CONTACT_TOUCH_FEATURE_H
 
-#include "contact/touch_four.h"
 #include "contact/touch_plan.h"
 
 /// A cell's nodes about an origin, and all that follows from them.

@@ -49,7 +49,7 @@ static TouchBox moving_box(const Quad place[4], const Quad way[4]) {
         box.low = i ? quad_min(box.low, low) : low;
         box.high = i ? quad_max(box.high, high) : high;
     }
-    box.low[3] = box.high[3] = 0;
+    box.low = quad_flat(box.low), box.high = quad_flat(box.high);
     return box;
 }
 
@@ -77,9 +77,8 @@ static void box_range(void *task, int begin, int end) {
         const uint32_t *corner = find->shell->cells[c];
         Quad place[4], way[4];
         for (int i = 0; i < 4; i++) {
-            place[i] = quad_load(plan->place[corner[i]]);
+            place[i] = quad_flat(quad_load(plan->place[corner[i]]));
             way[i] = time * quad_load(plan->speed[corner[i]]);
-            place[i][3] = 0;
         }
         plan->boxes[c] = moving_box(place, way);
         plan->slabs[c] = slab(place);

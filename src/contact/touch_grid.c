@@ -114,10 +114,9 @@ bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *dista
 static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) {
     QuadMask p, q;
     memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
-    QuadMask same = (p == q) + (p == QUAD_SHUFFLE(q, q, 1, 2, 3, 0)) +
-                    (p == QUAD_SHUFFLE(q, q, 2, 3, 0, 1)) +
+    QuadMask same = (p == q) + (p == QUAD_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == QUAD_SHUFFLE(q, q, 2, 3, 0, 1)) +
                     (p == QUAD_SHUFFLE(q, q, 3, 0, 1, 2));
-    return (uint32_t)-(same[0] + same[1] + same[2] + same[3]);
+    return (uint32_t)__builtin_popcount(quad_bits(same < 0)); // one of a cell is one of the other's at most
 }
 
 uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {

@@ -19,7 +19,6 @@
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
 // search is repeated for this step's own ways.
 #include "base/clock.h"
-#include "contact/touch_four.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
@@ -49,18 +48,16 @@ static void measure_cell(const Guard *guard, uint32_t c) {
     TouchPlan *plan = guard->plan;
     const uint32_t *corner = guard->shell->cells[c];
     const float(*x)[4] = (const float(*)[4])guard->dynamics->position;
-    Quad node[5];
-    float astray = 0;
+    Quad node[5], stray[4];
     for (int i = 0; i < 4; i++) {
         Quad foreseen = quad_load(plan->place[corner[i]]) + guard->time * quad_load(plan->speed[corner[i]]);
-        Quad stray = quad_load(x[corner[i]]) - foreseen;
-        float square = quad_dot(stray, stray);
-        astray = square > astray ? square : astray;
+        stray[i] = quad_load(x[corner[i]]) - foreseen;
     }
+    FourVectors astray = four_of(stray);
     touch_nodes(corner, x, quad_load(x[corner[0]]), node);
     plan->way[c] = touch_way(plan, corner, x);
     plan->normal[c] = touch_normals(node);
-    plan->strayed[c] = !(astray < 0.25f * plan->slack * plan->slack);
+    plan->strayed[c] = quad_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
 }
 
 static void measure_range(void *task, int begin, int end) {
@@ -159,12 +156,11 @@ static void sweep_all_edges(const Guard *guard, TouchPair *pair, const Swept *p,
 /// Finds the share of the step's way that two cells can go before they meet, and what meets.
 static void sweep_pair(const Guard *guard, TouchPair *pair) {
     const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
-    unsigned of_b[4] = {0}, of_a[4] = {0};
+    unsigned of_b[4], of_a[4];
     Swept p, q;
     sweep_both(guard, pair, &p, &q);
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            if (a[i] == b[j]) of_b[i] |= 1u << j, of_a[j] |= 1u << i;
+    touch_same(a, b, of_b);
+    touch_same(b, a, of_a);
     sweep_all_nodes(guard, pair, pair->a, &p, &q, of_b, TOUCH_NODE_OF_A);
     if (pair->a != pair->b) sweep_all_nodes(guard, pair, pair->b, &q, &p, of_a, TOUCH_NODE_OF_B);
     sweep_all_edges(guard, pair, &p, &q, of_b);

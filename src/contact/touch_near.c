@@ -1,5 +1,4 @@
 #include "contact/touch_near.h"
-#include "contact/touch_four.h"
 #include "contact/touch_plan.h"
 
 static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
@@ -66,20 +65,15 @@ Quad touch_normals(const Quad node[5]) {
     FourVectors normal = four_cross(corner, four_turned(corner));
     Quad length = quad_sqrt(four_dot(normal, normal));
     if (quad_bits(length > 0) != 15) return none;
-    normal = (FourVectors){normal.x / length, normal.y / length, normal.z / length};
+    Quad inverse = 1 / length;
+    normal = (FourVectors){normal.x * inverse, normal.y * inverse, normal.z * inverse};
     Quad mean = {quad_sum(normal.x), quad_sum(normal.y), quad_sum(normal.z), 0};
     float size = sqrtf(quad_dot(mean, mean));
     if (!(size > 0)) return none;
     mean = mean / size;
     FourVectors along = four_all(mean), off = four_minus(normal, along);
     float spread = sqrtf(quad_most(four_dot(off, off)));
-    mean[3] = is_in_shape(corner, along) ? spread : 2 + spread;
-    return mean;
-}
-
-bool touch_is_within(Quad a, Quad b, float cone) {
-    Quad off = a - b;
-    return sqrtf(quad_dot(off, off)) + a[3] + b[3] < cone;
+    return quad_with(mean, is_in_shape(corner, along) ? spread : 2 + spread);
 }
 
 bool touch_is_open(Quad normals) { return normals[3] < TOUCH_CONE || (normals[3] >= 2 && normals[3] < 2 + TOUCH_CONE); }

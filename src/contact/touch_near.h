@@ -35,7 +35,11 @@ Quad touch_normals(const Quad node[5]);
 #define TOUCH_CONE_CORNER 0.35f
 
 /// Whether all normals of two cells in shape lie within a cone.
-bool touch_is_within(Quad a, Quad b, float cone);
+static inline bool touch_is_within(Quad a, Quad b, float cone) {
+    Quad off = a - b;
+    float left = cone - a[3] - b[3];
+    return left > 0 && quad_dot(off, off) < left * left;
+}
 
 /// Whether a cell's triangles do not cross each other: all face to one side, around the middle.
 bool touch_is_open(Quad normals);

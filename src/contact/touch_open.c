@@ -64,6 +64,8 @@ typedef struct Look {
     float due; ///< m, distance from which on nothing can touch in this step
 } Look;
 
+static inline float least(float a, float b) { return a < b ? a : b; }
+
 /// Distance at which features that near each other by `approach` m/s may touch.
 static inline float due(const TouchPlan *plan, float approach) {
     return 1.25f * plan->thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
@@ -128,7 +130,7 @@ static bool near_at_rest(const Opening *job, const TouchPair *pair, const TouchN
 /// How far two features are to be kept apart in this step; 0 where they need not be looked after.
 static float target(const Opening *job, const TouchPair *pair, const Look *look, const TouchNear *near) {
     const TouchPlan *plan = job->plan;
-    float thickness = fminf(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
+    float thickness = least(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (near->kind == TOUCH_EDGES && !near->faces) return 0;
     // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
     if (!near->faces && distance > thickness) return 0;
@@ -136,7 +138,7 @@ static float target(const Opening *job, const TouchPair *pair, const Look *look,
     float toward = -quad_dot(point_speed(look, near), near->apart) / distance;
     if (distance > due(plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
-        thickness = fminf(thickness, 4 * plan->gap);
+        thickness = least(thickness, 4 * plan->gap);
         if (distance > 1.25f * thickness + 1.5f * plan->time_step * (toward > 0 ? toward : 0)) return 0;
     }
     float parted = distance + TOUCH_PART * plan->time_step;
@@ -154,7 +156,8 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     TouchPair *pair = &plan->pairs[k];
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     Quad origin = quad_load(x[job->shell->cells[pair->a][0]]);
-    Look look = {.due = due_distance};
+    Look look;
+    look.due = due_distance;
     touch_cell_place(plan, job->shell, pair->a, x, origin, &look.a);
     touch_cell_place(plan, job->shell, pair->b, x, origin, &look.b);
     float apart = touch_cells_apart(&look.a, &look.b) - plan->noise;

@@ -4,6 +4,7 @@
 
 #include "base/quad.h"
 #include "contact/touch.h"
+#include "contact/touch_four.h"
 #include "contact/touch_list.h"
 
 /// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
@@ -154,15 +155,10 @@ void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first);
 
 /// Mean of four vectors; fourth: the largest deviation from it.
 static inline Quad touch_mean(const Quad vector[4]) {
-    Quad mean = 0.25f * ((vector[0] + vector[1]) + (vector[2] + vector[3]));
-    float deviation = 0;
-    for (int i = 0; i < 4; i++) {
-        Quad off = vector[i] - mean;
-        float square = quad_dot(off, off);
-        deviation = square > deviation ? square : deviation;
-    }
-    mean[3] = sqrtf(deviation);
-    return mean;
+    FourVectors four = four_of(vector);
+    Quad mean = {0.25f * quad_sum(four.x), 0.25f * quad_sum(four.y), 0.25f * quad_sum(four.z), 0};
+    FourVectors off = four_minus(four, four_all(mean));
+    return quad_with(mean, sqrtf(quad_most(four_dot(off, off))));
 }
 
 /// Ways of a cell's corners since plan->start, as their mean.
@@ -180,16 +176,20 @@ static inline float touch_differ(Quad a, Quad b) {
 
 /// A cell's nodes about an origin: corners, then the virtual centre. Fourth numbers are 0.
 static inline void touch_nodes(const uint32_t corner[4], const float (*x)[4], Quad origin, Quad node[5]) {
-    for (int i = 0; i < 4; i++) {
-        node[i] = quad_load(x[corner[i]]) - origin;
-        node[i][3] = 0;
-    }
+    for (int i = 0; i < 4; i++) node[i] = quad_flat(quad_load(x[corner[i]]) - origin);
     node[4] = 0.25f * ((node[0] + node[1]) + (node[2] + node[3]));
 }
 
 /// Nodes of a cell's edges 0 to 7: sides, then the lines from the corners to the centre; and of its triangles.
 static const uint8_t touch_edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
 static const uint8_t touch_triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+
+/// Bits of same[i]: corners of the second cell that are corner i of the first.
+static inline void touch_same(const uint32_t first[4], const uint32_t second[4], unsigned same[4]) {
+    QuadMask other;
+    memcpy(&other, second, sizeof other);
+    for (int i = 0; i < 4; i++) same[i] = quad_bits(other == (int32_t)first[i]);
+}
 
 /// Number of a node, the same in all cells that have it.
 static inline uint32_t touch_id(const Shell *shell, uint32_t cell, int node) {
