@@ -80,7 +80,7 @@ static SingeResult build(const BenchOptions *options, int cells, SingeSim **sim,
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads;
     def.contact.enabled = true;
-    def.contact.thickness = 2e-3f; // of a thick cloth
+    def.contact.thickness = 1e-3f; // of a cloth
     if (options->substeps) def.solver.substeps = options->substeps;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;

@@ -139,7 +139,7 @@ static void choose_steps(TouchPlan *plan, const Shell *shell) {
         Quad off = quad_load(plan->speed[shell->cells[c][0]]) - mean;
         if (plan->alive[c]) sum += (double)sqrtf(quad_dot(off, off));
     }
-    double step = sum / fmax(count, 1) * (double)plan->time_step, most = (double)plan->cell_size / 3;
+    double step = sum / fmax(count, 1) * (double)plan->time_step, most = (double)plan->cell_size / 2;
     plan->steps = step * TOUCH_STEPS < most ? TOUCH_STEPS : step * 2 > most ? 2 : (uint32_t)(most / step);
 }
 

@@ -34,7 +34,7 @@ static float first_edge(const TouchPlan *plan) {
         sum += (double)(longest > size[2] ? longest : size[2]);
         count++;
     }
-    return count ? (float)(1.5 * sum / count) : 0;
+    return count ? (float)(2 * sum / count) : 0;
 }
 
 static void put_entry(TouchPlan *plan, uint32_t cell, uint32_t key) {
@@ -146,7 +146,7 @@ static void list_pair(const Find *find, uint32_t a, uint32_t b, TouchWriter *wri
 enum { TILE = 256 };
 typedef struct Tile {
     float low[3][TILE], high[3][TILE];
-    int32_t key[TILE];
+    int32_t key[TILE], firsts[TILE];
     uint32_t count;
 } Tile;
 
@@ -155,13 +155,15 @@ static void fill_tile(const TouchEntry *entries, uint32_t count, Tile *tile) {
     for (uint32_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) tile->low[k][i] = entries[i].low[k], tile->high[k][i] = entries[i].high[k];
         tile->key[i] = (int32_t)(entries[i].key & TOUCH_KEY);
+        tile->firsts[i] = (int32_t)(entries[i].key >> 29);
     }
     for (uint32_t i = count; i & 3; i++) tile->key[i] = -1;
 }
 
-/// Bit k is set where the tile's entry j + k is in the same cube and meets the entry's box.
+/// Bit k is set where the tile's entry j + k is in the same cube, which is where the two boxes' common region begins.
 static inline unsigned meet_four(const Tile *tile, uint32_t j, const TouchEntry *entry) {
     QuadMask meet = quad_load_ints(tile->key + j) == (int32_t)(entry->key & TOUCH_KEY);
+    meet &= (quad_load_ints(tile->firsts + j) | (int32_t)(entry->key >> 29)) == 7;
     for (int k = 0; k < 3; k++)
         meet &= (quad_load(tile->low[k] + j) <= quad_all(entry->high[k])) &
                 (quad_load(tile->high[k] + j) >= quad_all(entry->low[k]));
@@ -177,11 +179,8 @@ static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t c
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
                 unsigned meet = meet_four(tile, j, &entries[i]);
                 if (j < after) meet &= 15u << (after - j);
-                for (; meet; meet &= meet - 1) {
-                    const TouchEntry *other = &entries[first + j + (unsigned)__builtin_ctz(meet)];
-                    if ((entries[i].key | other->key) >> 29 == 7)
-                        list_pair(find, entries[i].cell, other->cell, writer);
-                }
+                for (; meet; meet &= meet - 1)
+                    list_pair(find, entries[i].cell, entries[first + j + (unsigned)__builtin_ctz(meet)].cell, writer);
             }
         }
     }

@@ -28,7 +28,7 @@ enum { IMPACT_ROUNDS = 12, ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
 
 /// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
 /// next step begins with a search.
-enum { STRAY_MOST = 512, STRAY_PART = 32 };
+enum { STRAY_MOST = 1024, STRAY_PART = 32 };
 
 typedef struct Guard {
     TouchPlan *plan;
