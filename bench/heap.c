@@ -13,7 +13,7 @@ static const double seconds = 3;
 
 enum {
     CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MOST, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
-    SEARCHES, PUSHES, STOPS, UNRESOLVED, STRAIN, INVERTED, SPEED, COLUMNS
+    CONTACT_STEP, SEARCHES, PAIRS, PUSHES, STOPS, UNRESOLVED, STRAIN, INVERTED, SPEED, COLUMNS
 };
 
 static const BenchColumn columns[COLUMNS] = {
@@ -29,7 +29,9 @@ static const BenchColumn columns[COLUMNS] = {
     [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
     [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
     [CONTACT] = {"contact_ms", "%.4g", 10, NULL},
+    [CONTACT_STEP] = {"contact_100k_ms", "%.3g", 15, NULL}, // a step, for 100,000 springs
     [SEARCHES] = {"searches_step", "%.2f", 13, NULL},
+    [PAIRS] = {"pairs_step", "%.0f", 10, NULL},
     [PUSHES] = {"pushes_substep", "%.0f", 14, NULL},
     [STOPS] = {"stops_step", "%.1f", 10, NULL},
     [UNRESOLVED] = {"crossing", "%.0f", 8, NULL},
@@ -119,7 +121,9 @@ static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *s
     row[DYNAMICS] = bench_number(a_frame * t.seconds[SINGE_STAGE_DYNAMICS]);
     row[PROJECTION] = bench_number(a_frame * t.projection_seconds);
     row[CONTACT] = bench_number(a_frame * t.contact_seconds);
+    row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
     row[SEARCHES] = bench_number((double)t.contact_searches / steps);
+    row[PAIRS] = bench_number((double)t.contact_pairs / steps);
     row[PUSHES] = bench_number((double)t.contact_pushes / steps / (options->substeps ? options->substeps : 3));
     row[STOPS] = bench_number((double)t.contact_stops / steps);
     row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));

@@ -45,8 +45,8 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
 /// What has been done since the plan was made.
 typedef struct TouchCounters {
     uint64_t searches;   ///< for pairs that are near
-    uint64_t touches;    ///< pairs of points looked at, summed over steps
-    uint64_t pushes;     ///< of them, those that a substep had to push, summed over substeps
+    uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
+    uint64_t pushes;     ///< pairs of points that a substep had to push apart, summed over substeps
     uint64_t stops;      ///< pairs of cells whose way was cut short
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs for which there was no room

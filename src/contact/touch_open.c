@@ -261,7 +261,7 @@ void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *p
     pool_for(pool, (int)plan->cell_count, 512, way_range, &job);
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     open_pushes(&job, pool);
-    plan->counters.touches += plan->push_count;
+    plan->counters.pairs += plan->listed_count;
     plan->counters.seconds += clock_seconds() - start;
 }
 

@@ -17,6 +17,7 @@ static void step_note_touches(SingeSim *sim) {
     SingeTimers *timers = &sim->timers;
     timers->contact_seconds = touches.seconds;
     timers->contact_searches = touches.searches;
+    timers->contact_pairs = touches.pairs;
     timers->contact_pushes = touches.pushes;
     timers->contact_stops = touches.stops;
     timers->contact_unresolved = touches.unresolved;
