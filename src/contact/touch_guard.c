@@ -252,14 +252,29 @@ static Quad impact_points(const TouchPair *pair, const Swept *p, const Swept *q,
     return pair->kind == TOUCH_NODE_OF_B ? -apart : apart;
 }
 
+/// What each corner of a side goes of a shift of its point: as its weight and inverse mass say, but that no corner counts
+/// as lighter than a quarter of the heaviest. Else a light corner, far from the point, would be thrown far to move
+/// it. Returns the point's own inverse mass.
+static float impact_lever(const Guard *guard, uint32_t cell, const float w[4], float lever[4]) {
+    const uint32_t *corner = guard->shell->cells[cell];
+    float least = INFINITY, inverse[4], own = 0, sum = 0;
+    for (int i = 0; i < 4; i++) {
+        inverse[i] = guard->plan->start[corner[i]][3];
+        own += w[i] * w[i] * inverse[i];
+        if (w[i] != 0 && inverse[i] > 0) least = fminf(least, inverse[i]);
+    }
+    for (int i = 0; i < 4; i++) inverse[i] = fminf(inverse[i], 4 * least), sum += w[i] * w[i] * inverse[i];
+    for (int i = 0; i < 4; i++) lever[i] = sum > 0 ? fminf(w[i] * inverse[i] / sum, 2) : 0;
+    return own;
+}
+
 /// Moves the points that meet by `shift` relative to each other, each by what it weighs.
-static void impact_move(const Guard *guard, const TouchPair *pair, const float wa[4], const float wb[4], Quad shift,
-                        float weight) {
-    const uint32_t *cells[2] = {guard->shell->cells[pair->a], guard->shell->cells[pair->b]};
-    for (int k = 0; k < 8; k++) {
-        uint32_t v = cells[k >> 2][k & 3];
-        float w = k < 4 ? wa[k] : -wb[k - 4], *x = guard->dynamics->position[v];
-        if (w != 0) quad_store(x, quad_load(x) + guard->plan->start[v][3] * w / weight * shift);
+static void impact_move(const Guard *guard, const TouchPair *pair, const float wa[4], const float wb[4], Quad shift) {
+    float lever[2][4], a = impact_lever(guard, pair->a, wa, lever[0]), b = impact_lever(guard, pair->b, wb, lever[1]);
+    for (int k = 0; a + b > 0 && k < 8; k++) {
+        uint32_t v = guard->shell->cells[k < 4 ? pair->a : pair->b][k & 3];
+        float go = (k < 4 ? a : -b) / (a + b) * lever[k >> 2][k & 3], *x = guard->dynamics->position[v];
+        if (go != 0) quad_store(x, quad_load(x) + go * shift);
     }
 }
 
@@ -274,24 +289,22 @@ static Quad impact_slip(const Guard *guard, const TouchPair *pair, const float w
 
 /// An impact without bounce, and with friction: the points part at the end as far as when they met.
 static void impact(const Guard *guard, const TouchPair *pair) {
-    const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
     Swept p, q;
-    float wa[4] = {0}, wb[4] = {0}, weight = 0;
+    float wa[4] = {0}, wb[4] = {0};
     sweep_both(guard, pair, &p, &q);
     Quad normal = impact_points(pair, &p, &q, wa, wb);
     float distance = sqrtf(quad_dot(normal, normal));
-    for (int i = 0; i < 4; i++)
-        weight += wa[i] * wa[i] * guard->plan->start[a[i]][3] + wb[i] * wb[i] * guard->plan->start[b[i]][3];
-    if (!(distance > 0) || weight <= 0) return;
+    if (!(distance > 0)) return;
     normal = normal / distance;
     Quad end = impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->dynamics->position);
     Quad slip = end - impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->plan->start);
-    float push = distance + guard->plan->gap - quad_dot(end, normal);
+    // where impacts before this one have changed the ways, these are farther apart by now than where they met
+    float push = fminf(distance, 2 * guard->plan->gap) + guard->plan->gap - quad_dot(end, normal);
     if (push <= 0) return;
     slip -= quad_dot(slip, normal) * normal;
     float length = sqrtf(quad_dot(slip, slip)), most = guard->plan->def.friction * push;
     Quad shift = push * normal - (length <= most ? 1 : most / length) * slip;
-    impact_move(guard, pair, wa, wb, shift, weight);
+    impact_move(guard, pair, wa, wb, shift);
 }
 
 /// Marks the cells at a pair's corners.
