@@ -1,51 +1,73 @@
-// No edge of a mesh that does not stretch ends a step far longer than it should be. Strands are projected once a substep:
+// No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a substep:
 // what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads of char that
-// something heavy hangs on, may be left several times as long. After the substeps blue and yellow springs longer than
-// LIMIT_MOST times their targets l are shortened one by one,
+// something heavy hangs on, may be left several times as long. Nor has a cell of which fire has left a part all of its
+// springs, yet what is left of it is drawn between its four corners. So after the substeps its sides and diagonals longer
+// than LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one by one, whether their springs have
+// burnt or not:
 //
-//   C = |d| - LIMIT_MOST l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
+//   C = |d| - s l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
 //
 // and what still draws them out is taken from the velocities, without bounce: v_a += w_a mu u, v_b -= w_b mu u with
-// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. Rounds go over the blocks of springs in
+// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. Rounds go over the blocks of cells in
 // which a count has found some; nearly all steps end with that count.
 #include "base/quad.h"
 #include "dynamics/plan.h"
 
-/// Times its target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
-#define LIMIT_MOST 1.5f
+/// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
+#define LIMIT_SIDE 1.3f
+#define LIMIT_DIAGONAL 1.5f
 enum { LIMIT_ROUNDS = 12 };
 
 typedef struct Limit {
-    const SpringSet *set;
-    const uint8_t *flags;
-    const float *length; ///< m, targets
-    Field compliance;    ///< of blue springs
+    const Shell *shell;
+    const State *state;
     DynamicsState *dynamics;
 } Limit;
 
-static bool limit_is_over(const Limit *job, uint32_t k) {
+/// How long side or diagonal i, 0 to 5, of a cell may be, and its ends.
+static float limit_of(const Limit *job, uint32_t c, int i, uint32_t ends[2]) {
+    const uint32_t *corner = job->shell->cells[c];
+    const CellSprings *springs = &job->shell->cell_springs[c];
+    float *const *length = job->state->burn.spring_length;
+    if (i < 4) {
+        ends[0] = corner[i], ends[1] = corner[(i + 1) & 3];
+        return LIMIT_SIDE * length[SINGE_BLUE][springs->blue[i]];
+    }
+    ends[0] = corner[i - 4], ends[1] = corner[i - 2];
+    return LIMIT_DIAGONAL * length[SINGE_YELLOW][springs->yellow[i - 4]];
+}
+
+/// Whether two vertices are farther apart than `most`, and may be brought together.
+static bool limit_is_over(const Limit *job, const uint32_t ends[2], float most) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
-    const uint32_t *ends = job->set->ends[k];
+    const Field compliance = job->shell->matter.compliance[SINGE_BLUE];
     Quad way = quad_load(x[ends[1]]) - quad_load(x[ends[0]]);
-    float most = LIMIT_MOST * job->length[k];
-    return (job->flags[k] & SINGE_ALIVE) && quad_dot(way, way) > most * most * 1.0001f && x[ends[0]][3] + x[ends[1]][3] > 0 &&
-           field_at(job->compliance, ends[0]) + field_at(job->compliance, ends[1]) == 0;
+    return quad_dot(way, way) > most * most * 1.0001f && x[ends[0]][3] + x[ends[1]][3] > 0 &&
+           field_at(compliance, ends[0]) + field_at(compliance, ends[1]) == 0;
 }
 
 static double limit_count(void *task, int begin, int end) {
+    const Limit *job = task;
     double over = 0;
-    for (int k = begin; k < end; k++) over += limit_is_over(task, (uint32_t)k);
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        for (int i = 0; i < 6; i++) {
+            uint32_t ends[2];
+            float most = limit_of(job, c, i, ends);
+            over += limit_is_over(job, ends, most);
+        }
+    }
     return over;
 }
 
-static void limit_spring(const Limit *job, uint32_t k) {
+static void limit_shorten(const Limit *job, const uint32_t ends[2], float most) {
     float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
-    const uint32_t a = job->set->ends[k][0], b = job->set->ends[k][1];
+    const uint32_t a = ends[0], b = ends[1];
     float wa = x[a][3], wb = x[b][3];
     Quad way = quad_load(x[b]) - quad_load(x[a]), relative = quad_load(v[b]) - quad_load(v[a]);
     way[3] = 0;
     float length = sqrtf(quad_dot(way, way)), opens = quad_dot(relative, way) / length;
-    Quad unit = way / length, shift = (length - LIMIT_MOST * job->length[k]) / (wa + wb) * unit;
+    Quad unit = way / length, shift = (length - most) / (wa + wb) * unit;
     Quad slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
     quad_store(x[a], quad_load(x[a]) + wa * shift);
     quad_store(x[b], quad_load(x[b]) - wb * shift);
@@ -53,30 +75,27 @@ static void limit_spring(const Limit *job, uint32_t k) {
     quad_store(v[b], quad_load(v[b]) - wb * slow);
 }
 
-/// The blocks of springs with a count above 0, one after another.
+/// The blocks of cells with a count above 0, one after another.
 static void limit_blocks(const Limit *job, const double *over) {
-    for (uint32_t k = 0; k < job->set->count; k++) {
-        if (k % POOL_BLOCK == 0 && over[k / POOL_BLOCK] == 0) {
-            k += POOL_BLOCK - 1;
+    for (uint32_t c = 0; c < job->shell->cell_count; c++) {
+        if (c % POOL_BLOCK == 0 && over[c / POOL_BLOCK] == 0) {
+            c += POOL_BLOCK - 1;
             continue;
         }
-        if (limit_is_over(job, k)) limit_spring(job, k);
+        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        for (int i = 0; i < 6; i++) {
+            uint32_t ends[2];
+            float most = limit_of(job, c, i, ends);
+            if (limit_is_over(job, ends, most)) limit_shorten(job, ends, most);
+        }
     }
 }
 
 void dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
-    const SingeColour colours[] = {SINGE_YELLOW, SINGE_BLUE};
+    Limit job = {shell, state, dynamics};
     if (plan->paper) return;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
-        double found = 0;
-        for (int i = 0; i < 2; i++) {
-            const SingeColour colour = colours[i];
-            Limit job = {&shell->springs[colour], state->ablate.spring_flags[colour], state->burn.spring_length[colour],
-                         shell->matter.compliance[SINGE_BLUE], dynamics};
-            double over = pool_sum(pool, (int)job.set->count, limit_count, &job, plan->partial);
-            if (over > 0) limit_blocks(&job, plan->partial);
-            found += over;
-        }
-        if (found == 0) return;
+        if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return;
+        limit_blocks(&job, plan->partial);
     }
 }
