@@ -186,8 +186,32 @@ static SingeResult turn_faces(Work *work) {
 
 // ---- one fan a vertex
 
+/// Of the way to the middle of its faces, what a copy is drawn back by.
+static const double PART_GAP = 0.03;
+
+/// Draws the copies of vertices, those from `first` on, back into their own faces: what lies on each other from the start
+/// could not be told from what has crossed.
+static void draw_back(Work *work, uint32_t first) {
+    const Faces *faces = &work->faces;
+    const uint32_t copies = work->vertex_count - first;
+    double(*sum)[4] = work_new(work, copies ? copies : 1, sizeof *sum);
+    if (work->no_memory) return;
+    for (uint32_t h = 0; h < faces->corner_count; h++) {
+        if (faces->corner[h] < first) continue;
+        double *to = sum[faces->corner[h] - first];
+        const uint32_t face = work->face[h], begin = faces->first[face], end = faces->first[face + 1];
+        for (uint32_t i = begin; i < end; i++)
+            for (int k = 0; k < 3; k++) to[k] += work->place[faces->corner[i]][k] / (end - begin);
+        to[3]++;
+    }
+    for (uint32_t v = 0; v < copies; v++)
+        for (int k = 0; sum[v][3] > 0 && k < 3; k++)
+            work->place[first + v][k] += PART_GAP * (sum[v][k] / sum[v][3] - work->place[first + v][k]);
+}
+
 static void part_fans(Work *work) {
     Faces *faces = &work->faces;
+    const uint32_t vertices = work->vertex_count;
     uint32_t *set = work_sets(work, faces->corner_count);
     uint32_t *owner = work_new(work, work->vertex_count, sizeof *owner);
     uint32_t *vertex = work_new(work, faces->corner_count, sizeof *vertex);
@@ -210,6 +234,7 @@ static void part_fans(Work *work) {
     }
     for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++)
         faces->corner[h] = vertex[sets_find(set, h)];
+    draw_back(work, vertices);
 }
 
 /// Whether parting has left an edge with more than two faces, or faces along it the same way.

@@ -24,7 +24,7 @@
 
 #include <string.h>
 
-enum { IMPACT_ROUNDS = 60, ZONE_PATIENCE = 4, ZONE_ROUNDS = 60 };
+enum { IMPACT_ROUNDS = 64, ZONE_PATIENCE = 4, ZONE_ROUNDS = 128 };
 
 /// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
 /// next step begins with a search.

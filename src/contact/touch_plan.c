@@ -30,7 +30,6 @@ static void size_plan(TouchPlan *plan, const Shell *shell) {
     plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
     plan->slack_most = fmaxf(0.3f * plan->cell_size, plan->thickness);
     plan->noise = 4e-7f * far;
-    plan->gap = 5e-3f * plan->cell_size + 4 * plan->noise;
 }
 
 typedef struct Array {
@@ -89,6 +88,7 @@ void touch_plan_free(Memory *memory, TouchPlan *plan) {
 /// Where cells are at rest, and how thick they may be: those far smaller than the rest of their sheet would be torn
 /// apart by what keeps their own corners apart.
 static void measure_cells(TouchPlan *plan, const Shell *shell) {
+    float least = plan->cell_size;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         Quad place[4];
         float shortest = INFINITY;
@@ -98,8 +98,11 @@ static void measure_cells(TouchPlan *plan, const Shell *shell) {
             shortest = fminf(shortest, quad_dot(side, side));
         }
         plan->rest[c] = touch_mean(place);
-        plan->thin[c] = fminf(plan->thickness, 0.4f * sqrtf(shortest));
+        shortest = sqrtf(shortest);
+        plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
+        least = fminf(least, 4 * shortest);
     }
+    plan->gap = 5e-3f * least + 4 * plan->noise;
 }
 
 SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,

@@ -14,8 +14,8 @@
 #include "dynamics/plan.h"
 
 /// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
-#define LIMIT_SIDE 1.3f
-#define LIMIT_DIAGONAL 1.5f
+#define LIMIT_SIDE 1.25f
+#define LIMIT_DIAGONAL 1.45f
 enum { LIMIT_ROUNDS = 12 };
 
 typedef struct Limit {
