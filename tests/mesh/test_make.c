@@ -316,7 +316,7 @@ static void edges_of_many_faces_are_cut(void **state) {
     for (uint32_t v = 0; v < made.mesh.vertex_count; v++) copies += made.mesh.source[v] == 4;
     assert_int_equal(copies, 2); // both are the file's vertex
     for (uint32_t v = 9; v < 15; v++) // and the fin does not begin on the sheet
-        assert_true(made.mesh.positions[v][2] > 1e-4f && made.mesh.positions[v][2] < 0.02f);
+        assert_true(made.mesh.positions[3 * v + 2] > 1e-4f && made.mesh.positions[3 * v + 2] < 0.02f);
     mesh_free(&made.mesh);
 }
 
