@@ -126,13 +126,7 @@ static void attach_let_go(Attachments *attachments, const Shell *shell, const in
     }
 }
 
-/// Whether sources hold nothing for now: what is held farther apart than it reaches may tear, where it can, and nothing
-/// but its springs pulls at it then.
-static bool attach_rests(const Shell *shell, const AttachSpread *spread) {
-    return spread->tight && shell->spare_count > 0;
-}
-
-/// What rests is as long as it has become.
+/// What rests is as long as it has become. The distances between what is held tell whether it is tight: they stay.
 static void attach_follow(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
@@ -142,6 +136,7 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
             for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
                 Vec way = vec_sub(vec_load(dynamics->position[v]), place);
                 float *length = &attachments->length[v][k];
+                if (dynamics->position[v][3] == 0) continue;
                 if (vec_dot(way, way) > *length * *length) *length = vec_length(way), attachments->settled = false;
             }
         }

@@ -60,6 +60,12 @@ void attach_range(const Attachments *attachments, const Shell *shell, AttachHold
 /// The largest of the ratios, 1 at least.
 static inline float attach_stretched(const AttachSpread *spread) { return spread->most > 1 ? spread->most : 1; }
 
+/// Whether sources hold nothing for now: what is held farther apart than it reaches may tear, where it can, and nothing
+/// but its springs pulls at it then.
+static inline bool attach_rests(const Shell *shell, const AttachSpread *spread) {
+    return spread->tight && shell->spare_count > 0;
+}
+
 /// Both, for all vertices.
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics);

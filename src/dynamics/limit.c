@@ -22,19 +22,19 @@ typedef struct Limit {
     const Shell *shell;
     const State *state;
     DynamicsState *dynamics;
+    const AttachSpread *spread;
 } Limit;
 
-/// How long side or diagonal i, 0 to 5, of a cell may be, and its ends.
+static uint32_t limit_corner(int i) { return i < 4 ? (uint32_t)i : (uint32_t)i - 4; }
+
+/// How long side 0 to 3 or diagonal 4 to 5 of a cell may be, and its ends.
 static float limit_of(const Limit *job, uint32_t c, int i, uint32_t ends[2]) {
     const uint32_t *corner = job->shell->cells[c];
     const CellSprings *springs = &job->shell->cell_springs[c];
     float *const *length = job->state->burn.spring_length;
-    if (i < 4) {
-        ends[0] = corner[i], ends[1] = corner[(i + 1) & 3];
-        return LIMIT_SIDE * length[SINGE_BLUE][springs->blue[i]];
-    }
-    ends[0] = corner[i - 4], ends[1] = corner[i - 2];
-    return LIMIT_DIAGONAL * length[SINGE_YELLOW][springs->yellow[i - 4]];
+    ends[0] = corner[limit_corner(i)], ends[1] = corner[i < 4 ? (i + 1) & 3 : i - 2];
+    return i < 4 ? LIMIT_SIDE * length[SINGE_BLUE][springs->blue[i]]
+                 : LIMIT_DIAGONAL * length[SINGE_YELLOW][springs->yellow[i - 4]];
 }
 
 /// Whether two vertices are farther apart than `most`, and may be brought together.
@@ -46,11 +46,30 @@ static bool limit_is_over(const Limit *job, const uint32_t ends[2], float most) 
            field_at(compliance, ends[0]) + field_at(compliance, ends[1]) == 0;
 }
 
+/// Whether any of a cell's sides or diagonals is too long: all at once, for nearly none is.
+static inline bool limit_cell_is_over(const Limit *job, uint32_t c) {
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    const uint32_t *corner = job->shell->cells[c];
+    const CellSprings *springs = &job->shell->cell_springs[c];
+    const float *blue = job->state->burn.spring_length[SINGE_BLUE], *yellow = job->state->burn.spring_length[SINGE_YELLOW];
+    Quad p[4] = {quad_load(x[corner[0]]), quad_load(x[corner[1]]), quad_load(x[corner[2]]), quad_load(x[corner[3]])};
+    Quad across[2] = {p[2] - p[0], p[3] - p[1]}, side[4] = {p[1] - p[0], p[2] - p[1], p[3] - p[2], p[0] - p[3]};
+    quad_transpose(side);
+    Quad length = {blue[springs->blue[0]], blue[springs->blue[1]], blue[springs->blue[2]], blue[springs->blue[3]]};
+    length *= LIMIT_SIDE;
+    QuadMask over = side[0] * side[0] + side[1] * side[1] + side[2] * side[2] > length * length;
+    float first = LIMIT_DIAGONAL * yellow[springs->yellow[0]], second = LIMIT_DIAGONAL * yellow[springs->yellow[1]];
+    return ((over[0] | over[1]) | (over[2] | over[3])) || quad_dot(across[0], across[0]) > first * first ||
+           quad_dot(across[1], across[1]) > second * second;
+}
+
+/// Cells of sheets that are not left to their springs.
 static double limit_count(void *task, int begin, int end) {
     const Limit *job = task;
     double over = 0;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
-        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
+        if (attach_rests(job->shell, &job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]])) continue;
         for (int i = 0; i < 6; i++) {
             uint32_t ends[2];
             float most = limit_of(job, c, i, ends);
@@ -82,7 +101,8 @@ static void limit_blocks(const Limit *job, const double *over) {
             c += POOL_BLOCK - 1;
             continue;
         }
-        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
+        if (attach_rests(job->shell, &job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]])) continue;
         for (int i = 0; i < 6; i++) {
             uint32_t ends[2];
             float most = limit_of(job, c, i, ends);
@@ -92,7 +112,7 @@ static void limit_blocks(const Limit *job, const double *over) {
 }
 
 void dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
-    Limit job = {shell, state, dynamics};
+    Limit job = {shell, state, dynamics, plan->attachments.spread};
     if (plan->paper) return;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return;
