@@ -16,7 +16,8 @@
 /// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
 #define LIMIT_SIDE 1.25f
 #define LIMIT_DIAGONAL 1.45f
-enum { LIMIT_ROUNDS = 12 };
+/// Rounds, every so many steps: frames end with one of these.
+enum { LIMIT_ROUNDS = 12, LIMIT_PERIOD = 4 };
 
 typedef struct Limit {
     const Shell *shell;
@@ -113,7 +114,7 @@ static void limit_blocks(const Limit *job, const double *over) {
 
 void dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
     Limit job = {shell, state, dynamics, plan->attachments.spread};
-    if (plan->paper) return;
+    if (plan->paper || (state->step + 1) % LIMIT_PERIOD) return;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return;
         limit_blocks(&job, plan->partial);
