@@ -70,7 +70,7 @@ static double limit_count(void *task, int begin, int end) {
     double over = 0;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
-        if (attach_rests(job->shell, &job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]])) continue;
+        if (job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]].tight) continue;
         for (int i = 0; i < 6; i++) {
             uint32_t ends[2];
             float most = limit_of(job, c, i, ends);
@@ -103,7 +103,7 @@ static void limit_blocks(const Limit *job, const double *over) {
             continue;
         }
         if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
-        if (attach_rests(job->shell, &job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]])) continue;
+        if (job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]].tight) continue;
         for (int i = 0; i < 6; i++) {
             uint32_t ends[2];
             float most = limit_of(job, c, i, ends);
