@@ -167,6 +167,19 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
     }
 }
 
+/// Limits and the guard in turn: what the guard has stopped may be too far from what it has not.
+static void dynamics_close(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                           DynamicsState *dynamics) {
+    enum { TURNS = 3 };
+    for (int turn = 0; turn < TURNS; turn++) {
+        bool limited = dynamics_limit(plan, shell, state, pool, dynamics);
+        if (!plan->touch || (turn > 0 && !limited)) return;
+        uint64_t stops = touch_counters(plan->touch).stops;
+        touch_guard(plan->touch, shell, state, pool, h, dynamics);
+        if (touch_counters(plan->touch).stops == stops) return;
+    }
+}
+
 SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
                           const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
                           DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
@@ -201,8 +214,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     }
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    dynamics_limit(plan, shell, state, pool, dynamics);
-    if (plan->touch) touch_guard(plan->touch, shell, state, pool, h, dynamics);
+    dynamics_close(plan, shell, state, pool, h, dynamics);
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;

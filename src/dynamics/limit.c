@@ -112,11 +112,12 @@ static void limit_blocks(const Limit *job, const double *over) {
     }
 }
 
-void dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
+bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
     Limit job = {shell, state, dynamics, plan->attachments.spread};
-    if (plan->paper || (state->step + 1) % LIMIT_PERIOD) return;
+    if (plan->paper || (state->step + 1) % LIMIT_PERIOD) return false;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
-        if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return;
+        if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return round > 0;
         limit_blocks(&job, plan->partial);
     }
+    return true;
 }
