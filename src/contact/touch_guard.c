@@ -36,8 +36,7 @@ typedef struct Guard {
     DynamicsState *dynamics;
     const uint8_t *cell_flags;
     float time;   ///< s since the search
-    bool changed; ///< look at cells that have changed only
-    uint32_t first; ///< look at pairs from this one on
+    uint32_t first; ///< look at pairs from this one on, where all are looked at
 } Guard;
 
 // ---- how cells have moved
@@ -63,10 +62,70 @@ static void measure_cell(const Guard *guard, uint32_t c) {
 static void measure_range(void *task, int begin, int end) {
     const Guard *guard = task;
     for (int c = begin; c < end; c++) {
-        if (guard->changed && !guard->plan->changed[c]) continue;
         if (is_alive(guard, (uint32_t)c)) measure_cell(guard, (uint32_t)c);
         else guard->plan->strayed[c] = 0;
     }
+}
+
+static void measure_changed(void *task, int begin, int end) {
+    const Guard *guard = task;
+    for (int k = begin; k < end; k++) measure_cell(guard, guard->plan->changed_list[k]);
+}
+
+// ---- what the last round has changed
+
+static void forget_changed(TouchPlan *plan) {
+    for (uint32_t k = 0; k < plan->changed_count; k++) plan->changed[plan->changed_list[k]] = 0;
+    plan->changed_count = 0;
+}
+
+static void mark_changed(const Guard *guard, uint32_t cell) {
+    TouchPlan *plan = guard->plan;
+    if (plan->changed[cell] || !is_alive(guard, cell)) return;
+    plan->changed[cell] = 1;
+    plan->changed_list[plan->changed_count++] = cell;
+}
+
+/// Marks the cells around a vertex.
+static void mark_around(const Guard *guard, uint32_t v) {
+    const Shell *shell = guard->shell;
+    for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) mark_changed(guard, shell->fan[f]);
+}
+
+/// Sorts the search's pairs by their cells, once for each search.
+static void sort_around(TouchPlan *plan) {
+    if (plan->around_search == plan->counters.searches) return;
+    plan->around_search = plan->counters.searches;
+    uint32_t *first = plan->around_first;
+    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        first[pair->a + 2]++;
+        first[pair->b + 2] += pair->a != pair->b;
+    }
+    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        plan->around[first[pair->a + 1]++] = k;
+        if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
+    }
+}
+
+/// Lists the pairs of cells that have changed. Returns how many.
+static uint32_t list_changed(TouchPlan *plan) {
+    uint32_t count = 0;
+    sort_around(plan);
+    for (uint32_t l = 0; l < plan->changed_count; l++) {
+        uint32_t c = plan->changed_list[l];
+        for (uint32_t e = plan->around_first[c]; e < plan->around_first[c + 1]; e++) {
+            const TouchPair *pair = &plan->pairs[plan->around[e]];
+            uint32_t other = pair->a == c ? pair->b : pair->a;
+            if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
+        }
+    }
+    for (uint32_t k = plan->listed_count; k < plan->pair_count; k++)
+        if (plan->changed[plan->pairs[k].a] | plan->changed[plan->pairs[k].b]) plan->active[count++] = k;
+    return count;
 }
 
 // ---- sweeping a pair
@@ -118,8 +177,8 @@ static void sweep_both(const Guard *guard, const TouchPair *pair, Swept *p, Swep
     sweep_nodes(guard, pair->b, origin, mean, q);
 }
 
-/// Nodes that cell c owns, of p, against triangles of q that do not have them; bits of same[i] are the corners of q that
-/// are corner i of p.
+/// Nodes that cell c owns, of p, against triangles of q that do not have them; bits of same[i] are the corners of q
+/// that are corner i of p.
 static void sweep_all_nodes(const Guard *guard, TouchPair *pair, uint32_t c, const Swept *p, const Swept *q,
                             const unsigned same[4], int kind) {
     for (int i = 0; i < 5; i++) {
@@ -205,18 +264,25 @@ static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     return normals_part(guard, pair) || plane_parts(guard, pair);
 }
 
+/// Returns whether a pair meets.
+static bool look_at_pair(const Guard *guard, TouchPair *pair) {
+    if (pair->hit < 2) pair->hit = 2;
+    if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(guard->plan, pair)) return false;
+    if (!pair_is_free(guard, pair)) sweep_pair(guard, pair);
+    return pair->hit < 2;
+}
+
 static double sweep_range(void *task, int begin, int end) {
     const Guard *guard = task;
-    TouchPlan *plan = guard->plan;
     double hits = 0;
-    for (int k = begin; k < end; k++) {
-        TouchPair *pair = &plan->pairs[guard->first + (uint32_t)k];
-        if (pair->hit < 2) pair->hit = 2;
-        if (guard->changed && !plan->changed[pair->a] && !plan->changed[pair->b]) continue;
-        if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(plan, pair)) continue;
-        if (!pair_is_free(guard, pair)) sweep_pair(guard, pair);
-        hits += pair->hit < 2;
-    }
+    for (int k = begin; k < end; k++) hits += look_at_pair(guard, &guard->plan->pairs[guard->first + (uint32_t)k]);
+    return hits;
+}
+
+static double sweep_active(void *task, int begin, int end) {
+    const Guard *guard = task;
+    double hits = 0;
+    for (int k = begin; k < end; k++) hits += look_at_pair(guard, &guard->plan->pairs[guard->plan->active[k]]);
     return hits;
 }
 
@@ -252,9 +318,9 @@ static Quad impact_points(const TouchPair *pair, const Swept *p, const Swept *q,
     return pair->kind == TOUCH_NODE_OF_B ? -apart : apart;
 }
 
-/// What each corner of a side goes of a shift of its point: as its weight and inverse mass say, but that no corner counts
-/// as lighter than a quarter of the heaviest. Else a light corner, far from the point, would be thrown far to move
-/// it. Returns the point's own inverse mass.
+/// What each corner of a side goes of a shift of its point: as its weight and inverse mass say, but that no corner
+/// counts as lighter than a quarter of the heaviest. Else a light corner, far from the point, would be thrown far to
+/// move it. Returns the point's own inverse mass.
 static float impact_lever(const Guard *guard, uint32_t cell, const float w[4], float lever[4]) {
     const uint32_t *corner = guard->shell->cells[cell];
     float least = INFINITY, inverse[4], own = 0, sum = 0;
@@ -274,7 +340,9 @@ static void impact_move(const Guard *guard, const TouchPair *pair, const float w
     for (int k = 0; a + b > 0 && k < 8; k++) {
         uint32_t v = guard->shell->cells[k < 4 ? pair->a : pair->b][k & 3];
         float go = (k < 4 ? a : -b) / (a + b) * lever[k >> 2][k & 3], *x = guard->dynamics->position[v];
-        if (go != 0) quad_store(x, quad_load(x) + go * shift);
+        if (go == 0) continue;
+        quad_store(x, quad_load(x) + go * shift);
+        mark_around(guard, v);
     }
 }
 
@@ -307,24 +375,14 @@ static void impact(const Guard *guard, const TouchPair *pair) {
     impact_move(guard, pair, wa, wb, shift);
 }
 
-/// Marks the cells at a pair's corners.
-static void mark_around(const Guard *guard, const TouchPair *pair) {
-    const Shell *shell = guard->shell;
-    for (int k = 0; k < 8; k++) {
-        uint32_t v = shell->cells[k < 4 ? pair->a : pair->b][k & 3];
-        for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++)
-            guard->plan->changed[shell->fan[f]] = 1;
-    }
-}
-
 /// Impacts of all pairs that meet, one after another.
 static void impact_all(const Guard *guard) {
     TouchPlan *plan = guard->plan;
-    memset(plan->changed, 0, plan->cell_count);
-    for (uint32_t k = 0; k < plan->pair_count; k++) {
-        if (!(plan->pairs[k].hit < 2)) continue;
-        impact(guard, &plan->pairs[k]);
-        mark_around(guard, &plan->pairs[k]);
+    forget_changed(plan);
+    for (uint32_t k = 0; k < plan->hit_count; k++) {
+        const TouchPair *pair = &plan->pairs[plan->active[k]];
+        impact(guard, pair);
+        mark_changed(guard, pair->a), mark_changed(guard, pair->b);
     }
 }
 
@@ -382,7 +440,6 @@ static void zone_drift(const Guard *guard) {
 /// Moves what is in zones, and marks the cells around.
 static void zone_move(const Guard *guard) {
     TouchPlan *plan = guard->plan;
-    const Shell *shell = guard->shell;
     zone_drift(guard);
     for (uint32_t k = 0; k < plan->stopped_count; k++) {
         uint32_t v = plan->stopped[k], root = zone_root(plan, v);
@@ -393,9 +450,8 @@ static void zone_move(const Guard *guard) {
         end[3] = start[3];
         quad_store(guard->dynamics->position[v], end);
     }
-    memset(plan->changed, 0, plan->cell_count);
-    for (uint32_t c = 0; c < plan->cell_count; c++)
-        for (int i = 0; i < 4; i++) plan->changed[c] |= plan->zone[shell->cells[c][i]] != SHELL_NONE;
+    forget_changed(plan);
+    for (uint32_t k = 0; k < plan->stopped_count; k++) mark_around(guard, plan->stopped[k]);
 }
 
 /// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has
@@ -458,9 +514,27 @@ static void measure(Guard *guard, Pool *pool) {
     pool_for(pool, (int)guard->plan->cell_count, 512, measure_range, guard);
 }
 
+/// Sweeps pairs from `first` on, and lists those that meet. Returns how many.
 static uint32_t sweep(Guard *guard, Pool *pool, uint32_t first) {
+    TouchPlan *plan = guard->plan;
     guard->first = first;
-    return (uint32_t)pool_sum(pool, (int)(guard->plan->pair_count - first), sweep_range, guard, guard->plan->partial);
+    plan->hit_count = 0;
+    if (pool_sum(pool, (int)(plan->pair_count - first), sweep_range, guard, plan->partial) > 0)
+        for (uint32_t k = first; k < plan->pair_count; k++)
+            if (plan->pairs[k].hit < 2) plan->active[plan->hit_count++] = k;
+    return plan->hit_count;
+}
+
+/// The same of the pairs of cells that have changed.
+static uint32_t sweep_changed(Guard *guard, Pool *pool) {
+    TouchPlan *plan = guard->plan;
+    pool_for(pool, (int)plan->changed_count, 512, measure_changed, guard);
+    uint32_t count = list_changed(plan);
+    plan->hit_count = 0;
+    if (pool_sum(pool, (int)count, sweep_active, guard, plan->partial) > 0)
+        for (uint32_t k = 0; k < count; k++)
+            if (plan->pairs[plan->active[k]].hit < 2) plan->active[plan->hit_count++] = plan->active[k];
+    return plan->hit_count;
 }
 
 static uint32_t list_strayed(TouchPlan *plan) {
@@ -477,7 +551,6 @@ static uint32_t follow_strayed(Guard *guard, const State *state, Pool *pool, flo
     uint32_t count = list_strayed(plan);
     if (count == 0) return plan->pair_count;
     bool all = count > STRAY_MOST || plan->edge <= 0;
-    guard->changed = false;
     if (all) {
         search_again(guard, state, pool, h);
         measure(guard, pool);
@@ -489,9 +562,14 @@ static uint32_t follow_strayed(Guard *guard, const State *state, Pool *pool, flo
 }
 
 /// One look at all that may have met, or at what the last round has changed. Returns the number of pairs that have.
-static uint32_t look(Guard *guard, const State *state, Pool *pool, float h) {
-    measure(guard, pool);
-    uint32_t hits = sweep(guard, pool, 0);
+static uint32_t look(Guard *guard, const State *state, Pool *pool, float h, bool changed) {
+    uint32_t hits;
+    if (changed) {
+        hits = sweep_changed(guard, pool);
+    } else {
+        measure(guard, pool);
+        hits = sweep(guard, pool, 0);
+    }
     return hits > 0 ? hits : sweep(guard, pool, follow_strayed(guard, state, pool, h));
 }
 
@@ -499,10 +577,10 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
                  DynamicsState *dynamics) {
     double start = clock_seconds();
     Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
-                   h * (float)(state->step - plan->step + 1), false, 0};
+                   h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     for (int round = 0;; round++) {
-        uint32_t hits = look(&guard, state, pool, h);
+        uint32_t hits = look(&guard, state, pool, h, stopped);
         if (hits == 0) break;
         if (round == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;
@@ -513,11 +591,11 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
         if (round < IMPACT_ROUNDS) {
             impact_all(&guard);
         } else {
-            for (uint32_t k = 0; k < plan->pair_count; k++)
-                if (plan->pairs[k].hit < 2) zone_join(&guard, &plan->pairs[k], round - IMPACT_ROUNDS);
+            for (uint32_t k = 0; k < plan->hit_count; k++)
+                zone_join(&guard, &plan->pairs[plan->active[k]], round - IMPACT_ROUNDS);
             zone_move(&guard);
         }
-        guard.changed = stopped = true;
+        stopped = true;
     }
     plan->pair_count = plan->listed_count;
     if (stopped) close_ways(&guard, h);

@@ -125,7 +125,14 @@ struct TouchPlan {
     Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
     uint32_t *stopped;       ///< [stopped_count] vertices in zones
     uint32_t stopped_count;
-    uint8_t *changed;        ///< [cells] that zones have moved in this round
+    uint8_t *changed;        ///< [cells] that the last round has moved
+    uint32_t *changed_list;  ///< [changed_count] of them
+    uint32_t changed_count;
+    uint32_t *active;        ///< [hit_count] pairs that meet
+    uint32_t hit_count;
+    uint32_t *around_first;  ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
+    uint32_t *around;        ///< [2 pair_capacity]
+    uint64_t around_search;  ///< which search these are of
     uint8_t *strayed;        ///< [cells] that have left their boxes
     uint32_t *stray;         ///< [cells] a list of them
     TouchStray *stray_boxes; ///< [cells] theirs
