@@ -15,14 +15,6 @@ typedef struct Find {
 
 // ---- the grid
 
-/// Cubes from one to another, or more than `most`.
-static uint64_t cubes_between(Cube first, Cube last, uint64_t most) {
-    uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
-    uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;
-    if (x > most || x * y > most) return most + 1;
-    return x * y * z;
-}
-
 /// The cubes' edge to begin with: 1.5 times the boxes' mean longest side. 0 where nothing is left.
 static float first_edge(const TouchPlan *plan) {
     double sum = 0;
@@ -53,7 +45,7 @@ static uint64_t fill_grid(TouchPlan *plan, bool writing) {
         if (!plan->alive[c]) continue;
         const TouchBox *box = &plan->boxes[c];
         Cube first = touch_cube(box->swept_low, inverse), last = touch_cube(box->swept_high, inverse), at = first;
-        count += cubes_between(first, last, plan->entry_capacity);
+        count += touch_cubes(first, last, plan->entry_capacity);
         if (count > plan->entry_capacity) return count;
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)

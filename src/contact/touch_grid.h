@@ -13,6 +13,14 @@ static inline Cube touch_cube(Quad p, float inverse_edge) {
     return whole + (__builtin_convertvector(whole, Quad) > q); // a mask is -1
 }
 
+/// Cubes from one to another, or more than `most`.
+static inline uint64_t touch_cubes(Cube first, Cube last, uint64_t most) {
+    uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
+    uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;
+    if (x > most || x * y > most || x * y * z > most) return most + 1;
+    return x * y * z;
+}
+
 /// Cubes of one key are so far apart that no box is in two of them.
 static inline uint32_t touch_key(Cube cube) {
     return ((uint32_t)cube[0] & 1023) | ((uint32_t)cube[1] & 1023) << 10 | ((uint32_t)cube[2] & 511) << 20;

@@ -26,9 +26,9 @@
 
 enum { IMPACT_ROUNDS = 64, ZONE_PATIENCE = 4, ZONE_ROUNDS = 128 };
 
-/// Cells that may be outside their boxes before all are searched again; and the part of all cells from which on the
-/// next step begins with a search.
-enum { STRAY_MOST = 1024, STRAY_PART = 32 };
+/// The part of all cells that may be outside their boxes before all are searched again; and that from which on the next
+/// step begins with a search.
+enum { STRAY_MOST = 8, STRAY_PART = 32 };
 
 typedef struct Guard {
     TouchPlan *plan;
@@ -550,7 +550,7 @@ static uint32_t follow_strayed(Guard *guard, const State *state, Pool *pool, flo
     TouchPlan *plan = guard->plan;
     uint32_t count = list_strayed(plan);
     if (count == 0) return plan->pair_count;
-    bool all = count > STRAY_MOST || plan->edge <= 0;
+    bool all = count > plan->cell_count / STRAY_MOST || plan->edge <= 0;
     if (all) {
         search_again(guard, state, pool, h);
         measure(guard, pool);

@@ -37,7 +37,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 33 };
+enum { ARRAYS = 35 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
@@ -54,6 +54,7 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
         ARRAY(around_first, cells + 2),
         ARRAY(around, 2 * (size_t)plan->pair_capacity),
         ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(stray_boxes, cells),
+        ARRAY(stray_chain, plan->bucket_count), ARRAY(stray_entries, plan->entry_capacity),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY

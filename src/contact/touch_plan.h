@@ -73,6 +73,12 @@ typedef struct TouchStray {
     Quad low, high;
 } TouchStray;
 
+/// An entry of the grid of such regions.
+typedef struct TouchChain {
+    uint32_t stray, key; ///< key: as a TouchEntry's
+    uint32_t next;       ///< of the same bucket, or SHELL_NONE
+} TouchChain;
+
 struct TouchPlan {
     SingeContactDef def;
     uint32_t cell_count, vertex_count;
@@ -136,6 +142,8 @@ struct TouchPlan {
     uint8_t *strayed;        ///< [cells] that have left their boxes
     uint32_t *stray;         ///< [cells] a list of them
     TouchStray *stray_boxes; ///< [cells] theirs
+    uint32_t *stray_chain;   ///< [bucket_count] first entries
+    TouchChain *stray_entries; ///< [entry_capacity]
     double *partial;         ///< [pool_blocks(pair_capacity)]
     TouchCounters counters;
 };

@@ -6,6 +6,8 @@ typedef struct Strays {
     const Shell *shell;
     const float (*x)[4];
     uint32_t count;
+    uint32_t entry_count; ///< of the strays' own grid
+    bool crowded;         ///< it has no room for all: strays are held against all others
 } Strays;
 
 static TouchStray stray_box(const Strays *job, uint32_t cell) {
@@ -57,19 +59,63 @@ static void against_boxes(const Strays *job, uint32_t a, const TouchStray *box, 
             }
 }
 
+// ---- strays among each other: a grid of the same cubes, buckets as chains
+
+static void chain_strays(Strays *job) {
+    TouchPlan *plan = job->plan;
+    float inverse = 1 / plan->edge;
+    memset(plan->stray_chain, 0xff, plan->bucket_count * sizeof *plan->stray_chain);
+    for (uint32_t k = job->count; k-- > 0;) {
+        const TouchStray *box = &plan->stray_boxes[k];
+        Cube first = touch_cube(box->low, inverse), last = touch_cube(box->high, inverse), at = first;
+        uint64_t cubes = touch_cubes(first, last, plan->entry_capacity);
+        job->crowded |= cubes > plan->entry_capacity - job->entry_count;
+        if (job->crowded) return;
+        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                    uint32_t key = touch_key(at), *chain = &plan->stray_chain[touch_bucket(plan, key)];
+                    plan->stray_entries[job->entry_count] =
+                        (TouchChain){k, key | (quad_bits(at == first) & 7) << 29, *chain};
+                    *chain = job->entry_count++;
+                }
+    }
+}
+
+static void add_stray_pair(const Strays *job, uint32_t k, uint32_t l, TouchWriter *writer) {
+    const TouchStray *box = &job->plan->stray_boxes[k], *other = &job->plan->stray_boxes[l];
+    if (quads_meet(box->low, box->high, other->low, other->high))
+        add_pair(job, job->plan->stray[k], job->plan->stray[l], writer);
+}
+
+static void against_strays(const Strays *job, uint32_t k, TouchWriter *writer) {
+    const TouchPlan *plan = job->plan;
+    if (job->crowded) {
+        for (uint32_t l = k + 1; l < job->count; l++) add_stray_pair(job, k, l, writer);
+        return;
+    }
+    const TouchStray *box = &plan->stray_boxes[k];
+    float inverse = 1 / plan->edge;
+    Cube first = touch_cube(box->low, inverse), last = touch_cube(box->high, inverse), at = first;
+    for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+            for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                uint32_t key = touch_key(at), begun = quad_bits(at == first) & 7, e;
+                for (e = plan->stray_chain[touch_bucket(plan, key)]; e != SHELL_NONE; e = plan->stray_entries[e].next) {
+                    const TouchChain *entry = &plan->stray_entries[e];
+                    if (entry->stray > k && (entry->key & TOUCH_KEY) == key && (begun | entry->key >> 29) == 7)
+                        add_stray_pair(job, k, entry->stray, writer);
+                }
+            }
+}
+
 static void stray_block(void *context, TouchList *list, int block) {
     const Strays *job = context;
     TouchWriter writer = touch_list_begin(list);
     uint32_t first = (uint32_t)block * TOUCH_STRAYS, last = first + TOUCH_STRAYS;
     for (uint32_t k = first; k < last && k < job->count; k++) {
-        uint32_t a = job->plan->stray[k];
-        const TouchStray *box = &job->plan->stray_boxes[k];
-        against_boxes(job, a, box, &writer);
-        for (uint32_t l = k + 1; l < job->count; l++) {
-            const TouchStray *other = &job->plan->stray_boxes[l];
-            if (quads_meet(box->low, box->high, other->low, other->high))
-                add_pair(job, a, job->plan->stray[l], &writer);
-        }
+        against_boxes(job, job->plan->stray[k], &job->plan->stray_boxes[k], &writer);
+        against_strays(job, k, &writer);
     }
     touch_list_end(&writer, block);
 }
@@ -80,9 +126,11 @@ static void keep_pair(void *context, const void *item, uint32_t number) {
 }
 
 void touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count, const float (*x)[4]) {
-    Strays job = {plan, shell, x, stray_count};
+    Strays job = {plan, shell, x, stray_count, 0, false};
+    if (stray_count == 0) return;
     int blocks = (int)((stray_count + TOUCH_STRAYS - 1) / TOUCH_STRAYS);
     pool_for(pool, (int)stray_count, TOUCH_STRAYS, box_range, &job);
+    chain_strays(&job);
     uint32_t room = plan->pair_capacity - plan->listed_count;
     uint64_t count = touch_list_write(&plan->found_pairs, pool, blocks, plan->pair_capacity, stray_block, &job);
     uint32_t kept = (uint32_t)(count < room ? count : room);
