@@ -360,6 +360,53 @@ static void features_are_measured(void **unused) {
     searched_free(s);
 }
 
+/// Whether the regions that two cells pass over on their way from the step's start meet.
+static bool ways_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32_t b) {
+    for (int k = 0; k < 3; k++) {
+        float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int i = 0; i < 8; i++) {
+            uint32_t v = s->shell.cells[i < 4 ? a : b][i & 3];
+            low[i >> 2] = fminf(low[i >> 2], fminf(s->plan->start[v][k], x[v][k]));
+            high[i >> 2] = fmaxf(high[i >> 2], fmaxf(s->plan->start[v][k], x[v][k]));
+        }
+        if (low[0] > high[1] || low[1] > high[0]) return false;
+    }
+    return true;
+}
+
+/// Cells that are thrown out of their boxes, against brute force.
+static void strays_are_found(void **unused) {
+    (void)unused;
+    Searched *s = searched(30);
+    TouchPlan *plan = s->plan;
+    uint32_t n = plan->cell_count, count = 0, met = 0;
+    float(*x)[4] = malloc(plan->vertex_count * sizeof *x);
+    memcpy(x, plan->start, plan->vertex_count * sizeof *x);
+    for (uint32_t v = 0; v < plan->vertex_count; v += 17)
+        for (int k = 0; k < 3; k++) x[v][k] += 4e-3f * sinf((float)(v * (uint32_t)(k + 2))); // two cells far
+    for (uint32_t c = 0; c < n; c++) {
+        plan->strayed[c] = 0;
+        for (int i = 0; i < 4; i++) plan->strayed[c] |= s->shell.cells[c][i] % 17 == 0;
+        if (plan->strayed[c]) plan->stray[count++] = c;
+    }
+    touch_search_strayed(plan, &s->shell, NULL, count, (const float(*)[4])x);
+    uint8_t *listed = calloc((size_t)n * n, 1);
+    for (uint32_t k = 0; k < plan->pair_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
+        listed[pair->a * n + pair->b] = 1;
+    }
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t b = 0, a = plan->stray[k]; b < n; b++) {
+            if (a == b || !ways_meet(s, (const float(*)[4])x, a, b)) continue;
+            met++;
+            assert_true(listed[a * n + b] || listed[b * n + a]);
+        }
+    assert_true(count > n / 8 && met > 10 * count && plan->pair_count > plan->listed_count + count / 8);
+    free(listed), free(x);
+    searched_free(s);
+}
+
 static void the_search_is_linear(void **unused) {
     (void)unused;
     Searched *small = searched(40), *large = searched(80);
@@ -389,7 +436,7 @@ int main(void) {
         cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone), cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
-        cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(strays_are_found),            cmocka_unit_test(the_search_is_linear),
         cmocka_unit_test(bad_values_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
