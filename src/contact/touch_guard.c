@@ -92,6 +92,16 @@ static void mark_around(const Guard *guard, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) mark_changed(guard, shell->fan[f]);
 }
 
+/// Marks the cells that have been moved since the guard was here before in this step.
+static void mark_moved(const Guard *guard) {
+    const TouchPlan *plan = guard->plan;
+    forget_changed(guard->plan);
+    for (uint32_t v = 0; v < plan->vertex_count; v++) {
+        QuadMask moved = quad_load(guard->dynamics->position[v]) != quad_load(plan->end[v]);
+        if (quad_bits(moved) & 7) mark_around(guard, v);
+    }
+}
+
 /// Sorts the search's pairs by their cells, once for each search.
 static void sort_around(TouchPlan *plan) {
     if (plan->around_search == plan->counters.searches) return;
@@ -579,8 +589,9 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
     Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
                    h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
+    if (plan->closed) mark_moved(&guard);
     for (int round = 0;; round++) {
-        uint32_t hits = look(&guard, state, pool, h, stopped);
+        uint32_t hits = look(&guard, state, pool, h, stopped || plan->closed);
         if (hits == 0) break;
         if (round == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;
@@ -599,5 +610,7 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
     }
     plan->pair_count = plan->listed_count;
     if (stopped) close_ways(&guard, h);
+    memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);
+    plan->closed = true;
     plan->counters.seconds += clock_seconds() - start;
 }

@@ -250,6 +250,7 @@ static void open_pushes(Opening *job, Pool *pool) {
 
 void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics) {
     double start = clock_seconds();
+    plan->closed = false;
     Opening job = {plan, shell, dynamics, state->ablate.cell_flags};
     bool search = !plan->searched || plan->restless || state->step < plan->step ||
                   state->step - plan->step >= plan->steps;

@@ -37,7 +37,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 35 };
+enum { ARRAYS = 36 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
@@ -48,12 +48,12 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
         ARRAY(boxes, cells), ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(owned, cells), ARRAY(owner, vertices),
         ARRAY(entries, plan->entry_capacity), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
-        ARRAY(want, vertices), ARRAY(goal, vertices), ARRAY(way, cells), ARRAY(velocity, cells), ARRAY(normal, cells),
-        ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices), ARRAY(stopped, vertices),
-        ARRAY(changed, cells), ARRAY(changed_list, cells), ARRAY(active, plan->pair_capacity),
-        ARRAY(around_first, cells + 2),
-        ARRAY(around, 2 * (size_t)plan->pair_capacity),
-        ARRAY(strayed, cells), ARRAY(stray, cells), ARRAY(stray_boxes, cells),
+        ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(way, cells), ARRAY(velocity, cells),
+        ARRAY(normal, cells), ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
+        ARRAY(stopped, vertices), ARRAY(changed, cells), ARRAY(changed_list, cells),
+        ARRAY(active, plan->pair_capacity), ARRAY(around_first, cells + 2),
+        ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(strayed, cells), ARRAY(stray, cells),
+        ARRAY(stray_boxes, cells),
         ARRAY(stray_chain, plan->bucket_count), ARRAY(stray_entries, plan->entry_capacity),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };

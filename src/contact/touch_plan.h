@@ -121,6 +121,8 @@ struct TouchPlan {
 
     // the step
     float (*start)[4];       ///< [vertices] m
+    float (*end)[4];         ///< [vertices] m, where the guard has left them, if it has been here in this step:
+    bool closed;
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
     Quad *way;               ///< [cells] m, mean of the corners' since plan->start; fourth: the largest deviation
