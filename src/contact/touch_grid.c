@@ -15,7 +15,7 @@ typedef struct Find {
 
 // ---- the grid
 
-/// The cubes' edge to begin with: 1.5 times the boxes' mean longest side. 0 where nothing is left.
+/// The cubes' edge to begin with: twice the boxes' mean longest side. 0 where nothing is left.
 static float first_edge(const TouchPlan *plan) {
     double sum = 0;
     uint32_t count = 0;
@@ -31,10 +31,9 @@ static float first_edge(const TouchPlan *plan) {
 
 static void put_entry(TouchPlan *plan, uint32_t cell, uint32_t key) {
     const TouchBox *box = &plan->boxes[cell];
-    TouchEntry *entry = &plan->entries[plan->bucket_first[touch_bucket(plan, key & TOUCH_KEY) + 1]++];
     Quad low = box->swept_low, high = box->swept_high;
-    memcpy(&low[3], &cell, sizeof cell), memcpy(&high[3], &key, sizeof key);
-    memcpy(entry->low, &low, sizeof low), memcpy(entry->high, &high, sizeof high);
+    plan->entries[plan->bucket_first[touch_bucket(plan, key & TOUCH_KEY) + 1]++] = (TouchEntry){
+        .low = {low[0], low[1], low[2]}, .cell = cell, .high = {high[0], high[1], high[2]}, .key = key};
 }
 
 /// Calls for every cube of every swept box: counts the entries of buckets, or writes them.
