@@ -1,9 +1,7 @@
 // No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a substep:
 // what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads of char that
-// something heavy hangs on, may be left several times as long. Nor has a cell of which fire has left a part all of its
-// springs, yet what is left of it is drawn between its four corners. So after the substeps its sides and diagonals longer
-// than LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one by one, whether their springs have
-// burnt or not:
+// something heavy hangs on, may be left several times as long. So after the substeps sides and diagonals longer than
+// LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one by one:
 //
 //   C = |d| - s l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
 //
@@ -12,6 +10,8 @@
 // which a count has found some; nearly all steps end with that count.
 #include "base/quad.h"
 #include "dynamics/plan.h"
+
+#include <math.h>
 
 /// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
 #define LIMIT_SIDE 1.25f
@@ -28,12 +28,14 @@ typedef struct Limit {
 
 static uint32_t limit_corner(int i) { return i < 4 ? (uint32_t)i : (uint32_t)i - 4; }
 
-/// How long side 0 to 3 or diagonal 4 to 5 of a cell may be, and its ends.
+/// How long side 0 to 3 or diagonal 4 to 5 of a cell may be, and its ends. Where a spring has burnt, what hangs on the cell
+/// may pull it open: held there, it would stretch what is whole beside it.
 static float limit_of(const Limit *job, uint32_t c, int i, uint32_t ends[2]) {
     const uint32_t *corner = job->shell->cells[c];
     const CellSprings *springs = &job->shell->cell_springs[c];
     float *const *length = job->state->burn.spring_length;
     ends[0] = corner[limit_corner(i)], ends[1] = corner[i < 4 ? (i + 1) & 3 : i - 2];
+    if (i < 4 && !(job->state->ablate.spring_flags[SINGE_BLUE][springs->blue[i]] & SINGE_ALIVE)) return INFINITY;
     return i < 4 ? LIMIT_SIDE * length[SINGE_BLUE][springs->blue[i]]
                  : LIMIT_DIAGONAL * length[SINGE_YELLOW][springs->yellow[i - 4]];
 }
