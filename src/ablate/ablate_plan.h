@@ -90,8 +90,15 @@ void surface_normals(SingeSurface *surface);
 void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key, uint32_t index,
                     SingeSurface *surface);
 
-/// Where the level set cuts an edge, eq 7, as a fraction of the way from the end inside. 0 where that end
-/// is so near that the cut is taken to be there.
-float surface_cut(float inside, float outside);
+/// Cuts nearer to an end of their edge than this share of it would make triangles as thin as floats are rounded.
+#define SURFACE_NEAREST 1e-3f
+
+/// Where the level set cuts an edge, eq 7, as a fraction of the way from the end inside. What is nearer to an end than
+/// `nearest` is 0, the end inside itself, or as far from the one outside.
+float surface_cut(float inside, float outside, float nearest);
+
+/// The corner from which a clipped triangle is cut into triangles: of a quadrilateral, the end inside that is farther
+/// from its cut, for the other diagonal would leave one thinner than the cuts are near.
+int surface_fan(const float level[3], float nearest);
 
 #endif

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/// surface_cut of a fine side: a few micrometres, which floats can tell apart some metres from the origin, and nobody sees.
+#define NEAREST 0.03125f
+
 typedef struct Marching {
     Fine *fine;
     bool drawing;
@@ -38,7 +41,7 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
     int inside = edge, outside = edge == 2 ? 0 : edge + 1;
     if (fine->values[piece->point[inside]].level < 0) inside = outside, outside = edge;
     const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
-    float t = surface_cut(in->level, out->level);
+    float t = surface_cut(in->level, out->level, NEAREST);
     if (!(t > 0)) return point_vertex(fine, piece, inside);
     if (*piece->cut[edge]) return *piece->cut[edge];
     FinePlace place = piece->place[inside];
@@ -47,11 +50,14 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
 }
 
 static void draw(Fine *fine, const Piece *piece) {
+    const float level[3] = {fine->values[piece->point[0]].level, fine->values[piece->point[1]].level,
+                            fine->values[piece->point[2]].level};
+    const int first = surface_fan(level, NEAREST);
     uint32_t polygon[4];
     int count = 0;
-    for (int a = 0; a < 3; a++) {
-        int b = a == 2 ? 0 : a + 1;
-        bool in = fine->values[piece->point[a]].level >= 0, next = fine->values[piece->point[b]].level >= 0;
+    for (int i = 0; i < 3; i++) {
+        int a = (first + i) % 3, b = (a + 1) % 3;
+        bool in = level[a] >= 0, next = level[b] >= 0;
         uint32_t vertex[2];
         int made = 0;
         if (in) vertex[made++] = point_vertex(fine, piece, a);

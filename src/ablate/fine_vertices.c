@@ -7,8 +7,15 @@
 //   x = p - 1/2 sum w_i ((p - P_i) . N_i) N_i,   p = sum w_i P_i
 //
 // which is p at the corners and on flat sheets, and depends on a side's ends alone along the side; 1/2 lays it on a
-// circle through the corners. So do virtual centres, from the cell's four corners. Corners that have another surface near
-// leave their terms out: what does not cross as it is must not cross as it is drawn.
+// circle through the corners. So do virtual centres, from the cell's four corners.
+//
+// What does not cross as it is must not cross as it is drawn. So no vertex goes farther than `most`, a tenth of the cell's
+// side and less than half the contact thickness, and corners' terms fade
+//
+//   where a triangle at the corner leans away from its normal: within the triangle the terms move points by a share of
+//   1/2 sin^2 of that angle, and would turn fine triangles over;
+//   where one is thin, as when a cell collapses;
+//   where another surface is near, at once.
 #include "ablate/surface_fine.h"
 
 #define BULGE 0.5f
@@ -51,15 +58,55 @@ static void gather_normals(const Fine *fine) {
         vec_store(fine->normal[i], vec_unit(vec_load(fine->normal[i])));
 }
 
-static bool flat_at(const Fine *fine, uint32_t vertex) { return fine->flat && fine->flat[vertex]; }
+/// 0 at `low` and below, 1 at `high`.
+static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
+
+/// How much of its corners' terms a triangle with this normal, 2 A n, and this square of its longest edge allows.
+static float allowed(Vec doubled, float longest, Vec normal) {
+    float area = vec_length(doubled);
+    if (!(area > 0)) return 0;
+    return fade(vec_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
+}
+
+/// The share of their terms that corners and virtual centres keep. The normals are in place.
+static void gather_shares(const Fine *fine) {
+    const Shell *shell = fine->shell;
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        fine->share[i] = fine->flat && i < shell->vertex_count && fine->flat[i] ? 0 : 1;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        const uint32_t *at = shell->cells[c], middle = shell_centre(shell, c);
+        Vec centre = centre_of(at, position);
+        for (int i = 0; i < 4; i++) {
+            const uint32_t corner[3] = {at[i], at[(i + 1) & 3], middle};
+            Vec a = vec_sub(vec_load(position[corner[0]]), centre), b = vec_sub(vec_load(position[corner[1]]), centre);
+            Vec doubled = vec_cross(a, b), side = vec_sub(b, a);
+            float longest = fmaxf(vec_dot(side, side), fmaxf(vec_dot(a, a), vec_dot(b, b)));
+            for (int k = 0; k < 3; k++) {
+                float share = allowed(doubled, longest, vec_load(fine->normal[corner[k]]));
+                fine->share[corner[k]] = fminf(fine->share[corner[k]], share);
+            }
+            if (fine->flat && fine->flat[at[i]]) fine->share[middle] = 0;
+        }
+    }
+}
+
+/// How far a vertex of a cell may go. `corner` are the ends of one of its sides.
+static float most_of(const Fine *fine, const Vec corner[2]) {
+    return fminf(BULGE_MOST * vec_length(vec_sub(corner[1], corner[0])), fine->bulge_most);
+}
 
 /// How far a place leaves the straight mean of `count` corners: the sum in the formula above.
-static Vec bulge(Vec flat, int count, const Vec corner[], const Vec normal[], const float weight[],
-                 const bool is_flat[], float side) {
+static Vec bulge(const Fine *fine, Vec flat, int count, const uint32_t particle[], const Vec corner[],
+                 const float weight[], float most) {
     Vec sum = {0, 0, 0};
-    for (int i = 0; i < count; i++)
-        if (!is_flat[i]) sum = vec_mad(sum, normal[i], -BULGE * weight[i] * vec_dot(vec_sub(flat, corner[i]), normal[i]));
-    float most = BULGE_MOST * side, length = vec_length(sum);
+    for (int i = 0; i < count; i++) {
+        Vec normal = vec_load(fine->normal[particle[i]]);
+        float strength = BULGE * fine->share[particle[i]] * weight[i];
+        sum = vec_mad(sum, normal, -strength * vec_dot(vec_sub(flat, corner[i]), normal));
+    }
+    float length = vec_length(sum);
     return length > most ? vec_scale(sum, most / length) : sum;
 }
 
@@ -68,11 +115,9 @@ static void place_centres(const Fine *fine) {
     const float quarters[4] = {0.25f, 0.25f, 0.25f, 0.25f};
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         const uint32_t *at = fine->shell->cells[c];
-        Vec corner[4], normal[4], flat = centre_of(at, position);
-        const bool is_flat[4] = {flat_at(fine, at[0]), flat_at(fine, at[1]), flat_at(fine, at[2]), flat_at(fine, at[3])};
-        for (int i = 0; i < 4; i++) corner[i] = vec_load(position[at[i]]), normal[i] = vec_load(fine->normal[at[i]]);
-        float side = vec_length(vec_sub(corner[1], corner[0]));
-        vec_store(fine->centre[c], vec_add(flat, bulge(flat, 4, corner, normal, quarters, is_flat, side)));
+        Vec corner[4], flat = centre_of(at, position);
+        for (int i = 0; i < 4; i++) corner[i] = vec_load(position[at[i]]);
+        vec_store(fine->centre[c], vec_add(flat, bulge(fine, flat, 4, at, corner, quarters, most_of(fine, corner))));
     }
 }
 
@@ -81,14 +126,11 @@ static void place_vertex(const Fine *fine, const FinePlace *place, const uint32_
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
     const Vec corner[3] = {vec_load(position[particle[0]]), vec_load(position[particle[1]]),
                            vec_load(fine->centre[place->cell])};
-    const uint32_t *at = fine->shell->cells[place->cell];
-    const bool centre = flat_at(fine, at[0]) || flat_at(fine, at[1]) || flat_at(fine, at[2]) || flat_at(fine, at[3]);
-    const bool is_flat[3] = {flat_at(fine, particle[0]), flat_at(fine, particle[1]), centre};
     Vec normal[3], flat = weigh(corner, place->weight);
     for (int i = 0; i < 3; i++) normal[i] = vec_load(fine->normal[particle[i]]);
-    float side = vec_length(vec_sub(corner[1], corner[0]));
+    float most = (1 - place->weight[2]) * most_of(fine, corner); // with what the centre has gone
     Vec unit = vec_unit(weigh(normal, place->weight));
-    vec_store(fine->surface->position[v], vec_add(flat, bulge(flat, 3, corner, normal, place->weight, is_flat, side)));
+    vec_store(fine->surface->position[v], vec_add(flat, bulge(fine, flat, 3, particle, corner, place->weight, most)));
     vec_store(fine->surface->normal[v], vec_dot(unit, unit) > 0.5f ? unit : vec(0, 0, 1));
 }
 
@@ -134,6 +176,7 @@ static void fill_range(void *context, int begin, int end) {
 
 void fine_vertices(const Fine *fine) {
     gather_normals(fine);
+    gather_shares(fine);
     place_centres(fine);
     pool_for(fine->pool, (int)fine->vertex_count, 256, fill_range, (void *)(uintptr_t)fine);
     fine->surface->vertex_count = fine->vertex_count;

@@ -7,7 +7,8 @@
 // m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that
 // neighbouring triangles share, so that they meet without cracks; then the keys in use are numbered in
 // order: corners in the input's order, virtual centres, cuts. A cut that falls on its end inside is that
-// end, and polygons with fewer than three corners left vanish.
+// end, and polygons with fewer than three corners left vanish. Cuts keep away from ends, and quadrilaterals are cut along
+// the diagonal that makes the rounder triangles, so that none is as thin as its vertices are rounded.
 #include "ablate/ablate_plan.h"
 #include "base/vec.h"
 
@@ -30,15 +31,17 @@ static Polygon clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, i
     uint32_t corner[3] = {shell->cells[cell][side], shell->cells[cell][next], shell_centre(shell, cell)};
     uint32_t edge[3] = {plan->keys.blue + springs->blue[side], plan->keys.red + springs->red[next],
                         plan->keys.red + springs->red[side]};
+    const float level[3] = {plan->level[corner[0]], plan->level[corner[1]], plan->level[corner[2]]};
+    const int first = surface_fan(level, SURFACE_NEAREST);
     Polygon polygon = {0};
-    for (int a = 0; a < 3; a++) {
-        int b = a == 2 ? 0 : a + 1;
-        float level_a = plan->level[corner[a]], level_b = plan->level[corner[b]];
+    for (int i = 0; i < 3; i++) {
+        int a = (first + i) % 3, b = (a + 1) % 3;
+        float level_a = level[a], level_b = level[b];
         if (level_a >= 0) {
             push(&polygon, corner[a]);
-            if (level_b < 0) push(&polygon, surface_cut(level_a, level_b) > 0 ? edge[a] : corner[a]);
+            if (level_b < 0) push(&polygon, surface_cut(level_a, level_b, SURFACE_NEAREST) > 0 ? edge[a] : corner[a]);
         } else if (level_b >= 0) {
-            push(&polygon, surface_cut(level_b, level_a) > 0 ? edge[a] : corner[b]);
+            push(&polygon, surface_cut(level_b, level_a, SURFACE_NEAREST) > 0 ? edge[a] : corner[b]);
         }
     }
     if (polygon.count > 1 && polygon.keys[polygon.count - 1] == polygon.keys[0]) polygon.count--;

@@ -30,8 +30,9 @@ static bool allocate(Fine *fine) {
     for (int f = 0; f < SPLINE_COUNT; f++)
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
-    return good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->centre, cells) &&
-            NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
+    return good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->share, shell->particle_count) &&
+           NEW(memory, fine->centre, cells) &&
+           NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
            NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) && NEW(memory, fine->cell_point, cells) &&
            NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
            NEW(memory, fine->side_owner, sides) && NEW(memory, fine->side_cut, sides + 1);
@@ -49,6 +50,7 @@ static void release(Fine *fine) {
         FREE(memory, fine->splines[f].corner, shell->vertex_count);
     }
     FREE(memory, fine->normal, shell->particle_count);
+    FREE(memory, fine->share, shell->particle_count);
     FREE(memory, fine->centre, cells);
     FREE(memory, fine->cell_value, cells);
     FREE(memory, fine->low, cells);
@@ -110,7 +112,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
-    fine.flat = detail->flat;
+    fine.flat = detail->flat, fine.bulge_most = detail->bulge_most > 0 ? detail->bulge_most : INFINITY;
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = draw(&fine, detail, error);

@@ -63,6 +63,7 @@ typedef struct Fine {
     Memory *memory;
     Pool *pool;
     const uint8_t *flat;     ///< [vertices] of SurfaceDetail
+    float bulge_most;        ///< m, of SurfaceDetail
     FineSheet *sheets;       ///< [sheets]
     Spline splines[SPLINE_COUNT];
     float *raw_level;        ///< [particles] m'; below 0 for what is gone
@@ -81,6 +82,7 @@ typedef struct Fine {
     uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
     float (*normal)[3];      ///< [particles] unit, or 0
+    float *share;            ///< [particles] of their terms that they keep where vertices leave flat triangles
     float (*centre)[3];      ///< [cells] m, where the virtual centre is drawn
     FineVertex *vertices;    ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;

@@ -8,13 +8,19 @@
 #include "ablate/ablate_plan.h"
 #include "base/vec.h"
 
-/// Cuts nearer to an end than this share of the edge would make triangles too thin for a float: they
-/// move onto the end inside, or stay as far from the one outside.
-#define NEAREST_CUT 1e-4f
-
-float surface_cut(float inside, float outside) {
+float surface_cut(float inside, float outside, float nearest) {
     float t = inside / (inside - outside);
-    return t < NEAREST_CUT ? 0 : t > 1 - NEAREST_CUT ? 1 - NEAREST_CUT : t;
+    return t < nearest ? 0 : t > 1 - nearest ? 1 - nearest : t;
+}
+
+int surface_fan(const float level[3], float nearest) {
+    for (int outside = 0; outside < 3; outside++) {
+        int a = (outside + 1) % 3, b = (outside + 2) % 3;
+        if (level[outside] >= 0 || level[a] < 0 || level[b] < 0) continue;
+        float cut_a = surface_cut(level[a], level[outside], nearest);
+        return cut_a < surface_cut(level[b], level[outside], nearest) ? b : a;
+    }
+    return 0;
 }
 
 typedef struct Sample {
@@ -83,7 +89,7 @@ static Sample sample_cut(const AblatePlan *plan, const Shell *shell, const State
     bool first_inside = plan->level[ends[0]] >= 0;
     uint32_t inside = ends[first_inside ? 0 : 1], outside = ends[first_inside ? 1 : 0];
     Sample a = sample_particle(shell, state, inside), b = sample_particle(shell, state, outside);
-    return mix_samples(&a, &b, surface_cut(plan->level[inside], plan->level[outside]));
+    return mix_samples(&a, &b, surface_cut(plan->level[inside], plan->level[outside], SURFACE_NEAREST));
 }
 
 static Sample sample_key(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key) {

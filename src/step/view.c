@@ -68,10 +68,19 @@ SingeCensus singe_sim_census(const SingeSim *sim) {
     return census;
 }
 
+/// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
+static float bulge_most(const SingeSim *sim) {
+    float cell = INFINITY;
+    if (!sim->def.contact.enabled) return 0;
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
+    return 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell);
+}
+
 SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
-    SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL};
+    SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
+                            bulge_most(sim)};
     if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
     uint8_t *near;
     if (!NEW(&sim->memory, near, sim->shell.vertex_count))

@@ -45,9 +45,10 @@ static void set_level(Drawing *d, uint32_t particle, float level) {
 
 /// Levels of about -0.1 to 0.15, smooth over some cells or not at all.
 static void set_random_levels(Drawing *d, uint32_t seed) {
+    const float scale = 0.4f / d->sheet->shell.sheets[0].cell_size;
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) {
         const float *p = d->sheet->shell.rest_position[i];
-        float wave = random_noise(0.4f * p[0], 0.4f * p[1], 0, seed) - 0.4f;
+        float wave = random_noise(scale * p[0], scale * p[1], 0, seed) - 0.4f;
         float rough = random_unit(random_hash(i, seed, 0, 0)) - 0.4f;
         set_level(d, i, 0.25f * (seed & 1 ? wave : rough));
     }
@@ -197,6 +198,67 @@ static void bent_sheets_are_drawn_round(void **unused) {
         assert_true(outwards > 0.99f);
     }
     finish(d);
+}
+
+static Vec doubled_normal(const SingeSurface *s, uint32_t t) {
+    Vec p = vec_load(s->position[s->triangles[t][0]]), q = vec_load(s->position[s->triangles[t][1]]);
+    return vec_cross(vec_sub(q, p), vec_sub(vec_load(s->position[s->triangles[t][2]]), p));
+}
+
+/// Far from the origin floats lie 0.5 um apart, wherever the level cuts fine sides.
+static void no_triangle_is_lost_to_rounding(void **unused) {
+    (void)unused;
+    const Vec normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
+    for (uint32_t seed = 0; seed < 12; seed++) {
+        Drawing *d = drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
+        set_random_levels(d, seed);
+        for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
+            const float *rest = d->sheet->shell.rest_position[v];
+            Vec p = vec_mad(vec_mad(vec(5, -6, -7), along, rest[0]), up, rest[1]);
+            vec_store(d->sheet->state.dynamics.position[v], p);
+        }
+        draw(d);
+        const SingeSurface *s = &d->surface;
+        float thinnest = 1;
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            float longest = 0;
+            for (int i = 0; i < 3; i++) {
+                Vec p = vec_load(s->position[s->triangles[t][i]]), q = vec_load(s->position[s->triangles[t][(i + 1) % 3]]);
+                longest = fmaxf(longest, vec_length(vec_sub(q, p)));
+            }
+            thinnest = fminf(thinnest, fabsf(vec_dot(doubled_normal(s, t), normal)) / longest);
+        }
+        assert_true(s->fine_triangle_count > 500);
+        assert_true(thinnest > 5e-6f);
+        finish(d);
+    }
+}
+
+/// However crumpled the sheet is, its fine triangles face as they would on flat cells, and leave these by `bulge_most`.
+static void crumpled_sheets_are_not_turned_over(void **unused) {
+    (void)unused;
+    for (uint32_t seed = 0; seed < 8; seed++) {
+        Drawing *round = drawing(12, 9, 1, 0.1f, 0), *straight = drawing(12, 9, 1, 0.1f, 0);
+        uint8_t flat[130];
+        memset(flat, 1, sizeof flat);
+        for (uint32_t v = 0; v < round->sheet->shell.vertex_count; v++)
+            for (int k = 0; k < 3; k++) {
+                float off = (float)(seed % 4 + 1) * 0.4f * (random_unit(random_hash(v, seed, (uint32_t)k, 3)) - 0.5f);
+                round->sheet->state.dynamics.position[v][k] += off, straight->sheet->state.dynamics.position[v][k] += off;
+            }
+        set_random_levels(round, seed), set_random_levels(straight, seed);
+        straight->detail.flat = flat, round->detail.bulge_most = seed & 1 ? 0.06f : 0;
+        draw(round), draw(straight);
+        const SingeSurface *s = &round->surface, *plain = &straight->surface;
+        assert_int_equal(s->triangle_count, plain->triangle_count);
+        for (uint32_t t = 0; t < s->triangle_count; t++)
+            assert_true(vec_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
+        float farthest = 0;
+        for (uint32_t v = 0; v < s->vertex_count; v++)
+            farthest = fmaxf(farthest, vec_length(vec_sub(vec_load(s->position[v]), vec_load(plain->position[v]))));
+        assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
+        finish(round), finish(straight);
+    }
 }
 
 static void whole_sheets_are_drawn_coarsely(void **unused) {
@@ -487,6 +549,8 @@ int main(void) {
         cmocka_unit_test(random_levels_leave_no_cracks),
         cmocka_unit_test(linear_fields_are_exact),
         cmocka_unit_test(bent_sheets_are_drawn_round),
+        cmocka_unit_test(no_triangle_is_lost_to_rounding),
+        cmocka_unit_test(crumpled_sheets_are_not_turned_over),
         cmocka_unit_test(whole_sheets_are_drawn_coarsely),
         cmocka_unit_test(no_direction_is_preferred),
         cmocka_unit_test(what_is_gone_stays_gone),
