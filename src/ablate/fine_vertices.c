@@ -15,12 +15,22 @@
 //   where a triangle at the corner leans away from its normal: within the triangle the terms move points by a share of
 //   1/2 sin^2 of that angle, and would turn fine triangles over;
 //   where one is thin, as when a cell collapses;
-//   where another surface is near, at once.
+//   where another surface is near: at once, and for the other lip of a tear as it comes nearer.
+//
+// Lips lie at one place until they part. What is drawn of them is cut otherwise on either side, so their corners are
+// drawn back from each other, by a small share of a cell's side.
 #include "ablate/surface_fine.h"
+
+#include <string.h>
 
 #define BULGE 0.5f
 /// How far a vertex leaves its triangle at most, of the cell's side: where it is crumpled.
 #define BULGE_MOST 0.1f
+/// How far the corners of lips at one place are drawn back, of the cell's side: less than contact keeps free.
+#define LIP 1e-3f
+/// Lips this near are at one place; and apart, when their corners have their terms again.
+#define LIPS_CLOSED 1e-2f
+#define LIPS_OPEN 0.2f
 
 static Vec centre_of(const uint32_t at[4], const float (*field)[4]) {
     return vec_scale(vec_add(vec_add(vec_load(field[at[0]]), vec_load(field[at[1]])),
@@ -38,10 +48,49 @@ static Vec blend(const uint32_t at[4], const FinePlace *place, const float (*fie
     return weigh(corner, place->weight);
 }
 
+/// 0 at `low` and below, 1 at `high`.
+static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
+
+/// Towards the middle of the cells that a vertex has.
+static Vec drawn_back(const Fine *fine, uint32_t vertex, float length) {
+    const Shell *shell = fine->shell;
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    Vec place = vec_load(position[vertex]), sum = {0, 0, 0};
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
+        sum = vec_add(sum, vec_sub(centre_of(shell->cells[shell->fan[k]], position), place));
+    return vec_mad(place, vec_unit(sum), length);
+}
+
+/// Two vertices that were one.
+static void part_lips(const Fine *fine, const uint32_t lip[2]) {
+    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float side = fine->shell->sheets[fine->shell->matter.sheet[lip[0]]].cell_size;
+    float apart = vec_length(vec_sub(vec_load(position[lip[0]]), vec_load(position[lip[1]])));
+    for (int i = 0; i < 2; i++) {
+        if (apart < LIPS_CLOSED * side) vec_store(fine->corner[lip[i]], drawn_back(fine, lip[i], LIP * side));
+        fine->share[lip[i]] = fminf(fine->share[lip[i]], fade(apart, LIPS_CLOSED * side, LIPS_OPEN * side));
+    }
+}
+
+/// Where corners are drawn, and what of their terms they keep: those that have another surface near nothing.
+static void place_corners(const Fine *fine) {
+    const Shell *shell = fine->shell;
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    const uint32_t spare = blue->count - shell->edge_spare_count;
+    memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        fine->share[i] = fine->flat && i < shell->vertex_count && fine->flat[i] ? 0 : 1;
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        for (int end = 0; end < 2; end++) {
+            const uint32_t lip[2] = {blue->ends[spare + k][end], blue->ends[shell->edge_origin[k]][end]};
+            if (lip[0] != lip[1]) part_lips(fine, lip);
+        }
+}
+
 /// Unit normals of corners and virtual centres: of the triangles around them, by their areas.
 static void gather_normals(const Fine *fine) {
     const Shell *shell = fine->shell;
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float (*position)[4] = (const float (*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         const uint32_t *at = shell->cells[c];
@@ -58,9 +107,6 @@ static void gather_normals(const Fine *fine) {
         vec_store(fine->normal[i], vec_unit(vec_load(fine->normal[i])));
 }
 
-/// 0 at `low` and below, 1 at `high`.
-static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
-
 /// How much of its corners' terms a triangle with this normal, 2 A n, and this square of its longest edge allows.
 static float allowed(Vec doubled, float longest, Vec normal) {
     float area = vec_length(doubled);
@@ -68,12 +114,10 @@ static float allowed(Vec doubled, float longest, Vec normal) {
     return fade(vec_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
-/// The share of their terms that corners and virtual centres keep. The normals are in place.
+/// Lessens the shares where triangles lean away from the normals or are thin. The normals are in place.
 static void gather_shares(const Fine *fine) {
     const Shell *shell = fine->shell;
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
-    for (uint32_t i = 0; i < shell->particle_count; i++)
-        fine->share[i] = fine->flat && i < shell->vertex_count && fine->flat[i] ? 0 : 1;
+    const float (*position)[4] = (const float (*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         const uint32_t *at = shell->cells[c], middle = shell_centre(shell, c);
@@ -111,7 +155,7 @@ static Vec bulge(const Fine *fine, Vec flat, int count, const uint32_t particle[
 }
 
 static void place_centres(const Fine *fine) {
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float (*position)[4] = (const float (*)[4])fine->corner;
     const float quarters[4] = {0.25f, 0.25f, 0.25f, 0.25f};
     for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
         const uint32_t *at = fine->shell->cells[c];
@@ -123,7 +167,7 @@ static void place_centres(const Fine *fine) {
 
 /// Position and normal.
 static void place_vertex(const Fine *fine, const FinePlace *place, const uint32_t particle[3], uint32_t v) {
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float (*position)[4] = (const float (*)[4])fine->corner;
     const Vec corner[3] = {vec_load(position[particle[0]]), vec_load(position[particle[1]]),
                            vec_load(fine->centre[place->cell])};
     Vec normal[3], flat = weigh(corner, place->weight);
@@ -175,6 +219,7 @@ static void fill_range(void *context, int begin, int end) {
 }
 
 void fine_vertices(const Fine *fine) {
+    place_corners(fine);
     gather_normals(fine);
     gather_shares(fine);
     place_centres(fine);
