@@ -68,21 +68,28 @@ static inline SheetSource grid_source(Memory *memory, uint32_t nx, uint32_t ny, 
     return source;
 }
 
-/// `sheets` equal grids side by side, a metre apart.
-static inline BurningSheet *burning_sheets(uint32_t sheets, uint32_t nx, uint32_t ny, float cell,
-                                           const SingeMaterialDef *material, float drop_pieces_below) {
+/// `sheets` equal grids side by side, a metre apart, with vertices in reserve for tears.
+static inline BurningSheet *burning_spare_sheets(uint32_t sheets, uint32_t nx, uint32_t ny, float cell,
+                                                 const SingeMaterialDef *material, float drop_pieces_below,
+                                                 uint32_t spares) {
     BurningSheet *b = calloc(1, sizeof *b);
     SheetSource sources[4];
     b->memory = memory_make((SingeAllocator){0});
     b->nx = nx, b->ny = ny;
     for (uint32_t k = 0; k < sheets; k++)
         sources[k] = grid_source(&b->memory, nx, ny, cell, (float)k, material, drop_pieces_below);
+    for (uint32_t k = 0; k < sheets; k++) sources[k].sheet.spare_count = spares;
     assert_int_equal(shell_create(&b->memory, sources, sheets, &b->shell, &b->error), SINGE_OK);
     assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
     for (uint32_t k = 0; k < sheets; k++) sheet_source_free(&b->memory, &sources[k]);
     b->events.capacity = 4096;
     b->events.items = calloc(b->events.capacity, sizeof *b->events.items);
     return b;
+}
+
+static inline BurningSheet *burning_sheets(uint32_t sheets, uint32_t nx, uint32_t ny, float cell,
+                                           const SingeMaterialDef *material, float drop_pieces_below) {
+    return burning_spare_sheets(sheets, nx, ny, cell, material, drop_pieces_below, 0);
 }
 
 static inline BurningSheet *burning_sheet(uint32_t nx, uint32_t ny, float cell, const SingeMaterialDef *material) {

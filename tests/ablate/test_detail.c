@@ -4,6 +4,7 @@
 #include "ablate/drawn_mesh.h"
 #include "ablate/surface_fine.h"
 #include "base/random.h"
+#include "shell/split.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -258,6 +259,52 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
             farthest = fmaxf(farthest, vec_length(vec_sub(vec_load(s->position[v]), vec_load(plain->position[v]))));
         assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
         finish(round), finish(straight);
+    }
+}
+
+/// Tears the sheet along y = row from its border on, up to `length` cells far; the lips stay at one place.
+static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
+    BurningSheet *b = d->sheet;
+    for (uint32_t i = 0; i < length; i++) {
+        ShellSplit split = {.vertex = corner_at(b, i, row)};
+        Fan fan;
+        split_fan(&b->shell, split.vertex, &fan);
+        for (int k = 0; k < fan.count; k++) split.cells |= (uint32_t)(fan.cell[k] >= row * b->nx) << k;
+        assert_true(split_is_possible(&b->shell, &fan, &split));
+        uint32_t spare = split_vertex(&b->shell, &fan, &split).spare;
+        memcpy(b->state.dynamics.position[spare], b->state.dynamics.position[split.vertex], 16);
+        b->state.burn.mass[spare] = b->state.burn.mass[split.vertex];
+        b->state.ablate.particle_flags[spare] = SINGE_ALIVE;
+        b->shell.split_count++;
+    }
+}
+
+/// The level cuts either lip otherwise; what is drawn of the one ends before the other.
+static void lips_at_one_place_are_drawn_apart(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        Drawing *d = calloc(1, sizeof *d);
+        d->sheet = burning_spare_sheets(1, 12, 9, 1, &material, 0, 8);
+        d->detail = (SurfaceDetail){.size = 0.1f, .raggedness = 0.4f, .seed = seed};
+        assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
+        set_random_levels(d, seed);
+        tear_along(d, 4, 7);
+        draw(d);
+        const SingeSurface *s = &d->surface;
+        int ends[2] = {0, 0};
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            float middle = 0;
+            for (int i = 0; i < 3; i++) middle += s->rest_position[s->triangles[t][i]][1] / 3;
+            for (int i = 0; i < 3; i++) {
+                const float *rest = s->rest_position[s->triangles[t][i]], *p = s->position[s->triangles[t][i]];
+                if (fabsf(rest[1] - 4) > 1e-5f || rest[0] > 6.9f) continue;
+                assert_true(middle > 4 ? p[1] > 4 + 5e-5f : p[1] < 4 - 5e-5f);
+                ends[middle > 4]++;
+            }
+        }
+        assert_true(ends[0] > 5 && ends[1] > 5);
+        finish(d);
     }
 }
 
@@ -551,6 +598,7 @@ int main(void) {
         cmocka_unit_test(bent_sheets_are_drawn_round),
         cmocka_unit_test(no_triangle_is_lost_to_rounding),
         cmocka_unit_test(crumpled_sheets_are_not_turned_over),
+        cmocka_unit_test(lips_at_one_place_are_drawn_apart),
         cmocka_unit_test(whole_sheets_are_drawn_coarsely),
         cmocka_unit_test(no_direction_is_preferred),
         cmocka_unit_test(what_is_gone_stays_gone),
