@@ -3,12 +3,21 @@
 // A split cell's triangle is k^2 fine ones. Another cell's triangle is one, or, where its side is split for the cell
 // across, a fan of k from the cell's centre. Each is clipped as in surface.c, once to count and once to draw; a fine
 // side's cut is made once and shared, on the sides of cells through `cuts`.
+//
+// A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn there
+// has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
+// centre at rest and now:
+//
+//   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
 #include "ablate/surface_fine.h"
 
 #include <string.h>
 
 /// surface_cut of a fine side: a few micrometres, which floats can tell apart some metres from the origin, and nobody sees.
 #define NEAREST 0.03125f
+
+/// How many times as long as at rest it may be.
+#define TORN 1.6f
 
 typedef struct Marching {
     Fine *fine;
@@ -96,6 +105,35 @@ static bool side_is_split(const Fine *fine, uint32_t cell, int side) {
     return fine->side_cut[blue + 1] - fine->side_cut[blue] > 1;
 }
 
+// ---- what has been torn
+
+/// Products of a cell's triangle's sides from its virtual centre.
+static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
+    Vec centre = {0, 0, 0};
+    for (int i = 0; i < 4; i++) centre = vec_mad(centre, vec_load(field[at[i]]), 0.25f);
+    Vec a = vec_sub(vec_load(field[at[side]]), centre), b = vec_sub(vec_load(field[at[(side + 1) & 3]]), centre);
+    product[0] = vec_dot(a, a), product[1] = vec_dot(a, b), product[2] = vec_dot(b, b);
+}
+
+static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
+    const CellSprings *springs = &fine->shell->cell_springs[cell];
+    uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
+    for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
+    return !left;
+}
+
+/// Whether a cell's triangle is left out.
+static bool is_torn(const Fine *fine, uint32_t cell, int side) {
+    if (!has_lost_a_spring(fine, cell)) return false;
+    float rest[3], now[3];
+    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->shell->rest_position, rest);
+    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->state->dynamics.position, now);
+    float det = rest[0] * rest[2] - rest[1] * rest[1];
+    float half_trace = 0.5f * (rest[2] * now[0] - 2 * rest[1] * now[1] + rest[0] * now[2]) / det;
+    float product = (now[0] * now[2] - now[1] * now[1]) / det;
+    return half_trace + sqrtf(fmaxf(0, half_trace * half_trace - product)) > TORN * TORN;
+}
+
 // ---- a cell that is not split
 
 static void march_coarse(Marching *march, uint32_t cell) {
@@ -104,6 +142,7 @@ static void march_coarse(Marching *march, uint32_t cell) {
     for (int side = 0; side < 4; side++) {
         int parts = side_is_split(fine, cell, side) ? fine_splits(fine, cell) : 1, next = (side + 1) & 3;
         uint32_t spoke[FINE_SPLITS_MAX] = {0}; // within a fan
+        if (is_torn(fine, cell, side)) continue;
         for (int i = 0; i < parts; i++) {
             uint32_t point[3] = {fine_point(fine, cell, side, parts, i, 0),
                                  fine_point(fine, cell, side, parts, i + 1, 0), shell_centre(fine->shell, cell)};
@@ -164,6 +203,7 @@ static void march_fine(Marching *march, uint32_t cell) {
     FineCuts cuts;
     for (int side = 0; side < 4; side++) {
         int next = (side + 1) & 3;
+        if (is_torn(march->fine, cell, side)) continue;
         memset(&cuts, 0, sizeof cuts);
         for (int i = 0; i < splits; i++) { // what the triangle shares with others goes in, and out again
             cuts.along[0][i] = *side_cut(march->fine, cell, side, splits, i);

@@ -9,8 +9,8 @@
 // which is p at the corners and on flat sheets, and depends on a side's ends alone along the side; 1/2 lays it on a
 // circle through the corners. So do virtual centres, from the cell's four corners.
 //
-// What does not cross as it is must not cross as it is drawn. So no vertex goes farther than `most`, a tenth of the cell's
-// side and less than half the contact thickness, and corners' terms fade
+// What does not cross as it is must not cross as it is drawn. So no vertex goes farther than a tenth of the
+// shortest side and less than half the contact thickness, and corners' terms fade
 //
 //   where a triangle at the corner leans away from its normal: within the triangle the terms move points by a share of
 //   1/2 sin^2 of that angle, and would turn fine triangles over;
@@ -24,7 +24,7 @@
 #include <string.h>
 
 #define BULGE 0.5f
-/// How far a vertex leaves its triangle at most, of the cell's side: where it is crumpled.
+/// How far a vertex leaves its triangle at most, of the shortest side at its corners: where it is crumpled.
 #define BULGE_MOST 0.1f
 /// How far the corners of lips at one place are drawn back, of the cell's side: less than contact keeps free.
 #define LIP 1e-3f
@@ -80,6 +80,7 @@ static void place_corners(const Fine *fine) {
     memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
     for (uint32_t i = 0; i < shell->particle_count; i++)
         fine->share[i] = fine->flat && i < shell->vertex_count && fine->flat[i] ? 0 : 1;
+    for (uint32_t v = 0; v < shell->vertex_count; v++) fine->most[v] = fine->bulge_most;
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         for (int end = 0; end < 2; end++) {
             const uint32_t lip[2] = {blue->ends[spare + k][end], blue->ends[shell->edge_origin[k]][end]};
@@ -114,7 +115,8 @@ static float allowed(Vec doubled, float longest, Vec normal) {
     return fade(vec_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
-/// Lessens the shares where triangles lean away from the normals or are thin. The normals are in place.
+/// Lessens the shares where triangles lean away from the normals or are thin, and how far vertices may go to a part of
+/// the shortest side. The normals are in place.
 static void gather_shares(const Fine *fine) {
     const Shell *shell = fine->shell;
     const float (*position)[4] = (const float (*)[4])fine->corner;
@@ -131,24 +133,24 @@ static void gather_shares(const Fine *fine) {
                 float share = allowed(doubled, longest, vec_load(fine->normal[corner[k]]));
                 fine->share[corner[k]] = fminf(fine->share[corner[k]], share);
             }
+            for (int k = 0; k < 2; k++)
+                fine->most[corner[k]] = fminf(fine->most[corner[k]], BULGE_MOST * vec_length(side));
             if (fine->flat && fine->flat[at[i]]) fine->share[middle] = 0;
         }
     }
 }
 
-/// How far a vertex of a cell may go. `corner` are the ends of one of its sides.
-static float most_of(const Fine *fine, const Vec corner[2]) {
-    return fminf(BULGE_MOST * vec_length(vec_sub(corner[1], corner[0])), fine->bulge_most);
-}
-
-/// How far a place leaves the straight mean of `count` corners: the sum in the formula above.
+/// How far a place leaves the straight mean of `count` vertices: the sum in the formula above. The virtual centre, a
+/// further corner, has gone its own way.
 static Vec bulge(const Fine *fine, Vec flat, int count, const uint32_t particle[], const Vec corner[],
-                 const float weight[], float most) {
+                 const float weight[]) {
     Vec sum = {0, 0, 0};
+    float most = 0;
     for (int i = 0; i < count; i++) {
         Vec normal = vec_load(fine->normal[particle[i]]);
         float strength = BULGE * fine->share[particle[i]] * weight[i];
         sum = vec_mad(sum, normal, -strength * vec_dot(vec_sub(flat, corner[i]), normal));
+        if (shell_is_corner(fine->shell, particle[i])) most += weight[i] * fine->most[particle[i]];
     }
     float length = vec_length(sum);
     return length > most ? vec_scale(sum, most / length) : sum;
@@ -161,7 +163,7 @@ static void place_centres(const Fine *fine) {
         const uint32_t *at = fine->shell->cells[c];
         Vec corner[4], flat = centre_of(at, position);
         for (int i = 0; i < 4; i++) corner[i] = vec_load(position[at[i]]);
-        vec_store(fine->centre[c], vec_add(flat, bulge(fine, flat, 4, at, corner, quarters, most_of(fine, corner))));
+        vec_store(fine->centre[c], vec_add(flat, bulge(fine, flat, 4, at, corner, quarters)));
     }
 }
 
@@ -172,9 +174,8 @@ static void place_vertex(const Fine *fine, const FinePlace *place, const uint32_
                            vec_load(fine->centre[place->cell])};
     Vec normal[3], flat = weigh(corner, place->weight);
     for (int i = 0; i < 3; i++) normal[i] = vec_load(fine->normal[particle[i]]);
-    float most = (1 - place->weight[2]) * most_of(fine, corner); // with what the centre has gone
     Vec unit = vec_unit(weigh(normal, place->weight));
-    vec_store(fine->surface->position[v], vec_add(flat, bulge(fine, flat, 3, particle, corner, place->weight, most)));
+    vec_store(fine->surface->position[v], vec_add(flat, bulge(fine, flat, 3, particle, corner, place->weight)));
     vec_store(fine->surface->normal[v], vec_dot(unit, unit) > 0.5f ? unit : vec(0, 0, 1));
 }
 

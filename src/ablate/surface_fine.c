@@ -31,7 +31,8 @@ static bool allocate(Fine *fine) {
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
     return good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->share, shell->particle_count) &&
-           NEW(memory, fine->corner, shell->vertex_count) && NEW(memory, fine->centre, cells) &&
+           NEW(memory, fine->most, shell->vertex_count) && NEW(memory, fine->corner, shell->vertex_count) &&
+           NEW(memory, fine->centre, cells) &&
            NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
            NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) && NEW(memory, fine->cell_point, cells) &&
            NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
@@ -51,6 +52,7 @@ static void release(Fine *fine) {
     }
     FREE(memory, fine->normal, shell->particle_count);
     FREE(memory, fine->share, shell->particle_count);
+    FREE(memory, fine->most, shell->vertex_count);
     FREE(memory, fine->corner, shell->vertex_count);
     FREE(memory, fine->centre, cells);
     FREE(memory, fine->cell_value, cells);

@@ -82,6 +82,7 @@ typedef struct Fine {
     uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
     float (*normal)[3];      ///< [particles] unit, or 0
+    float *most;             ///< [vertices] m, how far they go there
     float (*corner)[4];      ///< [vertices] m, where they are drawn
     float *share;            ///< [particles] of their terms that they keep where vertices leave flat triangles
     float (*centre)[3];      ///< [cells] m, where the virtual centre is drawn

@@ -317,14 +317,16 @@ class Verify(Case):
 
     def test_rounding(self):
         """An edge of the size of its coordinates' last bits is as long as they are rounded to, and not stretched."""
-        def sliver(s, bits):
-            for x, rest, y in ((1, 1, 1), (1 + bits * 2**-23, 1 + 2**-23, 1), (1, 1, 1.01)):
+        def sliver(s, bits, rest_bits=1):
+            for x, rest, y in ((1, 1, 1), (1 + bits * 2**-23, 1 + rest_bits * 2**-23, 1), (1, 1, 1.01)):
                 s.vertices.append(Surface.vertex([x, y, 1]))
                 s.vertices[-1]["rest_x"] = rest
             s.triangles[-1] = [len(s.vertices) - k for k in (3, 2, 1)]
         def rounded(s): sliver(s, 3)
         def stretched(s): sliver(s, 12)
+        def short(s): sliver(s, 850, 420) # 50 um, by 1 % more than is allowed
         self.finds("stretched_edges", stretched, "mm at rest")
+        self.finds("stretched_edges", short, "mm at rest")
         self.damage(rounded)
         _, _, rows = self.verify()
         self.assertEqual(sum(row["stretched_edges"] for row in rows), 0)
