@@ -30,13 +30,13 @@ static bool allocate(Fine *fine) {
     for (int f = 0; f < SPLINE_COUNT; f++)
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
-    return good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->share, shell->particle_count) &&
-           NEW(memory, fine->most, shell->vertex_count) && NEW(memory, fine->corner, shell->vertex_count) &&
-           NEW(memory, fine->centre, cells) &&
-           NEW(memory, fine->cell_value, cells) && NEW(memory, fine->low, cells) &&
-           NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) && NEW(memory, fine->cell_point, cells) &&
-           NEW(memory, fine->near, cells) && NEW(memory, fine->side_point, sides) &&
-           NEW(memory, fine->side_owner, sides) && NEW(memory, fine->side_cut, sides + 1);
+    good = good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->share, shell->particle_count) &&
+           NEW(memory, fine->most, shell->vertex_count) && NEW(memory, fine->corner, shell->vertex_count);
+    return good && NEW(memory, fine->centre, cells) && NEW(memory, fine->cell_value, cells) &&
+           NEW(memory, fine->low, cells) && NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) &&
+           NEW(memory, fine->cell_point, cells) && NEW(memory, fine->near, cells) &&
+           NEW(memory, fine->side_point, sides) && NEW(memory, fine->side_owner, sides) &&
+           NEW(memory, fine->side_cut, sides + 1);
 }
 
 static void release(Fine *fine) {

@@ -224,8 +224,9 @@ static void no_triangle_is_lost_to_rounding(void **unused) {
         for (uint32_t t = 0; t < s->triangle_count; t++) {
             float longest = 0;
             for (int i = 0; i < 3; i++) {
-                Vec p = vec_load(s->position[s->triangles[t][i]]), q = vec_load(s->position[s->triangles[t][(i + 1) % 3]]);
-                longest = fmaxf(longest, vec_length(vec_sub(q, p)));
+                const uint32_t *at = s->triangles[t];
+                Vec side = vec_sub(vec_load(s->position[at[(i + 1) % 3]]), vec_load(s->position[at[i]]));
+                longest = fmaxf(longest, vec_length(side));
             }
             thinnest = fminf(thinnest, fabsf(vec_dot(doubled_normal(s, t), normal)) / longest);
         }
@@ -242,18 +243,27 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
         Drawing *round = drawing(12, 9, 1, 0.1f, 0), *straight = drawing(12, 9, 1, 0.1f, 0);
         uint8_t flat[130];
         memset(flat, 1, sizeof flat);
-        for (uint32_t v = 0; v < round->sheet->shell.vertex_count; v++)
-            for (int k = 0; k < 3; k++) {
-                float off = (float)(seed % 4 + 1) * 0.4f * (random_unit(random_hash(v, seed, (uint32_t)k, 3)) - 0.5f);
-                round->sheet->state.dynamics.position[v][k] += off, straight->sheet->state.dynamics.position[v][k] += off;
-            }
+        for (uint32_t v = 0; v < round->sheet->shell.vertex_count; v++) {
+            float *p = round->sheet->state.dynamics.position[v];
+            p[0] *= seed < 4 ? 1 : 2.5f; // sides of different lengths
+            for (int k = 0; k < 3; k++)
+                p[k] += (float)(seed % 4 + 1) * 0.4f * (random_unit(random_hash(v, seed, (uint32_t)k, 3)) - 0.5f);
+            memcpy(straight->sheet->state.dynamics.position[v], p, 3 * sizeof *p);
+        }
         set_random_levels(round, seed), set_random_levels(straight, seed);
         straight->detail.flat = flat, round->detail.bulge_most = seed & 1 ? 0.06f : 0;
         draw(round), draw(straight);
         const SingeSurface *s = &round->surface, *plain = &straight->surface;
         assert_int_equal(s->triangle_count, plain->triangle_count);
-        for (uint32_t t = 0; t < s->triangle_count; t++)
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
             assert_true(vec_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
+            for (int i = 0; i < 3; i++) { // no step between triangles
+                uint32_t a = s->triangles[t][i], b = s->triangles[t][(i + 1) % 3];
+                Vec side = vec_sub(vec_load(s->position[b]), vec_load(s->position[a]));
+                Vec was = vec_sub(vec_load(plain->position[b]), vec_load(plain->position[a]));
+                assert_true(vec_length(vec_sub(side, was)) < 0.9f * vec_length(was));
+            }
+        }
         float farthest = 0;
         for (uint32_t v = 0; v < s->vertex_count; v++)
             farthest = fmaxf(farthest, vec_length(vec_sub(vec_load(s->position[v]), vec_load(plain->position[v]))));
@@ -306,6 +316,33 @@ static void lips_at_one_place_are_drawn_apart(void **unused) {
         assert_true(ends[0] > 5 && ends[1] > 5);
         finish(d);
     }
+}
+
+/// A cell's triangles that have been pulled apart are left out once springs of it have burnt, and not before.
+static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
+    (void)unused;
+    Drawing *d = drawing(6, 6, 1, 0.2f, 0);
+    const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
+    set_linear_fields(d, (Linear){0.03, 0.07, -0.05});
+    draw(d);
+    uint32_t whole = d->surface.triangle_count;
+    d->sheet->state.dynamics.position[corner][0] -= 3;
+    draw(d);
+    assert_int_equal(d->surface.triangle_count, whole);
+    for (int k = 0; k < 4; k++) {
+        uint32_t other = d->sheet->shell.fan[d->sheet->shell.fan_first[corner] + (uint32_t)k];
+        d->sheet->state.ablate.spring_flags[SINGE_BLUE][d->sheet->shell.cell_springs[other].blue[0]] = 0;
+    }
+    draw(d);
+    assert_true(d->surface.triangle_count <= whole - 8);
+    for (uint32_t t = 0; t < d->surface.triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = d->surface.triangles[t][i], b = d->surface.triangles[t][(i + 1) % 3];
+            Vec now = vec_sub(vec_load(d->surface.position[b]), vec_load(d->surface.position[a]));
+            Vec rest = vec_sub(vec_load(d->surface.rest_position[b]), vec_load(d->surface.rest_position[a]));
+            assert_true(vec_length(now) < 2 * vec_length(rest));
+        }
+    finish(d);
 }
 
 static void whole_sheets_are_drawn_coarsely(void **unused) {
@@ -599,6 +636,7 @@ int main(void) {
         cmocka_unit_test(no_triangle_is_lost_to_rounding),
         cmocka_unit_test(crumpled_sheets_are_not_turned_over),
         cmocka_unit_test(lips_at_one_place_are_drawn_apart),
+        cmocka_unit_test(what_a_lost_corner_pulls_apart_is_left_out),
         cmocka_unit_test(whole_sheets_are_drawn_coarsely),
         cmocka_unit_test(no_direction_is_preferred),
         cmocka_unit_test(what_is_gone_stays_gone),
