@@ -155,8 +155,6 @@ class Letter(Example):
 
 class LetterHanging(Example):
     NAME = "letter-hanging"
-    # threads of char; slivers of the drawn edge, of pieces that have fallen out of the picture
-    FAULTS = {"stretched_edges": 12, "crossings": 2, "degenerate_triangles": 60}
 
     def test_hangs_and_burns(self):
         self.common()
@@ -386,7 +384,6 @@ class Shirt(Example):
     """A garment of triangles falls onto a dummy and burns on it."""
 
     NAME = "shirt"
-    FAULTS = {"stretched_edges": 80} # at the tips of what has charred
 
     def test_falls_and_burns(self):
         self.common()
