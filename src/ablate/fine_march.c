@@ -4,8 +4,8 @@
 // across, a fan of k from the cell's centre. Each is clipped as in surface.c, once to count and once to draw; a fine
 // side's cut is made once and shared, on the sides of cells through `cuts`.
 //
-// A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn there
-// has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
+// A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn
+// there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
 // centre at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'

@@ -7,8 +7,8 @@
 // m' >= 0 is inside. Each triangle is clipped into a polygon of keys (AblatePlan), one key per vertex that
 // neighbouring triangles share, so that they meet without cracks; then the keys in use are numbered in
 // order: corners in the input's order, virtual centres, cuts. A cut that falls on its end inside is that
-// end, and polygons with fewer than three corners left vanish. Cuts keep away from ends, and quadrilaterals are cut along
-// the diagonal that makes the rounder triangles, so that none is as thin as its vertices are rounded.
+// end, and polygons with fewer than three corners left vanish. Cuts keep away from ends, and quadrilaterals are cut
+// along the diagonal that makes the rounder triangles, so that none is as thin as its vertices are rounded.
 #include "ablate/ablate_plan.h"
 #include "base/vec.h"
 

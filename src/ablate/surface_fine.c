@@ -30,7 +30,8 @@ static bool allocate(Fine *fine) {
     for (int f = 0; f < SPLINE_COUNT; f++)
         good = good && NEW(memory, fine->splines[f].edge, sides) &&
                NEW(memory, fine->splines[f].corner, shell->vertex_count);
-    good = good && NEW(memory, fine->normal, shell->particle_count) && NEW(memory, fine->share, shell->particle_count) &&
+    good = good && NEW(memory, fine->normal, shell->particle_count) &&
+           NEW(memory, fine->share, shell->particle_count) &&
            NEW(memory, fine->most, shell->vertex_count) && NEW(memory, fine->corner, shell->vertex_count);
     return good && NEW(memory, fine->centre, cells) && NEW(memory, fine->cell_value, cells) &&
            NEW(memory, fine->low, cells) && NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) &&
