@@ -2,9 +2,16 @@
 //
 // A vertex tears where the largest principal value N_1 of the line force exceeds its strength and no vertex of its
 // cells is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open
-// there already: those with the most line force across them for their strength. The tear so runs along the sides of
-// cells, roughly across the direction of N_1, an edge a step; while tears run in a piece, no other begins there, and of
-// those that could begin, one does.
+// there already. While tears run in a piece, no other begins there, and of those that could begin, one does.
+//
+// A tear is to run along t, across the direction of N_1, but can along sides of cells only, an edge a step. So of the
+// edges e that lead forwards one is drawn by lot,
+//
+//   weight = (e . t) (S_least/S_e)^4
+//
+// with S_e the mean strength of an edge's ends: on square cells the mean of many edges so has the direction t whatever
+// the cells', and where the sheet is weaker the tear goes there. The lots are multiples of the golden section, one a
+// split: they fall as evenly as can be, so that a tear keeps near its line.
 //
 // What line forces there can be. A sheet under tension T vibrates across itself at 4 T/(rho s^2) at most, in (1/s)^2,
 // which substeps of h follow as long as that is below about 1/h^2. Projections hold a sheet that is pulled apart
@@ -15,6 +22,7 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
 // it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
 // strengths are then lowered, all by one factor, so that the least is half of this.
+#include "base/random.h"
 #include "tear/plan.h"
 
 #include <math.h>
@@ -26,8 +34,8 @@ static const float STRETCH_MOST = 1.03f; ///< paper breaks at 2 to 4 %
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
 
-/// The least line force across an edge that tears, of N_1: half where N_1 pulls along the diagonal of square cells.
-static const float EDGE_LEAST = 0.3f;
+/// The least line force across an edge that tears, of N_1: that of edges within 10 degrees of its direction.
+static const float EDGE_LEAST = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
     const Sheet *sheet = &shell->sheets[index];
@@ -147,13 +155,45 @@ static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
     return shell->cells[fan->cell[k]][(fan->corner[k] + 1) & 3];
 }
 
-/// Line force across an edge over its strength, in TearPull's terms; 0 where it is too small a part of N_1.
-static float edge_pull(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex, uint32_t end,
-                       Vec normal, Vec *along) {
-    *along = vec_unit(vec_sub(vec_load(shell->rest_position[end]), vec_load(shell->rest_position[vertex])));
-    float across = tensor_across(pull->force, vec_unit(vec_cross(normal, *along)));
-    if (!(across > EDGE_LEAST * tensor_across(pull->force, pull->across))) return 0;
-    return across / (tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end));
+/// An edge of a vertex along which it may tear.
+typedef struct TearEdge {
+    Vec along;      ///< from the vertex, at rest
+    float strength; ///< N/m, both ends'; INFINITY where too little of N_1 is across
+    bool solid;     ///< cells on both sides are left
+} TearEdge;
+
+static bool is_left(const State *state, const Fan *fan, int k) {
+    return state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE;
+}
+
+static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
+                          uint32_t vertex, uint32_t end, Vec normal) {
+    TearEdge edge = {.strength = INFINITY};
+    edge.along = vec_unit(vec_sub(vec_load(shell->rest_position[end]), vec_load(shell->rest_position[vertex])));
+    float across = tensor_across(pull->force, vec_unit(vec_cross(normal, edge.along)));
+    if (across > EDGE_LEAST * tensor_across(pull->force, pull->across))
+        edge.strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
+    return edge;
+}
+
+/// One of the edges [begin, count) by which a tear goes on in direction `way`; -1 where there is none. `lot` is 0 to 1.
+static int pick_edge(const TearEdge *edges, int begin, int count, Vec way, float lot) {
+    float weight[SPLIT_FAN], least = INFINITY, sum = 0;
+    for (int j = begin; j < count; j++)
+        if (edges[j].solid && vec_dot(edges[j].along, way) > 0) least = fminf(least, edges[j].strength);
+    if (isinf(least)) return -1;
+    for (int j = begin; j < count; j++) {
+        float weaker = least / edges[j].strength;
+        weight[j] = edges[j].solid ? fmaxf(0, vec_dot(edges[j].along, way)) * weaker * weaker * weaker * weaker : 0;
+        sum += weight[j];
+    }
+    int last = -1;
+    for (int j = begin; j < count; j++) {
+        if (weight[j] <= 0) continue;
+        last = j;
+        if ((lot -= weight[j] / sum) < 0) break;
+    }
+    return last;
 }
 
 /// The cells [first, last) of the turn, or the others where those are fewer.
@@ -170,35 +210,54 @@ static bool any_alive(const State *state, const Fan *fan, uint32_t cells, bool t
     return false;
 }
 
-/// Which cells of a vertex are pulled off the others the hardest; 0 where no edge is pulled at enough.
-static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
-                             const Fan *fan) {
-    Turn turn = turn_order(fan);
-    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
-    Vec normal = {0, 0, 0}, along[SPLIT_FAN];
+static Vec fan_normal(const Shell *shell, const Fan *fan) {
+    Vec normal = {0, 0, 0};
     for (int k = 0; k < fan->count; k++) {
         const uint32_t *corner = shell->cells[fan->cell[k]];
         Vec p[4];
         for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
         normal = vec_add(normal, vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
     }
-    float force[SPLIT_FAN];
-    int first = -1, second = -1;
-    for (int j = turn.closed ? 0 : 1; j < turn.count; j++) {
-        force[j] = edge_pull(plan, shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal, &along[j]);
-        if (force[j] > 0 && (first < 0 || force[j] > force[first])) first = j;
+    return vec_unit(normal);
+}
+
+/// Of what is open at a vertex, the edge that goes on the straightest from one that tears; -1 where nothing is.
+static int open_edge(const TearEdge *edges, int count, Vec way) {
+    int open = -1;
+    for (int j = 0; j < count; j++)
+        if (!edges[j].solid && (open < 0 || vec_dot(edges[j].along, way) < vec_dot(edges[open].along, way))) open = j;
+    return open;
+}
+
+/// Which cells of a vertex part from the others; 0 where no edge is pulled at enough.
+static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
+                            uint32_t vertex, const Fan *fan) {
+    Turn turn = turn_order(fan);
+    if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
+    const Vec normal = fan_normal(shell, fan);
+    TearEdge edges[SPLIT_FAN];
+    Vec forward = {0, 0, 0};
+    const int begin = turn.closed ? 0 : 1, count = turn.count;
+    for (int j = begin; j < count; j++) {
+        edges[j] = tear_edge(plan, shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal);
+        edges[j].solid = is_left(state, fan, turn.at[j]) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
+        if (edges[j].solid) forward = vec_add(forward, edges[j].along);
     }
+    Vec way = vec_cross(normal, pull->across);
+    if (vec_dot(way, forward) < 0) way = vec_scale(way, -1);
+    const float lot = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
+    int first = pick_edge(edges, begin, count, way, lot);
     if (first < 0) return 0;
-    if (!turn.closed) return smaller_part(fan, &turn, first, turn.count);
-    for (int j = 0; j < turn.count; j++)
-        if (force[j] > 0 && vec_dot(along[j], along[first]) < -0.2f && (second < 0 || force[j] > force[second])) second = j;
-    if (second < 0) return 0;
+    if (!turn.closed) return smaller_part(fan, &turn, first, count);
+    int second = open_edge(edges, count, edges[first].along);
+    if (second < 0) second = pick_edge(edges, 0, count, vec_scale(way, -1), lot);
+    if (second < 0 || second == first) return 0;
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
 }
 
 /// The same, where something of both parts is left.
-static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull, uint32_t vertex,
-                             const Fan *fan) {
+static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
+                             uint32_t vertex, const Fan *fan) {
     uint32_t cells = choose_part(plan, shell, state, pull, vertex, fan);
     return cells && any_alive(state, fan, cells, true) && any_alive(state, fan, cells, false) ? cells : 0;
 }

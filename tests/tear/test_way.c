@@ -1,0 +1,88 @@
+// Which way tears run: across the pull, whatever the direction of the cells.
+#include "ablate/burning_sheet.h"
+#include "shell/split.h"
+#include "tear/tear.h"
+
+enum { BLOCKS = 14, BLOCK = 6, CELLS = BLOCKS * BLOCK };
+static const float side = 5e-3f, degree = 0.0174532925f;
+
+/// The middle of a block of cells, where it is the weakest.
+static bool is_weak(uint32_t v) {
+    return v % (CELLS + 1) % BLOCK == BLOCK / 2 && v / (CELLS + 1) % BLOCK == BLOCK / 2;
+}
+
+/// A sheet with vertices in reserve. Every block counts as a piece of its own, so that a tear may begin in each.
+static BurningSheet *blocks_of_a_sheet(void) {
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = calloc(1, sizeof *b);
+    b->memory = memory_make((SingeAllocator){0});
+    SheetSource source = grid_source(&b->memory, CELLS, CELLS, side, 0, &material, 0);
+    source.sheet.spare_count = 4 * BLOCKS * BLOCKS;
+    assert_int_equal(shell_create(&b->memory, &source, 1, &b->shell, &b->error), SINGE_OK);
+    assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
+    sheet_source_free(&b->memory, &source);
+    b->nx = b->ny = CELLS;
+    float *strength = burning_sheet_vary(b, &b->shell.matter.strength);
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+        strength[i] = i < (CELLS + 1) * (CELLS + 1) && is_weak(i) ? 1 : 2;
+        const float *p = b->shell.rest_position[i];
+        b->state.ablate.piece[i] = (int32_t)(p[1] / (BLOCK * side)) * (BLOCKS + 1) + (int32_t)(p[0] / (BLOCK * side));
+    }
+    return b;
+}
+
+/// Forces over lengths that make the line force xx, yy, xy everywhere.
+static void pull_evenly(const BurningSheet *b, float xx, float yy, float xy, float *pull[SINGE_COLOUR_COUNT]) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *set = &b->shell.springs[colour];
+        pull[colour] = calloc(set->count, sizeof *pull[colour]);
+        for (uint32_t s = 0; s < set->count; s++) {
+            const float *p = b->shell.rest_position[set->ends[s][0]], *q = b->shell.rest_position[set->ends[s][1]];
+            float x = q[0] - p[0], y = q[1] - p[1];
+            if (colour == SINGE_BLUE) pull[colour][s] = fabsf(x) > fabsf(y) ? xx : yy;
+            if (colour == SINGE_YELLOW) pull[colour][s] = x * y > 0 ? 0.5f * xy : -0.5f * xy;
+        }
+    }
+}
+
+/// Degrees that the mean of the torn edges is off from across the pull, which is at this angle to the cells.
+static double off_across(float angle) {
+    BurningSheet *b = blocks_of_a_sheet();
+    float c = cosf(angle), s = sinf(angle), *pull[SINGE_COLOUR_COUNT];
+    TearPlan *plan;
+    bool short_of_spares;
+    const float force = 1.3f;
+    assert_int_equal(tear_plan_create(&b->memory, &b->shell, 1e-3f, &plan), SINGE_OK);
+    pull_evenly(b, force * c * c, force * s * s, force * c * s, pull);
+    uint32_t tears = tear_step(plan, &b->shell, &b->state, (const float *const *)pull, NULL, 1, &short_of_spares);
+    assert_false(short_of_spares);
+    assert_int_equal(tears, BLOCKS * BLOCKS);
+    assert_int_equal(b->shell.edge_spare_used, 2 * tears);
+    const SpringSet *blue = &b->shell.springs[SINGE_BLUE];
+    double sum[2] = {0, 0};
+    for (uint32_t k = blue->count - b->shell.edge_spare_count, end = k + 2 * tears; k < end; k++) {
+        const float *p = b->shell.rest_position[blue->ends[k][0]], *q = b->shell.rest_position[blue->ends[k][1]];
+        double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1];
+        double sign = y * (double)c - x * (double)s < 0 ? -1 : 1;
+        sum[0] += sign * x, sum[1] += sign * y;
+    }
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);
+    tear_plan_free(&b->memory, plan);
+    burning_sheet_free(b);
+    return atan2(sum[1], sum[0]) / (double)degree - (double)(angle / degree) - 90;
+}
+
+static void tears_run_across_the_pull(void **unused) {
+    (void)unused;
+    const float angles[] = {0, 15, 30, 45, 60, 75, 90};
+    for (int k = 0; k < 7; k++) {
+        double off = off_across(angles[k] * degree);
+        print_message("pulled at %.0f degrees: %.2f off\n", (double)angles[k], off);
+        assert_true(fabs(off) < 2);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tears_run_across_the_pull)};
+    return cmocka_run_group_tests_name("tear_way", tests, NULL, NULL);
+}
