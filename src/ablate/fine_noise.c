@@ -30,7 +30,7 @@ int fine_octaves(float spacing) {
 
 static const float two_pi = 6.2831853f;
 
-static Vec rest_of(const Shell *shell, FinePlace place) {
+Vec fine_rest(const Shell *shell, FinePlace place) {
     const uint32_t *at = shell->cells[place.cell];
     float quarter = 0.25f * place.weight[2];
     Vec sum = {0, 0, 0};
@@ -43,15 +43,14 @@ static Vec rest_of(const Shell *shell, FinePlace place) {
     return sum;
 }
 
-/// Rotated out of every plane that sheets and their grids may lie in.
-static Vec askew(Vec p) {
+Vec fine_askew(Vec p) {
     return vec(0.7447f * p.x - 0.5389f * p.y + 0.3937f * p.z, 0.6325f * p.x + 0.7574f * p.y - 0.1598f * p.z,
                -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
 /// The noise at a place: how far it eats, m, and the direction, as an angle.
 static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, float *angle) {
-    Vec p = vec_scale(askew(rest_of(fine->shell, place)), 1 / NOISE_SIZE);
+    Vec p = vec_scale(fine_askew(fine_rest(fine->shell, place)), 1 / NOISE_SIZE);
     float sum = 0, strength = NOISE_GAIN;
     for (int octave = 0; octave < sheet->octaves; octave++) {
         float noise = random_noise(p.x, p.y, p.z, sheet->seed + (uint32_t)octave);
@@ -95,5 +94,6 @@ FineValue fine_value(const Fine *fine, FinePlace place) {
             if (value < least) least = value, least_place = there;
         }
     }
+    if (fine->flags[place.cell] & FINE_LIP) least = fminf(least, fine_lip_level(fine, place));
     return (FineValue){least, fine_spline_at(shell, &fine->splines[SPLINE_MASS], least_place)};
 }

@@ -74,7 +74,8 @@ static SingeResult number(Fine *fine, SingeError *error) {
     memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(fine->flags[c] & FINE_NEAR)) continue;
-        if (fine_splits(fine, c) > 1 && negative_around(fine, c)) number_cell(fine, c, &point);
+        bool near = fine->flags[c] & FINE_LIP || negative_around(fine, c);
+        if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
         else fine->flags[c] &= (uint8_t)~FINE_NEAR;
         if (point > INT32_MAX)
             return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
@@ -206,6 +207,7 @@ static void evaluate_cells(void *context, int begin, int end) {
 SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
     bound_cells(fine);
+    fine_lips(fine);
     TRY(number(fine, error));
     if (!NEW(fine->memory, fine->values, fine->point_count))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");

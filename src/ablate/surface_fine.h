@@ -14,11 +14,12 @@ enum {
     FINE_SPLIT = 2, ///< the level changes sign in it
     FINE_EVEN = 4,  ///< nothing to draw finely: one mass, and not negative
     FINE_WHOLE = 8, ///< nothing around it has gone
+    FINE_LIP = 16,  ///< at a tear
 };
 
 /// The fields that are drawn smoothly.
 typedef enum SplineField {
-    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_COUNT
+    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_LIP, SPLINE_COUNT
 } SplineField;
 
 /// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
@@ -120,6 +121,18 @@ int fine_octaves(float spacing);
 
 /// The level and the mass that a place is drawn by.
 FineValue fine_value(const Fine *fine, FinePlace place);
+
+/// A place at rest, and a vector rotated out of every plane that sheets and their grids may lie in.
+Vec fine_rest(const Shell *shell, FinePlace place);
+Vec fine_askew(Vec p);
+
+// ---- fine_lips.c
+
+/// Fills SPLINE_LIP where sheets have torn, and marks the cells there, which have their other flags.
+void fine_lips(Fine *fine);
+
+/// The level that tears give a place in a marked cell: below 0 is not drawn.
+float fine_lip_level(const Fine *fine, FinePlace place);
 
 // ---- fine_points.c
 

@@ -189,6 +189,62 @@ static void tubes_tear_around(void **unused) {
     singe_sim_destroy(sim);
 }
 
+/// The lips of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how far
+/// their middle leaves the weak line, root mean square.
+typedef struct Lips {
+    double apart, wanders, least, area;
+} Lips;
+
+static Lips drawn_lips(float raggedness) {
+    enum { ROWS = 6 * ACROSS };
+    SingeSimDef def = pull_def();
+    def.surface_detail = 0.4e-3f, def.surface_raggedness = raggedness;
+    SingeSim *sim = pulled(&def, 4, 0.5f, NULL);
+    test_steps(sim, STEPS);
+    assert_int_equal(singe_sim_stats(sim).pieces, 2);
+    check_surface(sim);
+    SingeSurface surface = {0};
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    float left[ROWS], right[ROWS];
+    for (int r = 0; r < ROWS; r++) left[r] = -INFINITY, right[r] = INFINITY;
+    Lips lips = {0, 0, INFINITY, 0};
+    for (uint32_t t = 0; t < surface.triangle_count; t++) {
+        const float *p[3];
+        for (int i = 0; i < 3; i++) p[i] = surface.rest_position[surface.triangles[t][i]];
+        lips.area += 0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                                    (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
+        for (int i = 0; i < 3; i++) {
+            int row = (int)(p[i][1] / side * 6);
+            if (row < 0 || row >= ROWS) continue;
+            if (surface.piece[surface.triangles[t][i]] != 0) left[row] = fmaxf(left[row], p[i][0]);
+            else right[row] = fminf(right[row], p[i][0]);
+        }
+    }
+    for (int r = 2; r < ROWS - 2; r++) {
+        double apart = ((double)right[r] - (double)left[r]) / (double)side;
+        double middle = 0.5 * ((double)right[r] + (double)left[r]) / (double)side - WEAK;
+        lips.apart += apart / (ROWS - 4), lips.wanders += middle * middle / (ROWS - 4);
+        lips.least = fmin(lips.least, apart);
+    }
+    lips.wanders = sqrt(lips.wanders);
+    singe_surface_free(&surface);
+    singe_sim_destroy(sim);
+    return lips;
+}
+
+static void lips_wander_and_fit(void **unused) {
+    (void)unused;
+    const double whole = (double)(ALONG * side * ACROSS * side);
+    Lips smooth = drawn_lips(0), ragged = drawn_lips(2e-3f);
+    print_message("lips %.3f sides apart, %.3f to the side; ragged ones %.3f (%.3f at least) and %.3f\n", smooth.apart,
+                  smooth.wanders, ragged.apart, ragged.least, ragged.wanders);
+    assert_true(smooth.apart > 0.15 && smooth.apart < 0.4);
+    assert_true(ragged.apart > 0.15 && ragged.apart < 0.5); // as far as smooth ones: they fit
+    assert_true(ragged.least > 0);
+    assert_true(ragged.wanders > smooth.wanders + 0.05);
+    assert_true(ragged.area < whole && ragged.area > whole - 0.5 * (double)side * ACROSS * (double)side);
+}
+
 static void without_tearing_it_stays_whole(void **unused) {
     (void)unused;
     SingeSimDef def = pull_def();
@@ -408,6 +464,7 @@ int main(void) {
         cmocka_unit_test(pulled_apart_it_tears_at_its_weakest_line),
         cmocka_unit_test(uniform_sheets_tear_too),
         cmocka_unit_test(tubes_tear_around),
+        cmocka_unit_test(lips_wander_and_fit),
         cmocka_unit_test(without_tearing_it_stays_whole),
         cmocka_unit_test(same_bytes_and_from_a_snapshot),
         cmocka_unit_test(failed_steps_leave_it_as_it_was),
