@@ -6,6 +6,9 @@
 //   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
 //   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
 //
+// Where an edge is EDGE_STRETCH longer than it is to be, as in threads of char that carry more than substeps can hold (T
+// in tear_step.c), its ends tear, whatever their strength.
+//
 // Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
 // tears nothing,
 //
@@ -21,6 +24,7 @@
 
 static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
+static const float EDGE_STRETCH = 1.25f;
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
@@ -68,6 +72,14 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
 
+/// How long an edge is, over what it is to be.
+static float edge_stretch(const Shell *shell, const State *state, uint32_t blue) {
+    const uint32_t *ends = shell->springs[SINGE_BLUE].ends[blue];
+    const float(*position)[4] = (const float(*)[4])state->dynamics.position;
+    float length = vec_length(vec_sub(vec_load(position[ends[0]]), vec_load(position[ends[1]])));
+    return length / state->burn.spring_length[SINGE_BLUE][blue];
+}
+
 /// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
@@ -76,6 +88,8 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
         float strength = tear_strength(job->plan, job->shell, job->state, job->shell->cells[cell][i]);
         if (square > strength * strength) return true;
     }
+    for (int i = 0; i < 4; i++)
+        if (edge_stretch(job->shell, job->state, job->shell->cell_springs[cell].blue[i]) > EDGE_STRETCH) return true;
     return false;
 }
 
@@ -164,6 +178,18 @@ static Vec pull_normal(const Shell *shell, const Fan *fan) {
     return vec_unit(sum);
 }
 
+/// The largest stretch of the edges at a vertex.
+static float fan_stretch(const Shell *shell, const State *state, const Fan *fan) {
+    float most = 0;
+    for (int k = 0; k < fan->count; k++) {
+        const uint32_t *blue = shell->cell_springs[fan->cell[k]].blue;
+        if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE)) continue;
+        most = fmaxf(most, edge_stretch(shell, state, blue[fan->corner[k]]));
+        most = fmaxf(most, edge_stretch(shell, state, blue[(fan->corner[k] + 3) & 3]));
+    }
+    return most;
+}
+
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     TearPull pull = {0};
     Fan fan;
@@ -178,5 +204,7 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = atan2f(c, (a - b) / 2) / 2;
     pull.across = vec_add(vec_scale(e1, cosf(angle)), vec_scale(e2, sinf(angle)));
     pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
+    float stretch = mean + radius > plan->safe ? fan_stretch(shell, state, &fan) : 0;
+    if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);
     return pull;
 }

@@ -31,6 +31,9 @@
 static const float STEP_CARRIES = 0.2f;
 static const float STRETCH_MOST = 1.03f; ///< paper breaks at 2 to 4 %
 
+/// What cells hold that hang together by a vertex alone, of the strength.
+static const float HINGE = 0.25f;
+
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
 
@@ -229,11 +232,26 @@ static int open_edge(const TearEdge *edges, int count, Vec way) {
     return open;
 }
 
+/// Cells that hang together with others by the vertex alone, for what lay between them has burnt; 0 where there are none.
+static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn) {
+    int start[2] = {-1, -1};
+    for (int j = 0; j < turn->count; j++) {
+        bool first = j == 0 && !turn->closed;
+        if (!is_left(state, fan, turn->at[j])) continue;
+        if (!first && is_left(state, fan, turn->at[j > 0 ? j - 1 : turn->count - 1])) continue;
+        if (start[0] < 0) start[0] = j;
+        else if (start[1] < 0) start[1] = j;
+    }
+    return start[1] < 0 ? 0 : smaller_part(fan, turn, start[0], start[1]);
+}
+
 /// Which cells of a vertex part from the others; 0 where no edge is pulled at enough.
 static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                             uint32_t vertex, const Fan *fan) {
     Turn turn = turn_order(fan);
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
+    const uint32_t hinge = hinge_part(state, fan, &turn);
+    if (hinge) return hinge;
     const Vec normal = fan_normal(shell, fan);
     TearEdge edges[SPLIT_FAN];
     Vec forward = {0, 0, 0};
@@ -274,8 +292,12 @@ static void fill_ratios(void *task, int begin, int end) {
     for (int v = begin; v < end; v++) {
         TearPull pull = tear_pull(job->plan, job->shell, job->state, (uint32_t)v);
         Fan fan;
-        if (pull.ratio > 1) {
+        if (pull.ratio > HINGE) {
             split_fan(job->shell, (uint32_t)v, &fan);
+            Turn turn = turn_order(&fan);
+            if (turn.count == fan.count && hinge_part(job->state, &fan, &turn)) pull.ratio /= HINGE;
+        }
+        if (pull.ratio > 1) {
             if (!choose_cells(job->plan, job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;
         }
         job->plan->ratio[v] = pull.ratio;
