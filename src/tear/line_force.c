@@ -6,7 +6,7 @@
 //   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
 //   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
 //
-// Where an edge is EDGE_STRETCH longer than it is to be, as in threads of char that carry more than substeps can hold (T
+// Where an edge is EDGE_STRETCH times as long as at rest, as in threads of char that carry more than substeps can hold (T
 // in tear_step.c), its ends tear, whatever their strength.
 //
 // Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
@@ -24,7 +24,7 @@
 
 static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
-static const float EDGE_STRETCH = 1.25f;
+static const float EDGE_STRETCH = 1.4f;
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
@@ -72,12 +72,12 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
 
-/// How long an edge is, over what it is to be.
+/// How long an edge is, over how long it is at rest.
 static float edge_stretch(const Shell *shell, const State *state, uint32_t blue) {
     const uint32_t *ends = shell->springs[SINGE_BLUE].ends[blue];
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
     float length = vec_length(vec_sub(vec_load(position[ends[0]]), vec_load(position[ends[1]])));
-    return length / state->burn.spring_length[SINGE_BLUE][blue];
+    return length / shell->springs[SINGE_BLUE].rest[blue];
 }
 
 /// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
