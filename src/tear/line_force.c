@@ -80,13 +80,23 @@ static float edge_stretch(const Shell *shell, const State *state, uint32_t blue)
     return length / shell->springs[SINGE_BLUE].rest[blue];
 }
 
+/// Something at a vertex has gone.
+static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
+        if (!(state->ablate.cell_flags[shell->fan[k]] & SINGE_ALIVE)) return true;
+    return false;
+}
+
 /// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
-    if (square < job->plan->safe * job->plan->safe) return false;
+    const float safe = TEAR_HINGE * job->plan->safe;
+    if (square < safe * safe) return false;
     for (int i = 0; i < 4; i++) {
-        float strength = tear_strength(job->plan, job->shell, job->state, job->shell->cells[cell][i]);
+        uint32_t corner = job->shell->cells[cell][i];
+        float strength = tear_strength(job->plan, job->shell, job->state, corner), hinge = TEAR_HINGE * strength;
         if (square > strength * strength) return true;
+        if (square > hinge * hinge && gone_at(job->shell, job->state, corner)) return true;
     }
     for (int i = 0; i < 4; i++)
         if (edge_stretch(job->shell, job->state, job->shell->cell_springs[cell].blue[i]) > EDGE_STRETCH) return true;

@@ -6,6 +6,9 @@
 #include "shell/split.h"
 #include "tear/tear.h"
 
+/// What cells hold that hang together by a vertex alone, of the strength.
+static const float TEAR_HINGE = 0.25f;
+
 /// A symmetric tensor: xx, yy, zz, yz, zx, xy.
 typedef float Tensor[6];
 

@@ -4,6 +4,9 @@
 // cells is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open
 // there already. While tears run in a piece, no other begins there, and of those that could begin, one does.
 //
+// Cells that hang together by a vertex alone, for what lay between them has burnt, part where they are pulled at with
+// TEAR_HINGE of the strength.
+//
 // A tear is to run along t, across the direction of N_1, but can along sides of cells only, an edge a step. So of the
 // edges e that lead forwards one is drawn by lot,
 //
@@ -30,9 +33,6 @@
 
 static const float STEP_CARRIES = 0.2f;
 static const float STRETCH_MOST = 1.03f; ///< paper breaks at 2 to 4 %
-
-/// What cells hold that hang together by a vertex alone, of the strength.
-static const float HINGE = 0.25f;
 
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
@@ -292,10 +292,10 @@ static void fill_ratios(void *task, int begin, int end) {
     for (int v = begin; v < end; v++) {
         TearPull pull = tear_pull(job->plan, job->shell, job->state, (uint32_t)v);
         Fan fan;
-        if (pull.ratio > HINGE) {
+        if (pull.ratio > TEAR_HINGE) {
             split_fan(job->shell, (uint32_t)v, &fan);
             Turn turn = turn_order(&fan);
-            if (turn.count == fan.count && hinge_part(job->state, &fan, &turn)) pull.ratio /= HINGE;
+            if (turn.count == fan.count && hinge_part(job->state, &fan, &turn)) pull.ratio /= TEAR_HINGE;
         }
         if (pull.ratio > 1) {
             if (!choose_cells(job->plan, job->shell, job->state, &pull, (uint32_t)v, &fan)) pull.ratio = 0;

@@ -82,7 +82,42 @@ static void tears_run_across_the_pull(void **unused) {
     }
 }
 
+/// Splits in a step of a sheet that is pulled at with 0.4 of its strength, where two cells have gone that lie across a
+/// vertex from each other, or one of them only.
+static uint32_t splits_beside(bool both) {
+    SingeMaterialDef material = plain_material();
+    BurningSheet *b = calloc(1, sizeof *b);
+    b->memory = memory_make((SingeAllocator){0});
+    SheetSource source = grid_source(&b->memory, 6, 6, side, 0, &material, 0);
+    source.sheet.spare_count = 20;
+    assert_int_equal(shell_create(&b->memory, &source, 1, &b->shell, &b->error), SINGE_OK);
+    assert_int_equal(state_create(&b->memory, &b->shell, &b->state), SINGE_OK);
+    sheet_source_free(&b->memory, &source);
+    b->nx = b->ny = 6;
+    float *strength = burning_sheet_vary(b, &b->shell.matter.strength), *pull[SINGE_COLOUR_COUNT];
+    for (uint32_t i = 0; i < b->shell.particle_count; i++) strength[i] = 1, b->state.ablate.piece[i] = 0;
+    b->state.ablate.cell_flags[cell_at(b, 2, 3)] &= (uint8_t)~SINGE_ALIVE;
+    if (both) b->state.ablate.cell_flags[cell_at(b, 3, 2)] &= (uint8_t)~SINGE_ALIVE;
+    TearPlan *plan;
+    bool short_of_spares;
+    assert_int_equal(tear_plan_create(&b->memory, &b->shell, 1e-3f, &plan), SINGE_OK);
+    pull_evenly(b, 0.4f, 0, 0, pull);
+    uint32_t splits = tear_step(plan, &b->shell, &b->state, (const float *const *)pull, NULL, 1, &short_of_spares);
+    if (splits) assert_int_equal(b->state.tear.splits[0].vertex, corner_at(b, 3, 3));
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) free(pull[colour]);
+    tear_plan_free(&b->memory, plan);
+    burning_sheet_free(b);
+    return splits;
+}
+
+static void cells_that_hang_by_a_vertex_part(void **unused) {
+    (void)unused;
+    assert_int_equal(splits_beside(false), 0);
+    assert_int_equal(splits_beside(true), 1);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tears_run_across_the_pull)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tears_run_across_the_pull),
+                                       cmocka_unit_test(cells_that_hang_by_a_vertex_part)};
     return cmocka_run_group_tests_name("tear_way", tests, NULL, NULL);
 }
