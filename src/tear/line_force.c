@@ -6,8 +6,8 @@
 //   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
 //   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
 //
-// Where an edge is EDGE_STRETCH times as long as at rest, as in threads of char that carry more than substeps can hold (T
-// in tear_step.c), its ends tear, whatever their strength.
+// Where an edge or a cell's diagonal is EDGE_STRETCH times as long as at rest, as in threads of char that carry more than
+// substeps hold (T in tear_step.c), its ends tear, whatever their strength.
 //
 // Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
 // tears nothing,
@@ -72,12 +72,12 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
 
-/// How long an edge is, over how long it is at rest.
-static float edge_stretch(const Shell *shell, const State *state, uint32_t blue) {
-    const uint32_t *ends = shell->springs[SINGE_BLUE].ends[blue];
+/// How long an edge or a diagonal is, over how long it is at rest.
+static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
+    const uint32_t *ends = shell->springs[colour].ends[spring];
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
     float length = vec_length(vec_sub(vec_load(position[ends[0]]), vec_load(position[ends[1]])));
-    return length / shell->springs[SINGE_BLUE].rest[blue];
+    return length / shell->springs[colour].rest[spring];
 }
 
 /// Something at a vertex has gone.
@@ -98,8 +98,11 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
         if (square > strength * strength) return true;
         if (square > hinge * hinge && gone_at(job->shell, job->state, corner)) return true;
     }
+    const CellSprings *springs = &job->shell->cell_springs[cell];
     for (int i = 0; i < 4; i++)
-        if (edge_stretch(job->shell, job->state, job->shell->cell_springs[cell].blue[i]) > EDGE_STRETCH) return true;
+        if (edge_stretch(job->shell, job->state, SINGE_BLUE, springs->blue[i]) > EDGE_STRETCH) return true;
+    for (int i = 0; i < 2; i++)
+        if (edge_stretch(job->shell, job->state, SINGE_YELLOW, springs->yellow[i]) > EDGE_STRETCH) return true;
     return false;
 }
 
@@ -188,14 +191,16 @@ static Vec pull_normal(const Shell *shell, const Fan *fan) {
     return vec_unit(sum);
 }
 
-/// The largest stretch of the edges at a vertex.
+/// The largest stretch of the edges and diagonals at a vertex.
 static float fan_stretch(const Shell *shell, const State *state, const Fan *fan) {
     float most = 0;
     for (int k = 0; k < fan->count; k++) {
-        const uint32_t *blue = shell->cell_springs[fan->cell[k]].blue;
+        const CellSprings *springs = &shell->cell_springs[fan->cell[k]];
+        const int corner = fan->corner[k];
         if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE)) continue;
-        most = fmaxf(most, edge_stretch(shell, state, blue[fan->corner[k]]));
-        most = fmaxf(most, edge_stretch(shell, state, blue[(fan->corner[k] + 3) & 3]));
+        most = fmaxf(most, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
+        most = fmaxf(most, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
+        most = fmaxf(most, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
     }
     return most;
 }

@@ -147,6 +147,7 @@ class Letter(Example):
         self.assertGreater(last["particles"], 100)
         self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
+        self.assertGreater(last["tears"], 0)
         self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
         self.assertLessEqual(self.rows[0]["springs"], 30000)
@@ -404,9 +405,17 @@ class Shirt(Example):
 
 
 class BurningTorus(Example):
-    """A closed surface falls on the ground, burns and caves in."""
+    """A closed surface falls on the ground, burns, caves in and falls apart."""
 
     NAME = "burning-torus"
+
+    def unburnt_halves(self, frame):
+        """Pieces that have a tenth and more of what has hardly charred."""
+        count = {}
+        for vertex in self.vertices(frame):
+            if vertex["char"] < 0.5:
+                count[vertex["piece_id"]] = count.get(vertex["piece_id"], 0) + 1
+        return sum(number >= 0.1 * sum(count.values()) for number in count.values())
 
     def test_caves_in(self):
         self.common()
@@ -414,7 +423,12 @@ class BurningTorus(Example):
         self.say["top"] = f"{1e3 * first:.0f}, {1e3 * rest:.0f}, {1e3 * last:.0f} mm"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.say["pieces"] = f"{self.rows[-1]['pieces']:.0f}"
+        halves = max(self.unburnt_halves(frame) for frame in range(90, 150, 5))
+        self.say["halves"] = halves
         self.told()
+        self.assertEqual(self.unburnt_halves(15), 1)
+        self.assertGreaterEqual(halves, 2)
+        self.assertGreater(self.column("tears")[-1], 0)
         self.assertTrue(0.060 < rest < 0.084 < first)  # 84 mm high at rest: it lands, and sags a little
         self.assertLess(last, 0.95 * rest)
         self.assertTrue(0.3 < self.rows[-1]["burnt_fraction"] < 0.95)
