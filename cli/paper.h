@@ -1,24 +1,11 @@
-// `singe paper`: a file per table or figure.
+// `singe paper`: a function per experiment.
 #ifndef CLI_PAPER_H
 #define CLI_PAPER_H
 
-#include "cli/cli.h"
-#include "singe/singe.h"
+#include "cli/lab.h"
 
-#include <stdbool.h>
-
-typedef struct PaperOptions {
-    const char *folder; ///< where figures go
-    bool quick;
-    int threads;
-} PaperOptions;
-
-ExitCode paper_table1(const PaperOptions *options);
-ExitCode paper_table2(const PaperOptions *options);
-ExitCode paper_fig8(const PaperOptions *options);
-ExitCode paper_all_at_once(const PaperOptions *options);
-
-/// Prints the error and returns the exit code that goes with it.
-ExitCode paper_fail(const SingeError *error);
+LabFn paper_fig1, paper_fig2, paper_fig3, paper_fig4, paper_fig5, paper_fig6, paper_fig7ab, paper_fig7cd, paper_fig8,
+    paper_fig10, paper_fig11, paper_table1, paper_table2, paper_all_at_once, paper_mass_loss, paper_weights,
+    paper_rival, paper_readings, paper_adaptive;
 
 #endif

@@ -5,9 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/folder.h"
 #include "cli/paper.h"
-#include "cli/paper_plot.h"
 #include "cli/paper_states.h"
 #include "formats/formats.h"
 
@@ -48,7 +46,7 @@ static bool fig8_rises(const Fig8 *fig, int steps) {
     return false;
 }
 
-static SingeResult fig8_write(const char *folder, const char *state, const Fig8 *fig, SingeError *error) {
+static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, SingeError *error) {
     static const char *const names[] = {"red", "green", "blue", "yellow", "sum"};
     static const char *const inks[] = {"#d62728", "#2ca02c", "#1f77b4", "#d0a000", "#777777"};
     char path[4096], title[80], *csv = NULL;
@@ -62,51 +60,58 @@ static SingeResult fig8_write(const char *folder, const char *state, const Fig8 
         fputc('\n', file);
     }
     fclose(file);
-    snprintf(path, sizeof path, "%s/fig8-%s.csv", folder, state);
+    snprintf(path, sizeof path, "%s/fig8-%s.csv", report_folder(lab->report), state);
     SingeResult result = file_write(path, csv, size, error);
     free(csv);
     if (result) return result;
-    printf("%s\n", path);
-    PlotLine lines[LINES];
-    for (int l = 0; l < LINES; l++) lines[l] = (PlotLine){names[l], inks[l], fig->error[l]};
-    snprintf(path, sizeof path, "%s/fig8-%s.svg", folder, state);
     snprintf(title, sizeof title, "Error of each colour: %s, %d springs", state, 10 * CELLS * CELLS);
-    result = plot_write(path, title, lines, LINES, STEPS + 1, error);
-    if (!result) printf("%s\n", path);
-    return result;
+    Plot plot = {.title = title, .x_label = "projection step", .y_label = "|C|, m", .log_y = true};
+    for (int l = 0; l < LINES; l++)
+        plot_add(&plot, (PlotLine){.name = names[l], .colour = inks[l], .y = fig->error[l], .count = STEPS + 1});
+    report_plot(lab->report, &plot);
+    snprintf(path, sizeof path, "%s/fig8-%s.svg", report_folder(lab->report), state);
+    return plot_write(&plot, path, error);
 }
 
-static SingeResult fig8_run(const Fig8Run *run, const PaperOptions *options, SingeError *error) {
+static SingeResult fig8_run(Lab *lab, const Fig8Run *run, SingeError *error) {
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, SINGE_SOLVER_PAPER);
     SingeSim *sim;
     Fig8 shown = {0}, counted;
-    int rises = 0, last_rise = 0;
+    int rises = 0;
+    const int last = lab->quick ? run->shown : run->last;
     SingeResult result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
     if (result) return result;
-    for (int step = 0; step <= run->last && !result; step++) {
+    for (int step = 0; step <= last && !result; step++) {
         if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
         if (!result) result = fig8_project(sim, run->state, COUNTED, &counted, error);
-        if (!result && fig8_rises(&counted, COUNTED)) rises++, last_rise = step;
+        if (!result && fig8_rises(&counted, COUNTED)) rises++;
         if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
     }
     singe_sim_destroy(sim);
     if (result) return result;
     const char *name = paper_state_names[run->state];
     const double *sum = shown.error[SINGE_COLOUR_COUNT];
-    printf("%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d, and %s\n", name,
-           run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS,
-           fig8_rises(&shown, STEPS) ? "rises in one of them" : "never rises");
-    printf("%s, all states up to %g s: the sum rises in one of the first %d steps in %d of %d", name,
-           run->last * (double)PAPER_TIME_STEP, COUNTED, rises, run->last + 1);
-    if (rises) printf(", last at %g s", last_rise * (double)PAPER_TIME_STEP);
-    printf("\n");
-    return fig8_write(options->folder, name, &shown, error);
+    char measure[40], text[200];
+    result = fig8_write(lab, name, &shown, error);
+    report_text(lab->report, "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. Of all "
+                "states up to %g s it rises in one of the first %d steps in %d of %d%s.", name,
+                run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS,
+                last * (double)PAPER_TIME_STEP, COUNTED, rises, last + 1,
+                rises ? ": \"always decreases\" is too much" : "");
+    snprintf(measure, sizeof measure, "%s_rises", name);
+    snprintf(text, sizeof text, "%s: projection steps of %d in which the sum rises, in the state drawn", name, STEPS);
+    int rising = 0;
+    for (int step = 0; step < STEPS; step++) rising += sum[step + 1] > sum[step];
+    report_measure(lab->report, measure, text, rising, 0, 0);
+    snprintf(measure, sizeof measure, "%s_left", name);
+    snprintf(text, sizeof text, "%s: share of the sum that is left after %d steps", name, STEPS);
+    report_measure(lab->report, measure, text, sum[STEPS] / sum[0], 0, 0.7);
+    return result;
 }
 
-ExitCode paper_fig8(const PaperOptions *options) {
-    SingeError error = {0};
-    SingeResult result = folder_make(options->folder, &error);
-    for (size_t i = 0; i < sizeof runs / sizeof *runs && !result; i++) result = fig8_run(&runs[i], options, &error);
-    return result ? paper_fail(&error) : EXIT_GOOD;
+SingeResult paper_fig8(Lab *lab, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (size_t i = 0; i < sizeof runs / sizeof *runs && !result; i++) result = fig8_run(lab, &runs[i], error);
+    return result;
 }

@@ -25,28 +25,48 @@ static SingeResult table1_network(SingeNetwork **network, SingeError *error) {
     return singe_network_create(&def, network, error);
 }
 
-ExitCode paper_table1(const PaperOptions *options) {
-    (void)options;
+/// Fig 9: the two springs before and after.
+static void table1_draw(FILE *file, double x) {
+    const double at[2] = {0, x};
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"420\" height=\"90\" font-size=\"12\" "
+                  "font-family=\"sans-serif\">\n");
+    for (int k = 0; k < 2; k++) {
+        double y = 25 + 40 * k, p = 210 + 150 * at[k];
+        fprintf(file,
+                "<line x1=\"60\" x2=\"%.1f\" y1=\"%g\" y2=\"%g\" stroke=\"#2ca02c\" stroke-width=\"3\"/>"
+                "<line x1=\"%.1f\" x2=\"360\" y1=\"%g\" y2=\"%g\" stroke=\"#1f77b4\" stroke-width=\"3\"/>"
+                "<circle cx=\"%.1f\" cy=\"%g\" r=\"5\"/><text x=\"372\" y=\"%g\">%s</text>\n",
+                p, y, y, p, y, y, p, y, y + 4, k ? "after" : "before");
+    }
+    fprintf(file, "</svg>\n");
+}
+
+SingeResult paper_table1(Lab *lab, SingeError *error) {
     SingeNetwork *network;
-    SingeError error = {0};
-    if (table1_network(&network, &error)) return paper_fail(&error);
+    SingeResult result = table1_network(&network, error);
+    if (result) return result;
     const double *x = singe_network_positions(network) + 3;
-    double worst = 0;
-    SingeResult result = SINGE_OK;
-    printf("positions of the free particle (paper's digits are cut, not rounded)\n\n"
-           "step   project(S_G)           project(S_B)\n"
-           "          here    paper          here    paper\n"
-           "   0    0.0000   0.0000        0.0000   0.0000\n");
-    for (int step = 0; step < STEPS && !result; step++) {
-        printf("%4d  ", step + 1);
+    double worst = 0, ours[2][STEPS + 1] = {{0}}, paper[2][STEPS + 1] = {{0}};
+    for (int step = 0; step < STEPS && !result; step++)
         for (uint32_t set = 0; set < 2 && !result; set++) {
             result = singe_network_project(network, set, NULL);
-            printf("  %.4f   %.4f%s", floor(1e4 * x[0] + 1e-9) / 1e4, table1[step][set], set ? "\n" : "      ");
-            worst = fmax(worst, fabs(floor(1e4 * x[0] + 1e-9) / 1e4 - table1[step][set]));
+            ours[set][step + 1] = floor(1e4 * x[0] + 1e-9) / 1e4, paper[set][step + 1] = table1[step][set];
+            worst = fmax(worst, fabs(ours[set][step + 1] - table1[step][set]));
         }
-    }
+    report_heads(lab->report, "step|S_G here|S_G paper|S_B here|S_B paper");
+    for (int step = 0; step <= STEPS; step++)
+        report_row(lab->report, "%d|%.4f|%.4f|%.4f|%.4f", step, ours[0][step], paper[0][step], ours[1][step],
+                   paper[1][step]);
+    table1_draw(report_drawing(lab->report), x[0]);
+    Plot plot = {.title = "Position of the free particle", .x_label = "projection step", .y_label = "x"};
+    plot_add(&plot, (PlotLine){"after green", "#2ca02c", NULL, ours[0], STEPS + 1, false, false});
+    plot_add(&plot, (PlotLine){"after blue", "#1f77b4", NULL, ours[1], STEPS + 1, false, false});
+    plot_add(&plot, (PlotLine){"paper's digits", "#111", NULL, paper[0], STEPS + 1, true, false});
+    plot_add(&plot, (PlotLine){"", "#111", NULL, paper[1], STEPS + 1, true, false});
+    report_plot(lab->report, &plot);
+    report_text(lab->report, "The paper's digits are cut, not rounded, and come out when the system takes the two fixed "
+                             "points for free and they are put back after each projection.");
     singe_network_destroy(network);
-    if (result) return paper_fail(&(SingeError){.code = result});
-    printf("\nlargest difference %.4f\n", worst);
-    return worst < 1e-4 ? EXIT_GOOD : EXIT_FAILED;
+    report_measure(lab->report, "largest_difference", "largest difference of the ten positions", worst, 0, 5e-5);
+    return result;
 }

@@ -1,6 +1,6 @@
 // Table 2: time of a step against the number of springs, h = 2 ms, at most 7 projections, threshold 1e-7. Its last row
 // says 10,000 springs; its columns fit 100,000.
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "cli/paper.h"
@@ -62,34 +62,63 @@ static SingeSolverDef table2_solver(SingeSolverMethod method, bool early_exit) {
     return def;
 }
 
-static SingeResult table2_row(const Table2Row *row, int threads, SingeError *error) {
+/// What the table has of a size, and the plot.
+typedef struct Table2 {
+    int count;
+    double springs[ROW_COUNT], early[ROW_COUNT], iterations[ROW_COUNT], full[ROW_COUNT], strand[ROW_COUNT], paper[2][ROW_COUNT];
+} Table2;
+
+static SingeResult table2_row(Lab *lab, const Table2Row *row, Table2 *table, SingeError *error) {
     Cost early, full, strand;
     SingeSolverDef early_solver = table2_solver(SINGE_SOLVER_PAPER, true);
     SingeSolverDef full_solver = table2_solver(SINGE_SOLVER_PAPER, false);
     SingeSolverDef strand_solver = table2_solver(SINGE_SOLVER_STRAND, false);
-    SingeResult result = cost_measure(row->cells, &early_solver, threads, &early, error);
-    if (!result) result = cost_measure(row->cells, &full_solver, threads, &full, error);
-    if (!result) result = cost_measure(row->cells, &strand_solver, threads, &strand, error);
+    SingeResult result = cost_measure(row->cells, &early_solver, 1, &early, error);
+    if (!result) result = cost_measure(row->cells, &full_solver, 1, &full, error);
+    if (!result) result = cost_measure(row->cells, &strand_solver, 1, &strand, error);
     if (result) return result;
-    double springs = 10.0 * row->cells * row->cells;
-    printf("%7.0f  %8.2f %8.2f %9.4f  %8.2f %8.2f %9.5f %6.0f  %8.3f %7.0f  %8.1e %8.1e\n", springs, row->early,
-           row->full, row->full / springs, early.ms, full.ms, full.ms / springs, full.iterations, strand.ms,
-           full.ms / strand.ms, full.strain, strand.strain);
-    fflush(stdout);
+    const int i = table->count++;
+    double springs = table->springs[i] = 10.0 * row->cells * row->cells;
+    table->early[i] = early.ms, table->full[i] = full.ms, table->strand[i] = strand.ms;
+    table->iterations[i] = full.iterations;
+    table->paper[0][i] = row->early, table->paper[1][i] = row->full;
+    report_row(lab->report, "%.0f|%.2f|%.2f|%.4f|%.2f|%.2f|%.5f|%.0f|%.3f|%.0f|%.1e|%.1e", springs, row->early,
+               row->full, row->full / springs, early.ms, full.ms, full.ms / springs, full.iterations, strand.ms,
+               full.ms / strand.ms, full.strain, strand.strain);
     return SINGE_OK;
 }
 
-ExitCode paper_table2(const PaperOptions *options) {
-    printf("ms a step: 7 projections of all colours, h = 2 ms, a swinging sheet, %d thread%s\n"
-           "(b) with early exit, (c) fully iterated, (c)/(a) ms a spring; CG: iterations a step\n\n"
-           "   (a)               paper                       here, solver: paper           strand              mean "
-           "strain\n"
-           "springs       (b)      (c)   (c)/(a)       (b)      (c)   (c)/(a)     CG        ms (c)/it     paper   "
-           "strand\n",
-           options->threads, options->threads == 1 ? "" : "s");
-    for (int i = 0; i < (options->quick ? QUICK_COUNT : ROW_COUNT); i++) {
-        SingeError error = {0};
-        if (table2_row(&table2[i], options->threads, &error)) return paper_fail(&error);
-    }
-    return EXIT_GOOD;
+static void table2_plot(Lab *lab, const Table2 *table) {
+    Plot plot = {.title = "Time of a step", .x_label = "springs", .y_label = "ms", .log_x = true, .log_y = true};
+    plot_add(&plot, (PlotLine){"paper (b)", "#999", table->springs, table->paper[0], table->count, false, true});
+    plot_add(&plot, (PlotLine){"paper (c)", "#555", table->springs, table->paper[1], table->count, false, true});
+    plot_add(&plot, (PlotLine){"here (b)", "#e08214", table->springs, table->early, table->count, false, false});
+    plot_add(&plot, (PlotLine){"here (c)", "#b2182b", table->springs, table->full, table->count, false, false});
+    plot_add(&plot, (PlotLine){"strand", "#2166ac", table->springs, table->strand, table->count, false, false});
+    report_plot(lab->report, &plot);
+}
+
+SingeResult paper_table2(Lab *lab, SingeError *error) {
+    Table2 table = {0};
+    SingeResult result = SINGE_OK;
+    report_text(lab->report, "ms a step: 7 projections of all colours, h = 2 ms, a swinging sheet, one thread. "
+                "(b) with early exit, (c) fully iterated, (c)/(a) ms a spring; CG: iterations a step; the paper's columns, "
+                "then the paper's solver here, then strands. Strain: mean over the mesh's edges at the end.");
+    report_heads(lab->report, "springs|paper (b)|paper (c)|(c)/(a)|here (b)|here (c)|(c)/(a)|CG|strand|(c)/strand|"
+                              "strain paper|strain strand");
+    for (int i = 0; i < (lab->quick ? QUICK_COUNT : ROW_COUNT) && !result; i++)
+        result = table2_row(lab, &table2[i], &table, error);
+    if (result) return result;
+    table2_plot(lab, &table);
+    const int last = table.count - 1;
+    double iteration[2] = {table.full[0] / table.iterations[0], table.full[last] / table.iterations[last]};
+    double growth = log(iteration[1] / iteration[0]) / log(table.springs[last] / table.springs[0]);
+    report_text(lab->report, "Here the number of iterations grows with the sheet, as it must where a chain of springs has to be "
+                "known from end to end; an iteration is linear.");
+    report_measure(lab->report, "growth", "time of an iteration grows with the springs to the power", growth, 0.6, 1.45);
+    report_measure(lab->report, "early_exit", "(c) over (b) at the largest size; the paper's is 7 to 22",
+                   table.full[last] / table.early[last], 1.2, INFINITY);
+    report_measure(lab->report, "strand_gain", "(c) over strands at the largest size", table.full[last] / table.strand[last],
+                   10, INFINITY);
+    return SINGE_OK;
 }

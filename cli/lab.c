@@ -1,0 +1,309 @@
+#include "cli/lab.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/sheet.h"
+#include "cli/args.h"
+#include "cli/folder.h"
+#include "cli/text.h"
+#include "scene/builtin.h"
+
+extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded as they are
+
+ExitCode lab_fail(const SingeError *error) {
+    fprintf(stderr, "singe: error: %s\n", error->message[0] ? error->message : singe_result_name(error->code));
+    return EXIT_FAILED;
+}
+
+/// Lays the scenes beside the report, where `singe run` finds them.
+static SingeResult write_scenes(const Lab *lab, SingeError *error) {
+    SingeResult result = folder_make(lab->scenes, error);
+    for (const SceneBuiltin *file = paper_files; file->name && !result; file++) {
+        char *path = text_format("%s/%s", lab->scenes, file->name);
+        result = file_write(path, file->bytes, file->size, error);
+        free(path);
+    }
+    return result;
+}
+
+static SingeResult run_item(Lab *lab, const LabItem *item, SingeError *error) {
+    double begun = console_clock();
+    report_item(lab->report, item->name, item->heading, item->shows);
+    SingeResult result = item->run(lab, error);
+    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
+    char time[32];
+    console_duration(console_clock() - begun, time);
+    console_note(&lab->console, "%s: %s", item->name, time);
+    return result;
+}
+
+ExitCode lab_run(const LabItem *items, int count, const char *name, const char *title, const char *lead,
+                 const char *folder, bool quick, int threads) {
+    SingeError error = {0};
+    Lab lab = {.quick = quick, .threads = threads, .console = console_make(false)};
+    lab.report = report_open(folder, title, lead, &error);
+    if (!lab.report) return lab_fail(&error);
+    lab.scenes = text_format("%s/scenes", folder);
+    SingeResult result = write_scenes(&lab, &error);
+    ExitCode code = EXIT_GOOD;
+    for (int i = 0; i < count && !result; i++)
+        if (!name || strcmp(name, items[i].name) == 0) result = run_item(&lab, &items[i], &error);
+    if (result) code = lab_fail(&error);
+    int failed = 0;
+    if (report_close(lab.report, &failed, &error)) code = lab_fail(&error);
+    printf("\n%s/index.html: %s\n", folder, failed ? "measures fail" : "all measures hold");
+    free(lab.scenes);
+    return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
+// ---- scenes
+
+SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const *sets, SingeError *error) {
+    SetList list = {0};
+    *play = (Play){.lab = lab};
+    if (lab->quick) set_add(&list, "preview.size=[192, 128]"), set_add(&list, "preview.samples=4");
+    for (; sets && *sets; sets++)
+        if (**sets) set_add(&list, *sets);
+    char *path = text_format("%s/%s", lab->scenes, scene);
+    lab->console.quiet = true; // of the scene's own notes
+    ExitCode code = job_open(&play->job, &lab->console, path, &list, lab->threads);
+    if (!code) code = job_build(&play->job, &lab->console, &play->sim);
+    lab->console.quiet = false;
+    set_free(&list);
+    if (code) {
+        *error = (SingeError){.code = SINGE_ERROR_FORMAT, .element = -1};
+        snprintf(error->message, sizeof error->message, "%s cannot be used", path);
+    }
+    free(path);
+    return code ? SINGE_ERROR_FORMAT : SINGE_OK;
+}
+
+SingeResult play_until(Play *play, double time, SingeError *error) {
+    while (singe_sim_view(play->sim).time < time - 1e-9) {
+        SingeResult result = singe_sim_step(play->sim);
+        if (!result) continue;
+        *error = *singe_sim_error(play->sim);
+        return result;
+    }
+    return SINGE_OK;
+}
+
+SingeResult play_surface(Play *play, SingeError *error) {
+    SingeResult result = singe_sim_surface(play->sim, &play->surface);
+    if (result) *error = *singe_sim_error(play->sim);
+    return result;
+}
+
+SingeResult play_shoot(Play *play, const char *caption, SingeError *error) {
+    if (!pictures_available()) return SINGE_OK;
+    SingeResult result = play->pictures ? SINGE_OK : pictures_open(&play->job, &play->pictures, error);
+    if (!result) result = play_surface(play, error);
+    if (result) return result;
+    SingeGas gas = singe_sim_gas(play->sim);
+    double time = singe_sim_view(play->sim).time;
+    int width, height;
+    const uint8_t *rgb = pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, time, error);
+    if (!rgb) return error->code ? error->code : SINGE_ERROR_STATE;
+    pictures_size(play->pictures, &width, &height);
+    report_picture(play->lab->report, caption, width, height, rgb);
+    return SINGE_OK;
+}
+
+void play_close(Play *play) {
+    singe_surface_free(&play->surface);
+    pictures_close(play->pictures);
+    singe_sim_destroy(play->sim);
+    job_close(&play->job);
+    *play = (Play){0};
+}
+
+// ---- grids
+
+LabGrid lab_grid(int across, int along, float cell) {
+    LabGrid grid = {.cells = {across, along}, .sides = {(float)across * cell, (float)along * cell},
+                    .material = singe_default_material(), .solver = singe_default_solver(),
+                    .time_step = singe_default_sim().time_step};
+    sheet_inert(&grid.material);
+    return grid;
+}
+
+SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeSheetId id;
+    def.thread_count = lab->threads, def.time_step = grid->time_step, def.solver = grid->solver;
+    def.gravity[2] = -grid->gravity, def.air_density = 0;
+    sheet.material = grid->material;
+    sheet.attribute_count = (uint32_t)grid->attribute_count, sheet.attributes = grid->attributes;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    result = sheet_add_strip(*sim, &sheet, grid->cells, grid->sides, false, &id);
+    if (!result) result = singe_sim_commit(*sim);
+    if (!result) return SINGE_OK;
+    *error = *singe_sim_error(*sim);
+    singe_sim_destroy(*sim);
+    *sim = NULL;
+    return result;
+}
+
+SingeResult lab_steps(SingeSim *sim, int count, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (int step = 0; step < count && !result; step++) result = singe_sim_step(sim);
+    if (result) *error = *singe_sim_error(sim);
+    return result;
+}
+
+void lab_sets_mass(SingeMaterialDef *material) {
+    material->temperature = singe_param(600), material->ignition_temperature = singe_param(500);
+    material->rate_ceiling = singe_param(1e6f), material->mass_rate = singe_param(0.1f);
+    material->ash_exponent = singe_param(0), material->ash_density = singe_param(1);
+    material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
+    material->mass_min = (SingeParam){.value = 0, .to = 1, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
+    material->mass_loss = singe_param(0);
+}
+
+// ---- shapes
+
+static void cell_normal(const SingeView *view, uint32_t cell, double n[3]) {
+    const uint32_t *c = view->cells[cell];
+    double a[3], b[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        a[k] = (double)view->position[c[2]][k] - (double)view->position[c[0]][k];
+        b[k] = (double)view->position[c[3]][k] - (double)view->position[c[1]][k];
+    }
+    for (int k = 0; k < 3; k++) {
+        n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        length += n[k] * n[k];
+    }
+    for (int k = 0; k < 3; k++) n[k] /= sqrt(fmax(length, 1e-300));
+}
+
+double shape_bend(const SingeView *view) {
+    double sum = 0, count = 0;
+    for (uint32_t s = 0; s < view->spring_count[SINGE_GREEN]; s++) {
+        if (!(view->spring_flags[SINGE_GREEN][s] & SINGE_ALIVE)) continue;
+        double n[2][3], dot = 0;
+        for (int e = 0; e < 2; e++) cell_normal(view, view->springs[SINGE_GREEN][s][e] - view->vertex_count, n[e]);
+        for (int k = 0; k < 3; k++) dot += n[0][k] * n[1][k];
+        double angle = acos(fmin(1, fmax(-1, dot)));
+        sum += angle * angle, count++;
+    }
+    return count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0;
+}
+
+void shape_bounds(const SingeView *view, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        if (!(view->particle_flags[v] & SINGE_ALIVE)) continue;
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], (double)view->position[v][k]);
+            high[k] = fmax(high[k], (double)view->position[v][k]);
+        }
+    }
+}
+
+double shape_left(const SingeView *view) {
+    double left = 0;
+    for (uint32_t c = 0; c < view->cell_count; c++) left += view->cell_flags[c] & SINGE_ALIVE ? 1 : 0;
+    return left / view->cell_count;
+}
+
+int shape_pieces(const SingeView *view, double share) {
+    enum { MOST = 4096 };
+    static const double none = 0;
+    double *area = calloc(MOST, sizeof *area), all = none;
+    int count = 0;
+    for (uint32_t i = view->vertex_count; area && i < view->particle_count; i++) {
+        all += (double)view->area[i];
+        if (view->particle_flags[i] & SINGE_ALIVE && view->piece[i] >= 0)
+            area[view->piece[i] % MOST] += (double)view->area[i];
+    }
+    for (int p = 0; area && p < MOST; p++) count += area[p] >= share * all && area[p] > 0;
+    free(area);
+    return count;
+}
+
+typedef struct Edge { uint32_t low, high; } Edge;
+
+static int edge_order(const void *a, const void *b) {
+    const Edge *p = a, *q = b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    return (p->high > q->high) - (p->high < q->high);
+}
+
+static double rest_distance(const SingeSurface *surface, uint32_t a, uint32_t b) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = (double)surface->rest_position[a][k] - (double)surface->rest_position[b][k];
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+double shape_border(const SingeSurface *surface) {
+    size_t count = 3 * (size_t)surface->triangle_count;
+    Edge *edges = malloc((count + 1) * sizeof *edges);
+    double length = 0, area = 0;
+    for (uint32_t t = 0; edges && t < surface->triangle_count; t++) {
+        const uint32_t *c = surface->triangles[t];
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = c[k], b = c[(k + 1) % 3];
+            edges[3 * (size_t)t + (size_t)k] = a < b ? (Edge){a, b} : (Edge){b, a};
+        }
+        double p = rest_distance(surface, c[0], c[1]), q = rest_distance(surface, c[1], c[2]);
+        double r = rest_distance(surface, c[2], c[0]), s = (p + q + r) / 2;
+        area += sqrt(fmax(0, s * (s - p) * (s - q) * (s - r)));
+    }
+    if (edges) qsort(edges, count, sizeof *edges, edge_order);
+    for (size_t i = 0, j; edges && i < count; i = j) {
+        for (j = i + 1; j < count && edge_order(&edges[i], &edges[j]) == 0;) j++;
+        if (j == i + 1) length += rest_distance(surface, edges[i].low, edges[i].high);
+    }
+    free(edges);
+    return area > 0 ? length / sqrt(area) : NAN;
+}
+
+// ---- spectrum
+
+/// Adds the power of a line of heights: the angle out of the rest plane, its mean and slope taken out, under a Hann
+/// window; the power of the height follows from that of its slope by (wavelength/2 pi)^2.
+static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int count, double cell, double *line,
+                     ShapeSpectrum *spectrum) {
+    const double pi = acos(-1), centre = 0.5 * (count - 1);
+    double mean = 0, slope = 0, squares = 0;
+    for (int i = 0; i < count; i++) {
+        const float *p = view->position[first + (uint32_t)i * stride], *q = view->position[first + (uint32_t)(i + 1) * stride];
+        double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1], z = (double)q[2] - (double)p[2];
+        line[i] = atan2(z, sqrt(x * x + y * y));
+        mean += line[i] / count, slope += line[i] * (i - centre), squares += (i - centre) * (i - centre);
+    }
+    for (int i = 0; i < count; i++)
+        line[i] = (line[i] - mean - slope / squares * (i - centre)) * (0.5 - 0.5 * cos(2 * pi * (i + 0.5) / count));
+    for (int k = 1; k <= count / 2; k++) {
+        double re = 0, im = 0, wave = count * cell / k;
+        int band = (int)floor(2 * log2(wave / (2 * cell)) + 1e-9);
+        if (band < 0 || band >= SHAPE_BANDS) continue;
+        for (int i = 0; i < count; i++)
+            re += line[i] * cos(2 * pi * k * i / count), im += line[i] * sin(2 * pi * k * i / count);
+        // a wave's mean square is 2 |c_k|^2/n^2, and the window keeps 3/8 of it
+        double power = 2 * (re * re + im * im) / ((double)count * count) / 0.375;
+        spectrum->height[band] += power * wave * wave / (4 * pi * pi);
+    }
+}
+
+SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell, ShapeSpectrum *spectrum) {
+    *spectrum = (ShapeSpectrum){0};
+    double *line = malloc((size_t)(across > along ? across : along) * sizeof *line);
+    if (!line) return SINGE_ERROR_MEMORY;
+    const uint32_t row = (uint32_t)across + 1;
+    for (int j = 0; j <= along; j++) add_line(view, (uint32_t)j * row, 1, across, cell, line, spectrum);
+    for (int i = 0; i <= across; i++) add_line(view, (uint32_t)i, row, along, cell, line, spectrum);
+    for (int b = 0; b < SHAPE_BANDS; b++) {
+        spectrum->wave[b] = 2 * cell * pow(2, (b + 0.5) / 2);
+        spectrum->height[b] = sqrt(spectrum->height[b] / (across + along + 2));
+    }
+    free(line);
+    return SINGE_OK;
+}

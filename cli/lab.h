@@ -1,0 +1,98 @@
+// What the experiments of `singe paper` and `singe validate` share: scenes to play, and the shapes that come of them.
+#ifndef CLI_LAB_H
+#define CLI_LAB_H
+
+#include "cli/console.h"
+#include "cli/job.h"
+#include "cli/pictures.h"
+#include "cli/report.h"
+#include "singe/singe.h"
+
+typedef struct Lab {
+    Report *report;
+    bool quick;   ///< small sizes: the measures must hold at them as well
+    int threads;
+    Console console;
+    char *scenes; ///< folder of the scene files, within the report's
+} Lab;
+
+/// An experiment: fills its item of the report.
+typedef SingeResult LabFn(Lab *lab, SingeError *error);
+
+typedef struct LabItem {
+    const char *name, *heading, *shows; ///< of the report's item
+    LabFn *run;
+} LabItem;
+
+/// Runs the item of that name, or all of them (NULL), into a report in the folder. Returns EXIT_FAILED where a measure
+/// does not hold.
+ExitCode lab_run(const LabItem *items, int count, const char *name, const char *title, const char *lead,
+                 const char *folder, bool quick, int threads);
+
+/// Prints the error and returns the exit code that goes with it.
+ExitCode lab_fail(const SingeError *error);
+
+// ---- a scene that is played
+
+typedef struct Play {
+    Lab *lab;
+    Job job;
+    SingeSim *sim;
+    Pictures *pictures; ///< opened with the first
+    SingeSurface surface;
+} Play;
+
+/// Builds a scene of the folder `paper`, with texts PATH=VALUE laid over it. `sets` ends with NULL; empty ones are
+/// skipped. Close it in any case.
+SINGE_NODISCARD SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const *sets,
+                                      SingeError *error);
+/// Steps to a time of the scene.
+SINGE_NODISCARD SingeResult play_until(Play *play, double time, SingeError *error);
+/// Draws the surface as it is, without detail and raggedness where the scene has none.
+SINGE_NODISCARD SingeResult play_surface(Play *play, SingeError *error);
+/// Puts a picture into the report.
+SINGE_NODISCARD SingeResult play_shoot(Play *play, const char *caption, SingeError *error);
+void play_close(Play *play);
+
+// ---- a grid of cells in the xy plane without a scene
+
+typedef struct LabGrid {
+    int cells[2];
+    float sides[2];
+    SingeMaterialDef material;
+    SingeSolverDef solver;
+    float time_step, gravity;
+    int attribute_count;
+    const SingeAttribute *attributes;
+} LabGrid;
+
+LabGrid lab_grid(int across, int along, float cell);
+SINGE_NODISCARD SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error);
+
+/// Steps `count` times.
+SINGE_NODISCARD SingeResult lab_steps(SingeSim *sim, int count, SingeError *error);
+
+/// Burns quickly, without heat, to the mass of the attribute "mass" of each vertex, and the lengths follow it: v = m.
+void lab_sets_mass(SingeMaterialDef *material);
+
+// ---- shapes
+
+/// Degrees, root mean square of the angle between neighbouring cells that are both there.
+double shape_bend(const SingeView *view);
+/// Lowest and highest place of the vertices that are there.
+void shape_bounds(const SingeView *view, double low[3], double high[3]);
+/// Share of the sheet's cells that are there.
+double shape_left(const SingeView *view);
+/// Pieces of at least that share of the sheet.
+int shape_pieces(const SingeView *view, double share);
+/// m, length of the surface's borders in its rest shape, over the root of its area.
+double shape_border(const SingeSurface *surface);
+
+/// m, power spectrum of the height over a grid's rest plane, along both its directions, in bands of half an octave
+/// from `shortest` up: root mean square height in the band.
+enum { SHAPE_BANDS = 12 };
+typedef struct ShapeSpectrum { double wave[SHAPE_BANDS], height[SHAPE_BANDS]; } ShapeSpectrum;
+SINGE_NODISCARD SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell,
+                                           ShapeSpectrum *spectrum);
+
+#endif
