@@ -96,18 +96,39 @@ SingeResult play_surface(Play *play, SingeError *error) {
     return result;
 }
 
+/// What has burnt in a shape's scene stands for shrinkage and should not look like char.
+static void make_plain(SingeSurface *surface) {
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        surface->temperature[v] = surface->temperature_peak[v] = 293;
+        surface->mass[v] = 1, surface->burn[v] = surface->burn_rate[v] = 0, surface->time_ignited[v] = -1;
+    }
+}
+
+static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
+    if (!play->pictures && pictures_open(&play->job, &play->pictures, error)) return NULL;
+    if (play_surface(play, error)) return NULL;
+    if (play->plain) make_plain(&play->surface);
+    SingeGas gas = singe_sim_gas(play->sim);
+    pictures_size(play->pictures, &size[0], &size[1]);
+    return pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, singe_sim_view(play->sim).time, error);
+}
+
+SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error) {
+    *rgb = NULL;
+    if (!pictures_available()) return SINGE_OK;
+    const uint8_t *drawn = draw(play, size, error);
+    if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;
+    size_t bytes = (size_t)size[0] * (size_t)size[1] * 3;
+    if ((*rgb = malloc(bytes))) memcpy(*rgb, drawn, bytes);
+    return *rgb ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
 SingeResult play_shoot(Play *play, const char *caption, SingeError *error) {
     if (!pictures_available()) return SINGE_OK;
-    SingeResult result = play->pictures ? SINGE_OK : pictures_open(&play->job, &play->pictures, error);
-    if (!result) result = play_surface(play, error);
-    if (result) return result;
-    SingeGas gas = singe_sim_gas(play->sim);
-    double time = singe_sim_view(play->sim).time;
-    int width, height;
-    const uint8_t *rgb = pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, time, error);
-    if (!rgb) return error->code ? error->code : SINGE_ERROR_STATE;
-    pictures_size(play->pictures, &width, &height);
-    report_picture(play->lab->report, caption, width, height, rgb);
+    int size[2];
+    const uint8_t *drawn = draw(play, size, error);
+    if (!drawn) return error->code ? error->code : SINGE_ERROR_STATE;
+    report_picture(play->lab->report, caption, size[0], size[1], drawn);
     return SINGE_OK;
 }
 
@@ -180,14 +201,19 @@ static void cell_normal(const SingeView *view, uint32_t cell, double n[3]) {
     for (int k = 0; k < 3; k++) n[k] /= sqrt(fmax(length, 1e-300));
 }
 
+double shape_angle(const SingeView *view, uint32_t a, uint32_t b) {
+    double n[3], m[3], dot = 0;
+    cell_normal(view, a, n), cell_normal(view, b, m);
+    for (int k = 0; k < 3; k++) dot += n[k] * m[k];
+    return acos(fmin(1, fmax(-1, dot)));
+}
+
 double shape_bend(const SingeView *view) {
     double sum = 0, count = 0;
     for (uint32_t s = 0; s < view->spring_count[SINGE_GREEN]; s++) {
         if (!(view->spring_flags[SINGE_GREEN][s] & SINGE_ALIVE)) continue;
-        double n[2][3], dot = 0;
-        for (int e = 0; e < 2; e++) cell_normal(view, view->springs[SINGE_GREEN][s][e] - view->vertex_count, n[e]);
-        for (int k = 0; k < 3; k++) dot += n[0][k] * n[1][k];
-        double angle = acos(fmin(1, fmax(-1, dot)));
+        const uint32_t *end = view->springs[SINGE_GREEN][s];
+        double angle = shape_angle(view, end[0] - view->vertex_count, end[1] - view->vertex_count);
         sum += angle * angle, count++;
     }
     return count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0;

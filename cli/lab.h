@@ -40,6 +40,7 @@ typedef struct Play {
     SingeSim *sim;
     Pictures *pictures; ///< opened with the first
     SingeSurface surface;
+    bool plain; ///< drawn as if nothing had burnt: for shapes
 } Play;
 
 /// Builds a scene of the folder `paper`, with texts PATH=VALUE laid over it. `sets` ends with NULL; empty ones are
@@ -50,6 +51,8 @@ SINGE_NODISCARD SingeResult play_open(Play *play, Lab *lab, const char *scene, c
 SINGE_NODISCARD SingeResult play_until(Play *play, double time, SingeError *error);
 /// Draws the surface as it is, without detail and raggedness where the scene has none.
 SINGE_NODISCARD SingeResult play_surface(Play *play, SingeError *error);
+/// Draws a picture into *rgb, from malloc; NULL where the program cannot draw.
+SINGE_NODISCARD SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error);
 /// Puts a picture into the report.
 SINGE_NODISCARD SingeResult play_shoot(Play *play, const char *caption, SingeError *error);
 void play_close(Play *play);
@@ -77,6 +80,8 @@ void lab_sets_mass(SingeMaterialDef *material);
 
 // ---- shapes
 
+/// Radians between the normals of two cells.
+double shape_angle(const SingeView *view, uint32_t a, uint32_t b);
 /// Degrees, root mean square of the angle between neighbouring cells that are both there.
 double shape_bend(const SingeView *view);
 /// Lowest and highest place of the vertices that are there.

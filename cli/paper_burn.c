@@ -1,0 +1,276 @@
+// What burns in the paper: figures 1, 4, 11 and 12, section 6's claims, and the rival idea of sections 2 and 3.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/paper.h"
+
+static const char *const small_grid = "sheets.0.grid.cells=[30, 42]";
+
+// ---- Fig 1, 12: hot from the start, a texture for the rate
+
+/// The texture as it lies on the sheet, into the report.
+static void show_texture(Lab *lab, const SingePicture *picture) {
+    uint8_t *rgb = malloc((size_t)picture->width * (size_t)picture->height * 3);
+    for (int i = 0; rgb && i < picture->width * picture->height; i++)
+        for (int k = 0; k < 3; k++) rgb[3 * i + k] = (uint8_t)lrintf(255 * fminf(1, fmaxf(0, picture->values[i])));
+    if (rgb) report_picture(lab->report, "the texture", picture->width, picture->height, rgb);
+    free(rgb);
+}
+
+static double picture_at(const SingePicture *picture, const float uv[2]) {
+    int x = (int)(uv[0] * (float)picture->width), y = (int)((1 - uv[1]) * (float)picture->height);
+    x = x < 0 ? 0 : x >= picture->width ? picture->width - 1 : x;
+    y = y < 0 ? 0 : y >= picture->height ? picture->height - 1 : y;
+    return (double)picture->values[y * picture->width + x];
+}
+
+/// Correlation of the texture with the mass that is lost.
+static double rate_correlation(const SingeView *view, const SingePicture *picture) {
+    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        double a = picture_at(picture, view->uv[v]), b = 1 - (double)view->mass[v];
+        n++, x += a, y += b, xx += a * a, yy += b * b, xy += a * b;
+    }
+    return (n * xy - x * y) / sqrt((n * xx - x * x) * (n * yy - y * y));
+}
+
+/// Degrees from cell to cell where nothing of both cells' mass is below a bar: what has hardly burnt bends, too.
+static double bend_of_unburnt(const SingeView *view, float bar) {
+    double sum = 0, count = 0;
+    for (uint32_t s = 0; s < view->spring_count[SINGE_GREEN]; s++) {
+        uint32_t a = view->springs[SINGE_GREEN][s][0], b = view->springs[SINGE_GREEN][s][1];
+        if (!(view->spring_flags[SINGE_GREEN][s] & SINGE_ALIVE) || view->mass[a] < bar || view->mass[b] < bar) continue;
+        double angle = shape_angle(view, a - view->vertex_count, b - view->vertex_count);
+        sum += angle * angle, count++;
+    }
+    return count > 0 ? sqrt(sum / count) * 180 / acos(-1) : 0;
+}
+
+SingeResult paper_fig1(Lab *lab, SingeError *error) {
+    static const double times[] = {0.1, 0.5, 1, 1.6, 2.2, 3};
+    Play play;
+    const char *sets[] = {lab->quick ? small_grid : "", NULL};
+    SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
+    if (result) return play_close(&play), result;
+    const SingePicture *picture = &play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)];
+    double correlation = NAN, before = NAN, bend = 0, inner = 0;
+    report_pictures(lab->report, 4);
+    show_texture(lab, picture);
+    for (int i = 0; i < 6 && !result; i++) {
+        char caption[40];
+        snprintf(caption, sizeof caption, "%.1f s", times[i]);
+        result = play_until(&play, times[i], error);
+        if (!result) result = play_shoot(&play, caption, error);
+        SingeView view = singe_sim_view(play.sim);
+        if (i == 0) correlation = rate_correlation(&view, picture), before = shape_bend(&view);
+        bend = fmax(bend, shape_bend(&view)), inner = fmax(inner, bend_of_unburnt(&view, 0.7f));
+    }
+    if (!result) {
+        SingeView view = singe_sim_view(play.sim);
+        report_measure(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 s", correlation,
+                       0.9, 1);
+        report_measure(lab->report, "bend", "degrees from cell to cell, at most", bend, fmax(5, 3 * before), INFINITY);
+        report_measure(lab->report, "inner", "the same of cells that have most of their mass: \"interior regions ... also "
+                       "wrinkle\"", inner, 3, INFINITY);
+        report_measure(lab->report, "burnt", "share of cells gone in the end", 1 - shape_left(&view), 0.3, 1);
+    }
+    play_close(&play);
+    return result;
+}
+
+// ---- Fig 4: four columns
+
+enum { COLUMNS = 4, ROWS = 4 };
+
+typedef struct Column {
+    double left, bend, border;
+    int pieces;
+} Column;
+
+static SingeResult fig4_column(Lab *lab, int i, Column *column, uint8_t **rgb, int size[2], SingeError *error) {
+    static const double times[ROWS] = {0.9, 1.6, 2.4, 3.6};
+    static const char *const variants[COLUMNS][2] = {
+        {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0"}, {"sheets.0.material.ablate=no", ""},
+        {"", ""}, {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, picture: rate.png}", ""}};
+    Play play;
+    const char *sets[] = {variants[i][0], variants[i][1], lab->quick ? small_grid : "", NULL};
+    SingeResult result = play_open(&play, lab, "fig4.yaml", sets, error);
+    for (int k = 0; k < ROWS && !result; k++) {
+        result = play_until(&play, times[k], error);
+        if (!result) result = play_draw(&play, &rgb[k], size, error);
+    }
+    SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
+    if (!result) result = play_surface(&play, error);
+    if (!result)
+        *column = (Column){shape_left(&view), shape_bend(&view), shape_border(&play.surface), shape_pieces(&view, 0.05)};
+    play_close(&play);
+    return result;
+}
+
+SingeResult paper_fig4(Lab *lab, SingeError *error) {
+    static const char *const names[COLUMNS] = {"(a) boundary only", "(b) shrinkage only", "(c) both", "(d) texture"};
+    static const char *const rows[ROWS] = {"0.9 s", "1.6 s", "2.4 s", "3.6 s"};
+    Column c[COLUMNS] = {{0}};
+    uint8_t *rgb[COLUMNS][ROWS] = {{NULL}};
+    int size[2] = {0};
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < COLUMNS && !result; i++) result = fig4_column(lab, i, &c[i], rgb[i], size, error);
+    if (!result) report_pictures(lab->report, COLUMNS);
+    for (int k = 0; k < ROWS; k++)
+        for (int i = 0; i < COLUMNS; i++) {
+            char caption[60];
+            snprintf(caption, sizeof caption, "%s, %s", names[i], rows[k]);
+            if (!result && rgb[i][k]) report_picture(lab->report, caption, size[0], size[1], rgb[i][k]);
+            free(rgb[i][k]);
+        }
+    if (result) return result;
+    report_heads(lab->report, "at 3.6 s|cells left %|pieces over 5 %|bend degrees|border over root of area");
+    for (int i = 0; i < COLUMNS; i++)
+        report_row(lab->report, "%s|%.1f|%d|%.2f|%.2f", names[i], 100 * c[i].left, c[i].pieces, c[i].bend, c[i].border);
+    report_measure(lab->report, "b_whole", "(b) share of cells left", c[1].left, 1, 1);
+    report_measure(lab->report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two parts", c[0].pieces,
+                   2, INFINITY);
+    report_measure(lab->report, "c_parts", "(c) the same", c[2].pieces, 2, INFINITY);
+    report_measure(lab->report, "c_bend", "bend, (c) over (a): more detail with shrinkage", c[2].bend / c[0].bend, 1.3,
+                   INFINITY);
+    report_measure(lab->report, "b_bend", "bend, (b) over (a)", c[1].bend / c[0].bend, 1.3, INFINITY);
+    report_measure(lab->report, "d_border", "length of borders, (d) over (c): the texture makes it ragged",
+                   c[3].border / c[2].border, 1.2, INFINITY);
+    return SINGE_OK;
+}
+
+// ---- Fig 11: the torus burns
+
+/// Of 12 sectors around the hole, those in which a fifth of the vertices have ignited.
+static int sectors_lit(const SingeView *view) {
+    double lit[12] = {0}, all[12] = {0};
+    int count = 0;
+    for (uint32_t v = 0; v < view->vertex_count; v++) {
+        int k = (int)(6 + 6 * atan2((double)view->rest_position[v][1], (double)view->rest_position[v][0]) / acos(-1));
+        all[k % 12]++, lit[k % 12] += view->time_ignited[v] >= 0;
+    }
+    for (int k = 0; k < 12; k++) count += lit[k] >= 0.2 * all[k];
+    return count;
+}
+
+SingeResult paper_fig11(Lab *lab, SingeError *error) {
+    static const double times[] = {0.5, 1.5, 3, 4.5, 6, 8};
+    Play play;
+    int lit[6] = {0};
+    const char *sets[] = {lab->quick ? "sheets.0.mesh=torus-small.obj" : "", NULL};
+    SingeResult result = play_open(&play, lab, "fig11.yaml", sets, error);
+    report_pictures(lab->report, 3);
+    for (int i = 0; i < 6 && !result; i++) {
+        char caption[40];
+        snprintf(caption, sizeof caption, "%.1f s", times[i]);
+        result = play_until(&play, times[i], error);
+        if (!result) result = play_shoot(&play, caption, error);
+        SingeView view = singe_sim_view(play.sim);
+        lit[i] = sectors_lit(&view);
+    }
+    if (!result) {
+        SingeView view = singe_sim_view(play.sim);
+        report_measure(lab->report, "start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1, 6);
+        report_measure(lab->report, "end", "after 8 s: the fire went both ways around", lit[5], 12, 12);
+        report_measure(lab->report, "left", "share of cells left then", shape_left(&view), 0, 0.8);
+        report_measure(lab->report, "ledger", "error of the heat ledger", singe_sim_stats(play.sim).ledger_error, 0, 1e-4);
+    }
+    play_close(&play);
+    return result;
+}
+
+// ---- section 6: what m_loss does
+
+SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
+    enum { CASES = 3, LOOKS = 61 };
+    static const char *const names[CASES] = {"m_loss 10 %, below m_min", "m_loss 30 %", "m_loss 95 %, near m_init"};
+    static const char *const sets[CASES] = {"sheets.0.material.mass_loss=10 %", "", "sheets.0.material.mass_loss=95 %"};
+    static const char *const inks[CASES] = {"#2166ac", "#e08214", "#b2182b"};
+    double left[CASES][LOOKS], time[LOOKS], fifth[CASES], bend = 0;
+    int pieces = 0;
+    SingeResult result = SINGE_OK;
+    report_pictures(lab->report, CASES);
+    for (int i = 0; i < CASES && !result; i++) {
+        Play play;
+        const char *laid[] = {sets[i], lab->quick ? small_grid : "", NULL};
+        result = play_open(&play, lab, "fig1.yaml", laid, error);
+        fifth[i] = INFINITY;
+        for (int k = 0; k < LOOKS && !result; k++) {
+            time[k] = 0.05 * k;
+            result = play_until(&play, time[k], error);
+            SingeView view = singe_sim_view(play.sim);
+            left[i][k] = shape_left(&view);
+            if (left[i][k] < 0.8 && time[k] < fifth[i]) fifth[i] = time[k];
+            char caption[80];
+            snprintf(caption, sizeof caption, "%s, %.1f s", names[i], time[k]);
+            if (!result && k == (i == 2 ? 4 : 30)) result = play_shoot(&play, caption, error);
+            if (i == 0 && k == LOOKS - 1) bend = shape_bend(&view), pieces = (int)singe_sim_stats(play.sim).pieces;
+        }
+        play_close(&play);
+    }
+    if (result) return result;
+    Plot plot = {.title = "Cells left", .x_label = "s", .y_label = "share"};
+    for (int i = 0; i < CASES; i++) plot_add(&plot, (PlotLine){names[i], inks[i], time, left[i], LOOKS, false, false});
+    report_plot(lab->report, &plot);
+    report_measure(lab->report, "whole", "m_loss below m_min: share of cells left after 3 s", left[0][LOOKS - 1], 1, 1);
+    report_measure(lab->report, "one_piece", "the same: pieces", pieces, 1, 1);
+    report_measure(lab->report, "wrinkles", "the same: degrees from cell to cell", bend, 5, INFINITY);
+    report_measure(lab->report, "quick", "m_loss near m_init: a fifth is gone in this share of the time of m_loss 30 %",
+                   fifth[2] / fifth[1], 0, 0.4);
+    return SINGE_OK;
+}
+
+// ---- the rival idea: bending by the difference of temperature
+
+enum { RIVAL_LOOKS = 145 };
+
+/// K that the front is hotter than the back, and 1/m of the strip along its middle line, positive towards the back.
+static void rival_look(const SingeView *view, double *difference, double *curvature) {
+    enum { ALONG = 30 };
+    double front = 0, back = 0, angle = 0, length = 0;
+    const uint32_t row = ALONG + 1;
+    for (uint32_t i = 0; i < view->cell_count; i++) front += (double)view->temperature[view->vertex_count + i] / view->cell_count;
+    for (uint32_t v = 0; v < view->vertex_count; v++) back += (double)view->temperature[v] / view->vertex_count;
+    for (uint32_t i = 2; i + 3 < row; i++) {
+        const float *p = view->position[row + i], *q = view->position[row + i + 1], *r = view->position[row + i + 2];
+        double a[2] = {(double)q[0] - (double)p[0], (double)q[2] - (double)p[2]};
+        double b[2] = {(double)r[0] - (double)q[0], (double)r[2] - (double)q[2]};
+        angle += atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]), length += hypot(a[0], a[1]);
+    }
+    *difference = front - back, *curvature = angle / length;
+}
+
+static void scale_to_one(double *values, int count) {
+    double most = 0;
+    for (int i = 0; i < count; i++) most = fmax(most, fabs(values[i]));
+    for (int i = 0; i < count && most > 0; i++) values[i] = fabs(values[i]) / most;
+}
+
+SingeResult paper_rival(Lab *lab, SingeError *error) {
+    double time[RIVAL_LOOKS], difference[RIVAL_LOOKS], curvature[RIVAL_LOOKS];
+    Play play;
+    SingeResult result = play_open(&play, lab, "rival.yaml", (const char *const[]){NULL}, error);
+    for (int k = 0; k < RIVAL_LOOKS && !result; k++) {
+        time[k] = k / 24.0;
+        result = play_until(&play, time[k], error);
+        SingeView view = singe_sim_view(play.sim);
+        rival_look(&view, &difference[k], &curvature[k]);
+    }
+    play_close(&play);
+    if (result) return result;
+    double most = 0, hottest = 0;
+    for (int k = 0; k < RIVAL_LOOKS; k++) most = fmax(most, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
+    report_text(lab->report, "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K "
+                "hotter, and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
+                "difference follows the other line: flat again as soon as the strip is cold.", hottest, most);
+    scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
+    Plot plot = {.title = "Curl while it is heated and cools", .x_label = "s", .y_label = "share of the largest"};
+    plot_add(&plot, (PlotLine){"by temperature", "#b2182b", time, difference, RIVAL_LOOKS, false, true});
+    plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});
+    report_plot(lab->report, &plot);
+    report_measure(lab->report, "curl", "largest curvature, 1/m", most, 3, INFINITY);
+    report_measure(lab->report, "rival_end", "rival: curl left in the end", difference[RIVAL_LOOKS - 1], 0, 0.05);
+    report_measure(lab->report, "here_end", "here: curl left in the end", curvature[RIVAL_LOOKS - 1], 0.8, 1);
+    return SINGE_OK;
+}
