@@ -17,7 +17,7 @@ static const struct {
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
-    {"paper", command_paper, "computes the paper's tables and figures about its solver"},
+    {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
     {"scene-doc", command_scene_doc, NULL},
 };
 

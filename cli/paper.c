@@ -42,6 +42,10 @@ static const LabItem items[] = {
      "depend on each other: fast projection of all springs in one system diverges.", paper_all_at_once},
     {"table2", "Table 2: time of a step", "Time in proportion to the number of springs, with conjugate gradients on an ELLPACK "
      "matrix, on a quad-core machine of 2011.", paper_table2},
+    {"adaptive", "Section 8.2: adaptivity", "\"It is not straightforward to apply our method to adaptive BCS, BCC or irregular "
+     "meshes.\"", paper_adaptive},
+    {"readings", "Ambiguities and misprints", "Where the paper can be read in more than one way; docs/equations.md has them with "
+     "all the differences that are choices.", paper_readings},
 };
 
 enum { ITEM_COUNT = sizeof items / sizeof *items };

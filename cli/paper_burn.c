@@ -204,7 +204,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
             if (left[i][k] < 0.8 && time[k] < fifth[i]) fifth[i] = time[k];
             char caption[80];
             snprintf(caption, sizeof caption, "%s, %.1f s", names[i], time[k]);
-            if (!result && k == (i == 2 ? 4 : 30)) result = play_shoot(&play, caption, error);
+            if (!result && k == (i == 2 ? 11 : 30)) result = play_shoot(&play, caption, error);
             if (i == 0 && k == LOOKS - 1) bend = shape_bend(&view), pieces = (int)singe_sim_stats(play.sim).pieces;
         }
         play_close(&play);

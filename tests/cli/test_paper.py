@@ -1,7 +1,9 @@
 """singe paper, and the paper's solver in a scene."""
 
 import csv
+import json
 import os
+import re
 import unittest
 
 from support import Case
@@ -10,15 +12,47 @@ TABLE1 = "0.4306 0.4401 0.5527 0.4954 0.5767 0.5038 0.5804 0.5050 0.5810 0.5052"
 
 
 class Paper(Case):
+    def check_page(self, folder, items, failed=0):
+        """The page and its data tell the same, and pictures are there."""
+        with open(self.path(folder, "measures.json")) as file:
+            data = json.load(file)
+        with open(self.path(folder, "measures.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        with open(self.path(folder, "index.html")) as file:
+            page = file.read()
+        self.assertEqual(data["failed"], failed)
+        self.assertEqual([m["item"] for m in data["measures"]], [r["item"] for r in rows])
+        self.assertEqual([m["holds"] for m in data["measures"]], [r["verdict"] == "holds" for r in rows])
+        self.assertEqual(sum(not m["holds"] for m in data["measures"]), failed)
+        self.assertEqual(list(dict.fromkeys(r["item"] for r in rows)), items)
+        self.assertEqual(re.findall(r'<h2 id="([^"]*)"', page), items)
+        for name in re.findall(r'src="([^"]*)"', page):
+            self.assertTrue(os.path.exists(self.path(folder, name)), name)
+        self.assertNotIn("<script", page)
+        self.assertNotIn("http", page.replace("http://www.w3.org/2000/svg", ""))
+
+    def test_unknown(self):
+        _, err = self.singe("paper", "fig12", expect=2)
+        self.assertIn("did you mean 'fig1", err)
+
+    def test_scenes_lie_beside_the_page(self):
+        self.singe("paper", "fig5", "-o", self.path("page"))
+        for name in "fig4.yaml", "torus.obj", "rate.png":
+            self.assertTrue(os.path.getsize(self.path("page", "scenes", name)) > 100)
+        for name in os.listdir(self.path("page", "scenes")):
+            if name.endswith(".yaml"):
+                self.singe("run", self.path("page", "scenes", name), "-o", self.path("run"), "--frames", "1",
+                           "--no-preview", "--quiet")
+
     def test_table1(self):
-        out, _ = self.singe("paper", "table1")
+        out, _ = self.singe("paper", "table1", "-o", self.path("page"))
         for number in TABLE1:
             self.assertGreaterEqual(out.count(number), 2, "ours beside the paper's")
-        self.assertIn("largest difference 0.0000", out)
+        self.check_page("page", ["table1"])
 
     def test_fig8(self):
         out, _ = self.singe("paper", "fig8", "-o", self.path("new", "fig"), timeout=600)
-        self.assertEqual(out.count("never rises"), 2)
+        self.check_page(os.path.join("new", "fig"), ["fig8"])
         for state in "swing", "shrink":
             with open(self.path("new", "fig", f"fig8-{state}.csv")) as file:
                 rows = list(csv.DictReader(file))
@@ -40,7 +74,9 @@ class Paper(Case):
         self.assertIn("file", err)
 
     def test_all_at_once(self):
-        out, _ = self.singe("paper", "all-at-once", timeout=600)
+        self.singe("paper", "all-at-once", "-o", self.path("page"), timeout=600)
+        with open(self.path("page", "index.html")) as file:
+            out = file.read()
         self.assertIn("360 constraints, 249 degrees of freedom", out)
 
     def test_scene_with_the_method(self):
