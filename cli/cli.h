@@ -17,6 +17,7 @@ int command_measure(int argc, char **argv);
 int command_verify(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_paper(int argc, char **argv);
+int command_validate(int argc, char **argv);
 int command_scene_doc(int argc, char **argv);
 
 #endif

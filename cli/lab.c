@@ -150,22 +150,64 @@ LabGrid lab_grid(int across, int along, float cell) {
     return grid;
 }
 
-SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error) {
-    SingeSimDef def = singe_default_sim();
+/// Leaves out cells, and the vertices that no cell is left at.
+static void cut_grid(Mesh *mesh, bool (*inside)(double x, double y)) {
+    uint32_t cells = 0, vertices = 0, *number = calloc(mesh->vertex_count, sizeof *number);
+    for (uint32_t c = 0; c < mesh->cell_count && number; c++) {
+        uint32_t *corner = mesh->cells + 4 * (size_t)c;
+        const float *p = mesh->positions + 3 * (size_t)corner[0], *q = mesh->positions + 3 * (size_t)corner[2];
+        if (!inside((double)(p[0] + q[0]) / 2, (double)(p[1] + q[1]) / 2)) continue;
+        for (int k = 0; k < 4; k++) number[mesh->cells[4 * (size_t)cells + (size_t)k] = corner[k]] = 1;
+        cells++;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count && number; v++) {
+        if (!number[v]) continue;
+        memmove(mesh->positions + 3 * (size_t)vertices, mesh->positions + 3 * (size_t)v, 3 * sizeof(float));
+        memmove(mesh->uv + 2 * (size_t)vertices, mesh->uv + 2 * (size_t)v, 2 * sizeof(float));
+        number[v] = vertices++;
+    }
+    for (size_t i = 0; i < 4 * (size_t)cells; i++) mesh->cells[i] = number[mesh->cells[i]];
+    if (number) mesh->cell_count = cells, mesh->vertex_count = vertices;
+    free(number);
+}
+
+/// Adds the grid's mesh with its attributes.
+static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *error) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
+    Mesh mesh = {0};
+    const uint32_t nx = (uint32_t)grid->cells[0], ny = (uint32_t)grid->cells[1];
+    SingeResult result = mesh_grid(grid->sides[0], grid->sides[1], nx, ny, (SingeAllocator){0}, &mesh, error);
+    if (result) return result;
+    mesh_grid_wear(&mesh, nx, ny, &(GridWear){.jitter = grid->jitter});
+    float *field = malloc(mesh.vertex_count * sizeof *field);
+    for (uint32_t v = 0; v < mesh.vertex_count && field; v++) {
+        float *p = mesh.positions + 3 * (size_t)v;
+        for (int k = 0; k < 2; k++) p[k] += grid->sides[k] / 2;
+        field[v] = grid->field ? (float)grid->field(grid->context, (double)p[0], (double)p[1]) : 0;
+    }
+    if (grid->inside) cut_grid(&mesh, grid->inside);
+    const SingeAttribute attributes[] = {{"field", field}, {"mass", grid->mass ? grid->mass : field}};
+    sheet.material = grid->material;
+    sheet.vertex_count = mesh.vertex_count, sheet.positions = mesh.positions, sheet.uv = mesh.uv;
+    sheet.cell_count = mesh.cell_count, sheet.cells = mesh.cells;
+    sheet.attribute_count = 2, sheet.attributes = attributes;
+    result = field ? singe_sim_add_sheet(sim, &sheet, &id) : SINGE_ERROR_MEMORY;
+    if (!result) result = singe_sim_commit(sim);
+    if (result) *error = *singe_sim_error(sim);
+    free(field);
+    mesh_free(&mesh);
+    return result;
+}
+
+SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = singe_default_sim();
     def.thread_count = lab->threads, def.time_step = grid->time_step, def.solver = grid->solver;
     def.gravity[2] = -grid->gravity, def.air_density = 0;
-    sheet.material = grid->material;
-    sheet.attribute_count = (uint32_t)grid->attribute_count, sheet.attributes = grid->attributes;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = sheet_add_strip(*sim, &sheet, grid->cells, grid->sides, false, &id);
-    if (!result) result = singe_sim_commit(*sim);
-    if (!result) return SINGE_OK;
-    *error = *singe_sim_error(*sim);
-    singe_sim_destroy(*sim);
-    *sim = NULL;
+    result = add_grid(grid, *sim, error);
+    if (result) singe_sim_destroy(*sim), *sim = NULL;
     return result;
 }
 

@@ -65,9 +65,14 @@ typedef struct LabGrid {
     SingeMaterialDef material;
     SingeSolverDef solver;
     float time_step, gravity;
-    int attribute_count;
-    const SingeAttribute *attributes;
+    float jitter;           ///< of a cell, how far vertices lie off the grid
+    const float *mass;      ///< [vertices] the attribute "mass", or NULL
+    double (*field)(const void *context, double x, double y); ///< the attribute "field", or NULL
+    const void *context;
+    bool (*inside)(double x, double y); ///< whether a cell with this middle is there, or NULL: all
 } LabGrid;
+
+/// From the origin to sides along x and y; vertex i + j (cells[0] + 1). Inert but for what its material is told.
 
 LabGrid lab_grid(int across, int along, float cell);
 SINGE_NODISCARD SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error);

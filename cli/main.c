@@ -18,6 +18,7 @@ static const struct {
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
+    {"validate", command_validate, "holds the physics against sources outside the project, on a page"},
     {"scene-doc", command_scene_doc, NULL},
 };
 
@@ -43,7 +44,7 @@ static int finish(int code) {
 
 int main(int argc, char **argv) {
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render, measure, verify, bench or paper\nsee: singe --help\n",
+        fputs("singe: error: needs a command: run, check, render, measure, verify, bench, paper or validate\nsee: singe --help\n",
               stderr);
         return EXIT_INPUT;
     }

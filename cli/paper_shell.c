@@ -222,13 +222,12 @@ static void state_draw(FILE *file, const double *ratio, const double *cut) {
 SingeResult paper_fig5(Lab *lab, SingeError *error) {
     const double cell = 0.01;
     float mass[2 * STATE_COLUMNS];
-    SingeAttribute attribute = {"mass", mass};
     LabGrid grid = lab_grid(STATES, 1, (float)cell);
     for (int i = 0; i < STATE_COLUMNS; i++)
         for (int k = 0; k < 2; k++) mass[i + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
     lab_sets_mass(&grid.material);
     grid.material.mass_loss = singe_param((float)state_loss), grid.material.ablate = true;
-    grid.attribute_count = 1, grid.attributes = &attribute;
+    grid.mass = mass;
     SingeSim *sim;
     SingeSurface surface = {0};
     SingeResult result = lab_build(lab, &grid, &sim, error);
@@ -303,14 +302,13 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
     enum { ROW = MARCH_CELLS + 1 };
     const double cell = 0.01;
     float mass[ROW * ROW];
-    SingeAttribute attribute = {"mass", mass};
     LabGrid grid = lab_grid(MARCH_CELLS, MARCH_CELLS, (float)cell);
     for (int v = 0; v < ROW * ROW; v++)
         mass[v] = (float)(0.5 + 0.3 * sin(1.3 * (v % ROW) + 0.4) * cos(0.9 * (v / ROW) + 0.2 * (v % ROW)) + 0.03);
     lab_sets_mass(&grid.material);
     grid.material.mass_loss = singe_param((float)march_loss), grid.material.ablate = true;
     grid.material.shrink_front = grid.material.shrink_back = singe_param(0);
-    grid.attribute_count = 1, grid.attributes = &attribute;
+    grid.mass = mass;
     SingeSim *sim;
     SingeSurface surface = {0};
     SingeResult result = lab_build(lab, &grid, &sim, error);
