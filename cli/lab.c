@@ -145,7 +145,7 @@ void play_close(Play *play) {
 LabGrid lab_grid(int across, int along, float cell) {
     LabGrid grid = {.cells = {across, along}, .sides = {(float)across * cell, (float)along * cell},
                     .material = singe_default_material(), .solver = singe_default_solver(),
-                    .time_step = singe_default_sim().time_step};
+                    .time_step = singe_default_sim().time_step, .pace = 1};
     sheet_inert(&grid.material);
     return grid;
 }
@@ -203,7 +203,7 @@ static SingeResult add_grid(const LabGrid *grid, SingeSim *sim, SingeError *erro
 SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = lab->threads, def.time_step = grid->time_step, def.solver = grid->solver;
-    def.gravity[2] = -grid->gravity, def.air_density = 0;
+    def.gravity[2] = -grid->gravity, def.air_density = 0, def.pace = grid->pace;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
     result = add_grid(grid, *sim, error);

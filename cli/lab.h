@@ -64,7 +64,7 @@ typedef struct LabGrid {
     float sides[2];
     SingeMaterialDef material;
     SingeSolverDef solver;
-    float time_step, gravity;
+    float time_step, gravity, pace;
     float jitter;           ///< of a cell, how far vertices lie off the grid
     const float *mass;      ///< [vertices] the attribute "mass", or NULL
     double (*field)(const void *context, double x, double y); ///< the attribute "field", or NULL

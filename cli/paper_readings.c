@@ -164,7 +164,7 @@ static SingeResult uniform_run(Lab *lab, int cells, double detail, Uniform *out,
     snprintf(grid, sizeof grid, "sheets.0.grid.cells=[%d, %d]", cells, cells);
     snprintf(fine, sizeof fine, "detail=%g mm", detail);
     SingeResult result = play_open(&play, lab, "adaptive.yaml", (const char *const[]){grid, fine, NULL}, error);
-    const double until = lab->quick ? 1 : 2;
+    const double until = lab->quick ? 1 : 1.2;
     if (!result) result = play_until(&play, until, error);
     if (!result) result = play_surface(&play, error);
     if (!result) {

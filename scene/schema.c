@@ -194,6 +194,10 @@ static const SchemaRow material_rows[] = {
           "mu of eq 4: mass lost per second and kelvin above ignition"),
     PARAM("rate_ceiling", rate_ceiling, DIM_TEMPERATURE_DIFFERENCE, OVER_OR_INF(0),
           "kelvins above ignition where the rate of burning stops growing, for want of air; inf is the paper"),
+    PARAM("pre_exponential", pre_exponential, DIM_RATE, FROM(0),
+          "A: above 0 the mass falls by Arrhenius' kinetics in place of `mass_rate`: what can still burn by A exp(-E/(R T)) a "
+          "second, to the order `ash_exponent`, from `ignition_temperature` on"),
+    PARAM("activation_energy", activation_energy, DIM_MOLAR_ENERGY, FROM(0), "E of these kinetics"),
     PARAM("ash_exponent", ash_exponent, DIM_NONE, FROM(0),
           "p: slows eq 4 near the end by ((m - m_min)/(1 - m_min))^p, so that flakes of ash stay; 0 is the paper"),
     PARAM("mass_min", mass_min, DIM_FRACTION, BELOW(0, 1), "m_min: share that never burns"),

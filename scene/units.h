@@ -29,6 +29,7 @@ typedef enum Dimension {
     DIM_RATE_PER_KELVIN,
     DIM_COMPLIANCE,
     DIM_STIFFNESS,
+    DIM_MOLAR_ENERGY,
     DIM_FRAME_RATE,
     DIM_COUNT
 } Dimension;

@@ -10,7 +10,11 @@
 //   theta  ceiling, K: hotter fuel burns no faster, for the air brings no more oxygen; infinite in the paper
 //   p      ash exponent; 0 is the paper's straight line, larger p leaves flakes of ash
 //
-// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)) is a number. dx/dt = -(k/dt) x^p is
+// With a pre-exponential factor A > 0 the rate is Arrhenius' instead, for what is above T_ign:
+//
+//   dx/dt = -(A/F) x^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
+//
+// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)), or A dt exp(-E/(R T_e))/F, is a number. dx/dt = -(k/dt) x^p is
 // then solved exactly, so that no step however long passes m_min, and x falls by
 //
 //   p = 0     k, at most x
@@ -36,10 +40,18 @@ static float fall(float x, float k, float p) {
     return r >= 1 ? x : -x * expm1f(log1pf(-r) / (1 - p));
 }
 
+/// A exp(-E/(R T_e)), 1/s; NaN comes through.
+static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
+    const float gas_constant = 8.314462618f; // J/(mol K)
+    float temperature = field_at(matter->ignition_temperature, i) + excess;
+    return field_at(matter->pre_exponential, i) * expf(-field_at(matter->activation_energy, i) / (gas_constant * temperature));
+}
+
 /// One particle's new mass; NaN comes through.
 static float lower_mass(const Matter *matter, uint32_t i, float mass, float excess, float dt) {
     float least = field_at(matter->mass_min, i), span = 1 - least;
     float x = (mass - least) / span, k = field_at(matter->mass_rate, i) * dt * excess / span;
+    if (field_at(matter->pre_exponential, i) > 0) k = arrhenius_rate(matter, i, excess) * dt;
     if (x <= 0 || k <= 0) return mass;
     float lowered = mass - span * fall(x, k, field_at(matter->ash_exponent, i));
     return lowered < least ? least : lowered;

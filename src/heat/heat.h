@@ -51,6 +51,7 @@ float heat_thickening(const HeatPlan *plan, uint32_t sheet);
 /// What decides how thick a front is: means of these parameters over a sheet.
 typedef struct FrontMatter {
     float diffusivity, mass_rate, heating, ignition_temperature, rate_ceiling;
+    float pre_exponential, activation_energy;
 } FrontMatter;
 
 /// That factor for a material's `thickening`, its front and the cell size.

@@ -8,7 +8,7 @@ static const float PLAN_THICKENING_MAX = 1e6f;
 static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
     const Sheet *sheet = &shell->sheets[s];
     const Matter *matter = &shell->matter;
-    double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, count = 0;
+    double diffusivity = 0, rate = 0, heating = 0, ignition = 0, ceiling = 0, factor = 0, energy = 0, count = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         if (matter->sheet[i] != s || !(matter->area[i] > 0)) continue;
         diffusivity += field_at(matter->diffusivity, i);
@@ -16,11 +16,14 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
         heating += field_at(matter->heating, i);
         ignition += field_at(matter->ignition_temperature, i);
         ceiling += field_at(matter->rate_ceiling, i);
+        factor += field_at(matter->pre_exponential, i);
+        energy += field_at(matter->activation_energy, i);
         count++;
     }
     if (count == 0) return 1;
     FrontMatter front = {(float)(diffusivity / count), (float)(rate / count), (float)(heating / count),
-                         (float)(ignition / count), (float)(ceiling / count)};
+                         (float)(ignition / count), (float)(ceiling / count), (float)(factor / count),
+                         (float)(energy / count)};
     return heat_thickening_for(sheet->material.thickening, &front, ambient, sheet->cell_size);
 }
 

@@ -15,6 +15,8 @@
 // c      1          cells as large as c delta: measured on strips of cells from 0.5 to 4 mm, c = 0.75 holds the speed
 //                   within 5 % (tests/heat/test_front.c, `singe bench front`)
 //
+// By Arrhenius' kinetics mu theta is A exp(-E/(R (T_ign + theta))), the rate at the hottest.
+//
 // One F holds for a whole sheet; parameters that vary over it come in by their means.
 #include <math.h>
 
@@ -22,12 +24,21 @@
 
 static const float THICKEN_CELLS = 0.75f;
 
+/// 1/s, of burning at a rise above ignition.
+static float front_rate(const FrontMatter *front, float rise) {
+    const float gas_constant = 8.314462618f; // J/(mol K)
+    if (!(front->pre_exponential > 0)) return front->mass_rate * rise;
+    float temperature = front->ignition_temperature + rise;
+    return front->pre_exponential * expf(-front->activation_energy / (gas_constant * temperature));
+}
+
 float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size) {
     if (thickening > 0) return thickening > 1 ? thickening : 1;
     float rise = front->heating - (front->ignition_temperature - ambient_temperature);
     // what cannot burn, or diffuses nothing, has no front
-    if (!(rise > 0) || !(front->mass_rate > 0) || !(front->diffusivity > 0)) return 1;
-    rise = fminf(rise, front->rate_ceiling);
-    float needed = cell_size / (THICKEN_CELLS * sqrtf(front->diffusivity / (front->mass_rate * rise)));
+    if (!(rise > 0) || !(front->diffusivity > 0)) return 1;
+    float rate = front_rate(front, fminf(rise, front->rate_ceiling));
+    if (!(rate > 0)) return 1;
+    float needed = cell_size / (THICKEN_CELLS * sqrtf(front->diffusivity / rate));
     return needed > 1 ? needed : 1;
 }

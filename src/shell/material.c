@@ -75,6 +75,8 @@ static const ParamRule param_rules[] = {
     {FIELD(crease_share), PARAM_CREASE_SHARE, AT_BOTH, UP_TO_ONE},
     {FIELD(strength), PARAM_STRENGTH, AT_BOTH, POSITIVE_OR_INFINITE},
     {FIELD(char_strength), PARAM_CHAR_STRENGTH, AT_BOTH, POSITIVE},
+    {FIELD(pre_exponential), PARAM_PRE_EXPONENTIAL, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(activation_energy), PARAM_ACTIVATION_ENERGY, AT_BOTH, NOT_NEGATIVE},
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 

@@ -49,6 +49,8 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_CREASE_SHARE] = &matter->crease_share,
         [PARAM_STRENGTH] = &matter->strength,
         [PARAM_CHAR_STRENGTH] = &matter->char_strength,
+        [PARAM_PRE_EXPONENTIAL] = &matter->pre_exponential,
+        [PARAM_ACTIVATION_ENERGY] = &matter->activation_energy,
     };
     return fields[param];
 }

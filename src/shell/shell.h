@@ -55,6 +55,8 @@ typedef struct Matter {
     Field gas_heat;            ///< J per kg burnt, what of its heat the sheet does not keep
     Field mass_rate;           ///< 1/(K s)
     Field rate_ceiling;        ///< K, may be infinite
+    Field pre_exponential;     ///< 1/s; 0: mass_rate holds
+    Field activation_energy;   ///< J/mol
     Field ash_exponent;
     Field mass_min;
     Field mass_loss;
@@ -121,7 +123,7 @@ typedef enum ShellParam {
     PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_CREASE_RADIUS, PARAM_CREASE_SHARE,
-    PARAM_STRENGTH, PARAM_CHAR_STRENGTH,
+    PARAM_STRENGTH, PARAM_CHAR_STRENGTH, PARAM_PRE_EXPONENTIAL, PARAM_ACTIVATION_ENERGY,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
     PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT

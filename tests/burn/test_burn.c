@@ -99,6 +99,30 @@ static void exponents_follow_their_solutions(void **unused) {
     }
 }
 
+/// dx/dt = -A exp(-E/(R T)) x^p at a T of each particle's own, as hot as the ceiling lets it count.
+static void kinetics_follow_arrhenius(void **unused) {
+    (void)unused;
+    const float exponents[] = {0, 0.5f, 1, 1.3f};
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
+        SingeMaterialDef material = plain_material();
+        material.ash_exponent = singe_param(exponents[e]), material.rate_ceiling = singe_param(120);
+        material.pre_exponential = singe_param(4.276e11f), material.activation_energy = singe_param(160e3f);
+        BurningSheet *b = burning_sheet(2, 2, 0.01f, &material);
+        const double ignition = (double)material.ignition_temperature.value;
+        for (uint32_t i = 0; i < b->shell.particle_count; i++)
+            b->state.heat.temperature[i] = (float)ignition - 10 + 15 * (float)i;
+        for (int n = 1; n <= 40; n++) {
+            assert_int_equal(step(b, NULL, 0.1f, 2, 2.5f), SINGE_OK); // 0.08 s over F
+            for (uint32_t i = 0; i < b->shell.particle_count; i++) {
+                double t = fmin((double)b->state.heat.temperature[i], ignition + 120);
+                double k = t > ignition ? 4.276e11 * exp(-160e3 / (8.314462618 * t)) : 0;
+                assert_float_equal(b->state.burn.mass[i], 0.15 + 0.85 * exact(k, 0.08 * n, (double)exponents[e]), 2e-5);
+            }
+        }
+        burning_sheet_free(b);
+    }
+}
+
 static void no_step_passes_the_least_mass(void **unused) {
     (void)unused;
     const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2, 5}, steps[] = {1, 50, 1e4f, 1e30f};
@@ -352,6 +376,7 @@ int main(void) {
         cmocka_unit_test(rate_stops_growing_at_its_ceiling),
         cmocka_unit_test(ceilings_may_vary),
         cmocka_unit_test(exponents_follow_their_solutions),
+        cmocka_unit_test(kinetics_follow_arrhenius),
         cmocka_unit_test(no_step_passes_the_least_mass),
         cmocka_unit_test(ignites_once_and_in_order),
         cmocka_unit_test(burnt_when_mass_is_below_loss),

@@ -78,7 +78,8 @@ static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
 
 static void thickening_by_hand_and_its_limits(void **unused) {
     (void)unused;
-    FrontMatter front = {1e-5f, 9e-3f, 2400, 513, 260};
+    FrontMatter front = {.diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513,
+                         .rate_ceiling = 260};
     assert_true(heat_thickening_for(3.5f, &front, 293, 0.01f) == 3.5f);
     float a = heat_thickening_for(0, &front, 293, 0.01f);
     CHECK_NEAR(heat_thickening_for(0, &front, 293, 0.02f), 2 * (double)a, 1e-3);
@@ -107,7 +108,8 @@ static void thickening_goes_by_the_means(void **unused) {
     def.material.thickening = 0;
     Rig rig;
     rig_open(&rig, &def);
-    FrontMatter front = {1e-4f, 10e-3f, 2250, def.material.ignition_temperature.value, 200};
+    FrontMatter front = {.diffusivity = 1e-4f, .mass_rate = 10e-3f, .heating = 2250,
+                         .ignition_temperature = def.material.ignition_temperature.value, .rate_ceiling = 200};
     double expected = (double)heat_thickening_for(0, &front, 293, 0.01f);
     assert_true(expected > 1.5);
     CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);

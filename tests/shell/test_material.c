@@ -98,6 +98,8 @@ static const struct {
     {AT(crease_share), PARAM_CREASE_SHARE, BOTH, TO_1},
     {AT(strength), PARAM_STRENGTH, BOTH, ABOVE_0_OR_INFINITE},
     {AT(char_strength), PARAM_CHAR_STRENGTH, BOTH, ABOVE_0},
+    {AT(pre_exponential), PARAM_PRE_EXPONENTIAL, BOTH, FROM_0},
+    {AT(activation_energy), PARAM_ACTIVATION_ENERGY, BOTH, FROM_0},
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 
@@ -145,7 +147,8 @@ static void test_numbers(void **state) {
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
     SingeParam *more[] = {&m->layer_exchange, &m->convection, &m->emissivity, &m->loss_mass_floor, &m->rate_ceiling,
-                          &m->char_weight, &m->drag, &m->damping, &m->strength, &m->char_strength};
+                          &m->char_weight, &m->drag, &m->damping, &m->strength, &m->char_strength,
+                          &m->pre_exponential, &m->activation_energy};
     enum { MORE = sizeof more / sizeof *more };
     for (int k = 0; k < MORE; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
     for (int k = 0; k < 4; k++) m->compliance[k] = singe_param(0.3f + 0.1f * (float)k);
@@ -155,7 +158,7 @@ static void test_numbers(void **state) {
     const Matter *matter = &shell.matter;
     const Field others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
                              matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping, matter->strength,
-                             matter->char_strength};
+                             matter->char_strength, matter->pre_exponential, matter->activation_energy};
     const Field fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
                              matter->gas_heat, matter->heating, matter->mass_rate, matter->ash_exponent,
                              matter->mass_min, matter->mass_loss, matter->ash_density};
