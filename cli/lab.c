@@ -370,7 +370,9 @@ SingeResult shape_spectrum(const SingeView *view, int across, int along, double 
     for (int i = 0; i <= across; i++) add_line(view, (uint32_t)i, row, along, cell, line, spectrum);
     for (int b = 0; b < SHAPE_BANDS; b++) {
         spectrum->wave[b] = 2 * cell * pow(2, (b + 0.5) / 2);
-        spectrum->height[b] = sqrt(spectrum->height[b] / (across + along + 2));
+        int waves = 0; // whole numbers of them on a line that lie in the band
+        for (int k = 1; k <= across / 2; k++) waves += (int)floor(2 * log2(across / (2.0 * k)) + 1e-9) == b;
+        spectrum->height[b] = waves ? sqrt(spectrum->height[b] / (across + along + 2)) : (double)NAN;
     }
     free(line);
     return SINGE_OK;

@@ -99,7 +99,7 @@ int shape_pieces(const SingeView *view, double share);
 double shape_border(const SingeSurface *surface);
 
 /// m, power spectrum of the height over a grid's rest plane, along both its directions, in bands of half an octave
-/// from `shortest` up: root mean square height in the band.
+/// from `shortest` up: root mean square height in the band, NaN where no wave fits.
 enum { SHAPE_BANDS = 12 };
 typedef struct ShapeSpectrum { double wave[SHAPE_BANDS], height[SHAPE_BANDS]; } ShapeSpectrum;
 SINGE_NODISCARD SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell,

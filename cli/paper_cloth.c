@@ -94,6 +94,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
     for (int i = 0; i < SHRINK_CASES; i++)
         plot_add(&plot, (PlotLine){names[i], inks[i], spectra[i].wave, spectra[i].height, SHAPE_BANDS, false, false});
     for (int b = 0; b < SHAPE_BANDS; b++) {
+        if (isnan(spectra[0].height[b])) continue;
         for (int i = 0; i < SHRINK_CASES; i++) spectra[i].height[b] = fmax(spectra[i].height[b], 1e-7); // no less counts
         if (spectra[0].wave[b] < 4 * cell || spectra[0].wave[b] > 0.05) continue;
         least = fmin(least, spectra[0].height[b] / spectra[1].height[b]);

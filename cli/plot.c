@@ -5,7 +5,7 @@
 
 #include "formats/formats.h"
 
-enum { WIDTH = 640, HEIGHT = 400, LEFT = 76, RIGHT = 150, TOP = 40, BOTTOM = 50 };
+enum { WIDTH = 720, HEIGHT = 400, LEFT = 76, RIGHT = 220, TOP = 48, BOTTOM = 50 };
 
 typedef struct Axis {
     bool log;
@@ -100,7 +100,7 @@ void plot_draw(const Plot *plot, FILE *file) {
             "<text x=\"%d\" y=\"18\" font-size=\"14\">%s</text>\n"
             "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n<text x=\"8\" y=\"%d\">%s</text>\n",
             WIDTH, HEIGHT, WIDTH, HEIGHT, LEFT, plot->title, (LEFT + WIDTH - RIGHT) / 2, HEIGHT - 12, plot->x_label,
-            TOP - 6, plot->y_label);
+            TOP - 12, plot->y_label);
     draw_ticks(file, &x, false);
     draw_ticks(file, &y, true);
     for (int l = 0; l < plot->line_count; l++) draw_line(file, &x, &y, &plot->lines[l], l);
