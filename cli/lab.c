@@ -110,7 +110,8 @@ static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
     if (play->plain) make_plain(&play->surface);
     SingeGas gas = singe_sim_gas(play->sim);
     pictures_size(play->pictures, &size[0], &size[1]);
-    return pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, singe_sim_view(play->sim).time, error);
+    double time = singe_sim_view(play->sim).time;
+    return pictures_draw(play->pictures, &play->surface, gas.size[0] ? &gas : NULL, time, error);
 }
 
 SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error) {
@@ -342,7 +343,8 @@ static void add_line(const SingeView *view, uint32_t first, uint32_t stride, int
     const double pi = acos(-1), centre = 0.5 * (count - 1);
     double mean = 0, slope = 0, squares = 0;
     for (int i = 0; i < count; i++) {
-        const float *p = view->position[first + (uint32_t)i * stride], *q = view->position[first + (uint32_t)(i + 1) * stride];
+        const float *p = view->position[first + (uint32_t)i * stride];
+        const float *q = view->position[first + (uint32_t)(i + 1) * stride];
         double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1], z = (double)q[2] - (double)p[2];
         line[i] = atan2(z, sqrt(x * x + y * y));
         mean += line[i] / count, slope += line[i] * (i - centre), squares += (i - centre) * (i - centre);

@@ -68,10 +68,12 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
     }
     if (!result) {
         SingeView view = singe_sim_view(play.sim);
-        report_measure(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 s", correlation,
+        report_measure(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 "
+                                        "s", correlation,
                        0.9, 1);
         report_measure(lab->report, "bend", "degrees from cell to cell, at most", bend, fmax(5, 3 * before), INFINITY);
-        report_measure(lab->report, "inner", "the same of cells that have most of their mass: \"interior regions ... also "
+        report_measure(lab->report, "inner", "the same of cells that have most of their mass: \"interior regions ... "
+                                        "also "
                        "wrinkle\"", inner, 3, INFINITY);
         report_measure(lab->report, "burnt", "share of cells gone in the end", 1 - shape_left(&view), 0.3, 1);
     }
@@ -103,7 +105,8 @@ static SingeResult fig4_column(Lab *lab, int i, Column *column, uint8_t **rgb, i
     SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
     if (!result) result = play_surface(&play, error);
     if (!result)
-        *column = (Column){shape_left(&view), shape_bend(&view), shape_border(&play.surface), shape_pieces(&view, 0.05)};
+        *column = (Column){shape_left(&view), shape_bend(&view), shape_border(&play.surface),
+                           shape_pieces(&view, 0.05)};
     play_close(&play);
     return result;
 }
@@ -129,7 +132,8 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
     for (int i = 0; i < COLUMNS; i++)
         report_row(lab->report, "%s|%.1f|%d|%.2f|%.2f", names[i], 100 * c[i].left, c[i].pieces, c[i].bend, c[i].border);
     report_measure(lab->report, "b_whole", "(b) share of cells left", c[1].left, 1, 1);
-    report_measure(lab->report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two parts", c[0].pieces,
+    report_measure(lab->report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two "
+                                        "parts", c[0].pieces,
                    2, INFINITY);
     report_measure(lab->report, "c_parts", "(c) the same", c[2].pieces, 2, INFINITY);
     report_measure(lab->report, "c_bend", "bend, (c) over (a): more detail with shrinkage", c[2].bend / c[0].bend, 1.3,
@@ -174,7 +178,8 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
         report_measure(lab->report, "start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1, 6);
         report_measure(lab->report, "end", "after 8 s: the fire went both ways around", lit[5], 12, 12);
         report_measure(lab->report, "left", "share of cells left then", shape_left(&view), 0, 0.8);
-        report_measure(lab->report, "ledger", "error of the heat ledger", singe_sim_stats(play.sim).ledger_error, 0, 1e-4);
+        report_measure(lab->report, "ledger", "error of the heat "
+                                        "ledger", singe_sim_stats(play.sim).ledger_error, 0, 1e-4);
     }
     play_close(&play);
     return result;
@@ -193,7 +198,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
     report_pictures(lab->report, CASES);
     for (int i = 0; i < CASES && !result; i++) {
         Play play;
-        const char *laid[] = {sets[i], lab->quick ? small_grid : "", NULL};
+        const char *laid[] = {sets[i], lab->quick ? "sheets.0.grid.cells=[20, 28]" : "", NULL};
         result = play_open(&play, lab, "fig1.yaml", laid, error);
         fifth[i] = INFINITY;
         for (int k = 0; k < LOOKS && !result; k++) {
@@ -230,7 +235,8 @@ static void rival_look(const SingeView *view, double *difference, double *curvat
     enum { ALONG = 30 };
     double front = 0, back = 0, angle = 0, length = 0;
     const uint32_t row = ALONG + 1;
-    for (uint32_t i = 0; i < view->cell_count; i++) front += (double)view->temperature[view->vertex_count + i] / view->cell_count;
+    for (uint32_t i = 0; i < view->cell_count; i++)
+        front += (double)view->temperature[view->vertex_count + i] / view->cell_count;
     for (uint32_t v = 0; v < view->vertex_count; v++) back += (double)view->temperature[v] / view->vertex_count;
     for (uint32_t i = 2; i + 3 < row; i++) {
         const float *p = view->position[row + i], *q = view->position[row + i + 1], *r = view->position[row + i + 2];
@@ -247,8 +253,47 @@ static void scale_to_one(double *values, int count) {
     for (int i = 0; i < count && most > 0; i++) values[i] = fabs(values[i]) / most;
 }
 
+/// The strip from its side at some moments: ours above, the rival's arc of the same length below.
+enum { RIVAL_SHOTS = 4, RIVAL_POINTS = 31 };
+static const int rival_shots[RIVAL_SHOTS] = {8, 24, 48, 144}; // looks
+
+static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], const double *bend) {
+    const double scale = 2800, length = 0.06;
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"840\" height=\"180\" font-family=\"sans-serif\" "
+                  "font-size=\"12\">\n");
+    for (int s = 0; s < RIVAL_SHOTS; s++) {
+        const double left = 20 + 208 * s, k = bend[s];
+        fprintf(file, "<text x=\"%g\" y=\"16\">%.1f s</text>\n<polyline fill=\"none\" stroke=\"#2166ac\" "
+                      "stroke-width=\"3\" points=\"", left, rival_shots[s] / 24.0);
+        for (int i = 0; i < RIVAL_POINTS; i++)
+            fprintf(file, "%.1f,%.1f ", left + 84 + scale * profile[s][i][0], 70 - scale * profile[s][i][1]);
+        fprintf(file, "\"/>\n<polyline fill=\"none\" stroke=\"#b2182b\" stroke-width=\"3\" stroke-dasharray=\"6 4\" "
+                      "points=\"");
+        for (int i = 0; i < RIVAL_POINTS; i++) {
+            double at = length * ((double)i / (RIVAL_POINTS - 1) - 0.5);
+            double x = k > 1e-3 ? sin(k * at) / k : at, z = k > 1e-3 ? (1 - cos(k * at)) / k : 0;
+            fprintf(file, "%.1f,%.1f ", left + 84 + scale * x, 120 + scale * z);
+        }
+        fprintf(file, "\"/>\n");
+    }
+    fprintf(file, "</svg>\n");
+}
+
+/// The middle line about its own middle, for rival_draw.
+static void rival_profile(const SingeView *view, double profile[RIVAL_POINTS][2]) {
+    double mean[2] = {0};
+    for (int i = 0; i < RIVAL_POINTS; i++)
+        for (int k = 0; k < 2; k++) {
+            profile[i][k] = (double)view->position[RIVAL_POINTS + i][2 * k];
+            mean[k] += profile[i][k] / RIVAL_POINTS;
+        }
+    for (int i = 0; i < RIVAL_POINTS; i++)
+        for (int k = 0; k < 2; k++) profile[i][k] -= mean[k];
+}
+
 SingeResult paper_rival(Lab *lab, SingeError *error) {
     double time[RIVAL_LOOKS], difference[RIVAL_LOOKS], curvature[RIVAL_LOOKS];
+    double profiles[RIVAL_SHOTS][RIVAL_POINTS][2] = {{{0}}}, bend[RIVAL_SHOTS];
     Play play;
     SingeResult result = play_open(&play, lab, "rival.yaml", (const char *const[]){NULL}, error);
     for (int k = 0; k < RIVAL_LOOKS && !result; k++) {
@@ -256,15 +301,22 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
         result = play_until(&play, time[k], error);
         SingeView view = singe_sim_view(play.sim);
         rival_look(&view, &difference[k], &curvature[k]);
+        for (int s = 0; s < RIVAL_SHOTS; s++)
+            if (k == rival_shots[s]) rival_profile(&view, profiles[s]);
     }
     play_close(&play);
     if (result) return result;
     double most = 0, hottest = 0;
-    for (int k = 0; k < RIVAL_LOOKS; k++) most = fmax(most, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
-    report_text(lab->report, "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K "
+    for (int k = 0; k < RIVAL_LOOKS; k++)
+        most = fmax(most, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
+    report_text(lab->report, "A strip of card is heated from below for a second and cools. The lower side is up to "
+                             "%.0f K "
                 "hotter, and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
-                "difference follows the other line: flat again as soon as the strip is cold.", hottest, most);
+                "difference (dashed, scaled to the same largest curl) is flat again as soon as the strip is "
+                "cold.", hottest, most);
     scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
+    for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = most * difference[rival_shots[s]];
+    rival_draw(report_drawing(lab->report), (const double (*)[RIVAL_POINTS][2])profiles, bend);
     Plot plot = {.title = "Curl while it is heated and cools", .x_label = "s", .y_label = "share of the largest"};
     plot_add(&plot, (PlotLine){"by temperature", "#b2182b", time, difference, RIVAL_LOOKS, false, true});
     plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});

@@ -79,13 +79,15 @@ static SingeResult fig8_run(Lab *lab, const Fig8Run *run, SingeError *error) {
     SingeSim *sim;
     Fig8 shown = {0}, counted;
     int rises = 0;
-    const int last = lab->quick ? run->shown : run->last;
+    const int last = lab->quick ? run->shown : run->last, every = lab->quick ? 10 : 1; // states that are counted
     SingeResult result = paper_sim(run->state, CELLS, &solver, 1, &sim, error);
     if (result) return result;
     for (int step = 0; step <= last && !result; step++) {
         if (step == run->shown) result = fig8_project(sim, run->state, STEPS, &shown, error);
-        if (!result) result = fig8_project(sim, run->state, COUNTED, &counted, error);
-        if (!result && fig8_rises(&counted, COUNTED)) rises++;
+        if (!result && step % every == 0) {
+            result = fig8_project(sim, run->state, COUNTED, &counted, error);
+            if (!result && fig8_rises(&counted, COUNTED)) rises++;
+        }
         if (!result && (result = singe_sim_step(sim))) *error = *singe_sim_error(sim);
     }
     singe_sim_destroy(sim);
@@ -94,10 +96,11 @@ static SingeResult fig8_run(Lab *lab, const Fig8Run *run, SingeError *error) {
     const double *sum = shown.error[SINGE_COLOUR_COUNT];
     char measure[40], text[200];
     result = fig8_write(lab, name, &shown, error);
-    report_text(lab->report, "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. Of all "
+    report_text(lab->report, "%s at %g s: the sum falls from %.3g to %.3g m in %d projection steps, to %.3g in %d. "
+                             "Of the "
                 "states up to %g s it rises in one of the first %d steps in %d of %d%s.", name,
                 run->shown * (double)PAPER_TIME_STEP, sum[0], sum[COUNTED], COUNTED, sum[STEPS], STEPS,
-                last * (double)PAPER_TIME_STEP, COUNTED, rises, last + 1,
+                last * (double)PAPER_TIME_STEP, COUNTED, rises, last / every + 1,
                 rises ? ": \"always decreases\" is too much" : "");
     snprintf(measure, sizeof measure, "%s_rises", name);
     snprintf(text, sizeof text, "%s: projection steps of %d in which the sum rises, in the state drawn", name, STEPS);

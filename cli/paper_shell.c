@@ -1,5 +1,5 @@
-// Figures 2, 3, 5 and 6: the shell as it is built, the curl of one shrunk layer, the states of a spring and the cases of
-// marching triangles, all read from what the simulation holds.
+// Figures 2, 3, 5 and 6: the shell as it is built, the curl of one shrunk layer, the states of a spring and the cases
+// of marching triangles, all read from what the simulation holds.
 #include <math.h>
 #include <stdlib.h>
 
@@ -71,9 +71,11 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
     Sight above = sight_fit(&view, 0, acos(-1) / 2, 330, 260), aside = sight_fit(&view, 0.5, 0.45, 460, 260);
     draw_springs(report_drawing(lab->report), &view, &above, "rgby");
     draw_springs(report_drawing(lab->report), &view, &aside, "rgby");
-    report_text(lab->report, "4 x 3 cells, from above and from the side: <b style=\"color:#1f77b4\">blue</b> mesh edges, "
+    report_text(lab->report, "4 x 3 cells, from above and from the side: <b style=\"color:#1f77b4\">blue</b> mesh "
+                             "edges, "
                 "<b style=\"color:#2ca02c\">green</b> between the centres of neighbouring cells, "
-                "<b style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> across a "
+                "<b style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> "
+                "across a "
                 "cell. Centres lie one thickness above the corners' plane.");
     singe_sim_destroy(sim);
     // counts a cell on a large grid; the border's share falls with its size
@@ -148,7 +150,8 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         }
         if (!result) {
             view = singe_sim_view(play.sim);
-            measured[i] = curl_measure(&view), exact[i] = curl_exact(curl_shrink[i]), beam[i] = curl_beam(curl_shrink[i]);
+            measured[i] = curl_measure(&view);
+            exact[i] = curl_exact(curl_shrink[i]), beam[i] = curl_beam(curl_shrink[i]);
             percent[i] = 100 * curl_shrink[i];
             worst = fmax(worst, fabs(measured[i] / exact[i] - 1));
             off = fmax(off, fabs(measured[i] / beam[i] - 1));
@@ -156,8 +159,10 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
-    report_text(lab->report, "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with its blue "
-                "layer 5 and 10 %% shorter. Red springs take half of it, the mean of their ends, which makes the layers part "
+    report_text(lab->report, "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with "
+                             "its blue "
+                "layer 5 and 10 %% shorter. Red springs take half of it, the mean of their ends, which makes the "
+                "layers part "
                 "a little; the shell's value knows that, the beam's does not.", 1e3 * curl_thickness, 1e3 * curl_cell);
     report_heads(lab->report, "shrunk by %|curvature 1/m|shell, exact|beam, e/((1-e)t)");
     for (int i = 0; i < CURL_CASES; i++)
@@ -210,9 +215,11 @@ static void state_draw(FILE *file, const double *ratio, const double *cut) {
                     "stroke-dasharray=\"3 3\"/><line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#1f77b4\" "
                     "stroke-width=\"4\"/>\n", x, x, 120 - length, x, x, 120 - length * end);
         for (int k = 0; k < 2; k++)
-            fprintf(file, "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" y=\"%.1f\">"
+            fprintf(file, "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "
+                          "y=\"%.1f\">"
                           "%.2f</text>\n", x, 120 - k * (ratio[i] < 0 ? 100 : length),
-                    state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff", x + 11, 124 - k * (ratio[i] < 0 ? 100 : length),
+                    state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff", x + 11,
+                    124 - k * (ratio[i] < 0 ? 100 : length),
                     state_mass[i][k]);
         fprintf(file, "<text x=\"%g\" y=\"146\" text-anchor=\"middle\">(%c)</text>\n", x, 'a' + i);
     }
@@ -254,7 +261,8 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
             if (m0 * m1 < 0) worst_cut = fmax(worst_cut, fabs(cut[i] - t));
         }
         state_draw(report_drawing(lab->report), ratio, cut);
-        report_measure(lab->report, "lengths", "largest difference of the lengths, removed counting as -1", worst, 0, 1e-4);
+        report_measure(lab->report, "lengths", "largest difference of the lengths, removed counting as "
+                                        "-1", worst, 0, 1e-4);
         report_measure(lab->report, "cuts", "largest difference of the cuts of c and d from eq 7", worst_cut, 0, 1e-3);
     }
     singe_surface_free(&surface);
@@ -285,7 +293,8 @@ static void march_draw(FILE *file, const SingeSurface *surface, double cell, con
     const double scale = 56 / cell;
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
     for (int i = 0; i < count; i++) // which case each triangle is
-        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" stroke=\"#bbb\"/>\n", 12 + scale * middles[i][0],
+        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
+                      "stroke=\"#bbb\"/>\n", 12 + scale * middles[i][0],
                 348 - scale * middles[i][1], fills[(int)middles[i][2]]);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
@@ -341,7 +350,8 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
                           ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) / 2;
         }
         march_draw(report_drawing(lab->report), &surface, cell, (const double (*)[3])middles, count);
-        report_text(lab->report, "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the "
+        report_text(lab->report, "%d x %d cells whose masses are given, each cell four triangles around its virtual "
+                                 "centre; the "
                     "dots tell the case of each triangle.", MARCH_CELLS, MARCH_CELLS);
         report_heads(lab->report, "corners left|drawn as|triangles");
         static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};

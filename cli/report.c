@@ -179,7 +179,8 @@ void report_picture(Report *report, const char *caption, int width, int height, 
     SingeResult result = png_write(path, width, height, rgb, &error);
     if (result && !report->result) report->result = result, report->error = error;
     fprintf(report->body.file,
-            "<figure><img src=\"%s\" alt=\"%s\" width=\"%d\" height=\"%d\"><figcaption>%s</figcaption></figure>\n", name,
+            "<figure><img src=\"%s\" alt=\"%s\" width=\"%d\" "
+            "height=\"%d\"><figcaption>%s</figcaption></figure>\n", name,
             caption, width, height, caption);
     free(name), free(path);
 }

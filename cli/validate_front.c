@@ -41,7 +41,8 @@ static void front_measures(Lab *lab, const BenchTable *table, double worst_chang
         if (strcmp(direction, "up") != 0) continue;
         snprintf(name, sizeof name, "up_%s", material);
         snprintf(what, sizeof what, "%s: up over down", material);
-        report_measure(lab->report, name, what, speed->number[0] / cell(table, row - 1, "speed_mm_s")->number[0], 4, 60);
+        double down = cell(table, row - 1, "speed_mm_s")->number[0];
+        report_measure(lab->report, name, what, speed->number[0] / down, 4, 60);
     }
     report_measure(lab->report, "change", "% by which half the cells or half the step change the speed, at most",
                    worst_change, 0, 6);
@@ -60,9 +61,11 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
     options.material_count = materials.count, options.materials = materials.items;
     SingeResult result = bench_front(&options, &table, error);
     if (!result) {
-        report_heads(lab->report, "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest C|basis|finding");
+        report_heads(lab->report, "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest "
+                                  "C|basis|finding");
         for (int row = 0; row < table.row_count; row++) front_row(lab, &table, row, &worst);
-        report_text(lab->report, "One grammage of one material is calibrated; the others are predictions. The sources' ranges "
+        report_text(lab->report, "One grammage of one material is calibrated; the others are predictions. The "
+                                 "sources' ranges "
                     "are in docs/materials.md%s.", lab->quick ? "; strips with gas are left out here" : "");
         front_measures(lab, &table, worst);
     }
@@ -77,7 +80,7 @@ enum { SHEETS = 6 };
 static const double bass_um[SHEETS] = {25, 45, 77, 100, 200, 402}; // thickness
 static const double bass_mm_s[SHEETS] = {8.96, 6.52, 3.88, 2.06, 0.88, 0.435}; // downward, BASS-II
 
-/// Density and specific heat of PMMA, its temperature of vaporising and of the flame, the gas' conductivity at the former.
+/// Density and specific heat of PMMA, its temperature of vaporising, the flame's, the gas' conductivity at the former.
 static const double pmma_rho = 1190, pmma_c = 1465, pmma_vapour = 670, pmma_flame = 2200, gas_k = 0.05, ambient = 298;
 
 /// de Ris (1969), thermally thin: V = sqrt(2) k_g F/(rho c tau), tau half of the thickness, F = (Tf - Tv)/(Tv - Ta).
@@ -124,11 +127,15 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"here", "#b2182b", bass_um, ours, SHEETS, false, false});
     report_plot(lab->report, &plot);
     const double measured = slope(bass_um, bass_mm_s, SHEETS), here = slope(bass_um, ours, SHEETS);
-    report_text(lab->report, "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of combustion are "
-                "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, the speed "
-                "goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast where it is thick. "
+    report_text(lab->report, "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of "
+                             "combustion are "
+                "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, "
+                "the speed "
+                "goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast where "
+                "it is thick. "
                 "de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.", measured, gas_k, pmma_flame);
-    report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory -1", here, -1.05, -0.95);
+    report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory "
+                                        "-1", here, -1.05, -0.95);
     report_measure(lab->report, "power_measured", "the same, less what was measured", here - measured, -0.25, 0.25);
     report_measure(lab->report, "mean", "geometric mean of here over BASS-II", exp(ratio), 0.5, 2);
     report_measure(lab->report, "worst", "the same at the worst thickness, up or down", exp(spread), 1, 2.5);

@@ -70,17 +70,19 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
             order[k][i] = log2(off[k][i - 1] / off[k][i]);
             least[k] = fmin(least[k], order[k][i]);
         }
-        report_row(lab->report, "%.2f|%.2e|%.2f|%.0f|%.2e|%.2f", size[0][i], off[0][i], order[0][i], size[1][i], off[1][i],
-                   order[1][i]);
+        report_row(lab->report, "%.2f|%.2e|%.2f|%.0f|%.2e|%.2f", size[0][i], off[0][i], order[0][i], size[1][i],
+                   off[1][i],                   order[1][i]);
     }
-    Plot plot = {.title = "Error of the mode's amplitude after 4 s", .x_label = "cells, mm", .y_label = "relative error",
+    Plot plot = {.title = "Error of the mode's amplitude after 4 s", .x_label = "cells, mm", .y_label = "relative "
+                                        "error",
                  .log_x = true, .log_y = true};
     double second[CASES];
     for (int i = 0; i < count; i++) second[i] = off[0][0] * pow(size[0][i] / size[0][0], 2);
     plot_add(&plot, (PlotLine){"second order", "#999", size[0], second, count, false, true});
     plot_add(&plot, (PlotLine){"surface", "#2166ac", size[0], off[0], count, true, false});
     report_plot(lab->report, &plot);
-    report_measure(lab->report, "order_space", "least order in the cells, steps going with their square", least[0], 1.9, 2.2);
+    report_measure(lab->report, "order_space", "least order in the cells, steps going with their "
+                                        "square", least[0], 1.9, 2.2);
     report_measure(lab->report, "order_time", "least order in the time step, on cells of 1.25 mm", least[1], 0.9, 1.2);
     report_measure(lab->report, "error", "error on the finest cells", off[0][count - 1], 0, 5e-3);
     return SINGE_OK;
@@ -149,14 +151,16 @@ SingeResult validate_umbrella(Lab *lab, SingeError *error) {
     for (int i = 0; i < CASES && !result; i++) {
         result = spread_measure(lab, &meshes[i], SINGE_HEAT_SURFACE, surface[i], error);
         if (!result) result = spread_measure(lab, &meshes[i], SINGE_HEAT_UMBRELLA, umbrella[i], error);
-        double dx = (double)meshes[i].sides[0] / meshes[i].cells[0], dy = (double)meshes[i].sides[1] / meshes[i].cells[1];
+        double dx = (double)meshes[i].sides[0] / meshes[i].cells[0];
+        double dy = (double)meshes[i].sides[1] / meshes[i].cells[1];
         if (!result)
             report_row(lab->report, "%s|%.3f|%.3f|%.3f|%.3f|%.3f|%.3f", meshes[i].name, surface[i][0], surface[i][1],
                        umbrella[i][0], umbrella[i][1], umbrella_factor(dx, dy), umbrella_factor(dy, dx));
         for (int k = 0; k < 2; k++) off = fmax(off, fabs(surface[i][k] - 1));
     }
     if (result) return result;
-    report_text(lab->report, "Diffusivity by which a hot spot spreads, over the alpha that was asked for. On squares the "
+    report_text(lab->report, "Diffusivity by which a hot spot spreads, over the alpha that was asked for. On squares "
+                             "the "
                 "umbrella has half of it, and on long cells it is not the same along x and y.");
     report_measure(lab->report, "surface", "surface operator: largest error of the diffusivity on these meshes", off, 0,
                    0.02);

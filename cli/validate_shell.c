@@ -76,11 +76,12 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
         double plate = rho * gravity * (pow(l, 4) / (8 * d) + l * l / 2 * b->shear);
         result = beam_sag(lab, b, &sag, error);
         if (result) return result;
-        report_row(lab->report, "%.0f|%.0f|%g|%.1f|%.2g|%.2f|%.2f|%.3f", 1e3 * b->thickness, 1e3 * b->compliance, b->shear,
-                   1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
+        report_row(lab->report, "%.0f|%.0f|%g|%.1f|%.2g|%.2f|%.2f|%.3f", 1e3 * b->thickness, 1e3 * b->compliance,
+                   b->shear,                   1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
         worst = fmax(worst, fabs(sag / plate - 1));
     }
-    report_text(lab->report, "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, D = t²/c, by "
+    report_text(lab->report, "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, "
+                             "D = t²/c, by "
                 "three thicknesses; the fifth is soft in transverse shear.");
     report_measure(lab->report, "sag", "largest difference of the sag from plate theory, as a share", worst, 0, 0.15);
     return SINGE_OK;
@@ -166,7 +167,8 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
     const float way = (float)(0.02 * length);
-    const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}}, {0.5f, {shear ? 0 : way, shear ? way : 0, 0}, {0, 0, 0, 1}}};
+    const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}},
+                                  {0.5f, {shear ? 0 : way, shear ? way : 0, 0}, {0, 0, 0, 1}}};
     const double left[2][2] = {{0, 0}, {cell, width}}, right[2][2] = {{length - cell, 0}, {length, width}};
     result = hold(sim, left[0], left[1], cell, 0, NULL, error);
     if (!result) result = hold(sim, right[0], right[1], cell, 2, path, error);
@@ -179,8 +181,8 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
         for (int k = 0; k < 2; k++)
             for (int d = 0; d < 2; d++) {
                 int step = d ? REACH * ALONG : REACH;
-                double moved = (double)(x[mid + step][k] - r[mid + step][k]) - (double)(x[mid - step][k] - r[mid - step][k]);
-                g[k][d] = moved / (2 * REACH * cell);
+                double ahead = (double)(x[mid + step][k] - r[mid + step][k]);
+                g[k][d] = (ahead - (double)(x[mid - step][k] - r[mid - step][k])) / (2 * REACH * cell);
             }
         const float *n = view.line_force[mid];
         if (shear) out->shear = fabs((double)n[5]) / fabs(g[0][1] + g[1][0]);
@@ -209,11 +211,16 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
         report_row(lab->report, "%.1f|%.2f|%.1f|%.2f|%.2f|%.3f|%.0f°", 100 * shrinks[i], natural,
                    natural * disc_radius * disc_radius / disc_thickness, p[0], p[1], ratio[i], angle);
     }
-    report_text(lab->report, "A disc of 6 cm whose corner layer shrinks. Bent far it cannot be a bowl (Gauss) and becomes a "
-                "cylinder of mean curvature (1 + nu)/2 times the natural one; 3/4 is that of nu = 1/2. This shell is no isotropic "
-                "plate: when it bends only the springs of the layer of centres give, which run along the grid and do not resist "
-                "shear. Pulled along the grid that layer has %.2f N/m (1/c is %.2f) and nu = %.3f; sheared, %.3f N/m; so pulled along "
-                "its diagonal, nu = %.3f. The disc rolls up where that costs least, at 45° to the grid, and has (1 + nu)/2 = "
+    report_text(lab->report, "A disc of 6 cm whose corner layer shrinks. Bent far it cannot be a bowl (Gauss) and "
+                             "becomes a "
+                "cylinder of mean curvature (1 + nu)/2 times the natural one; 3/4 is that of nu = 1/2. This shell is "
+                "no isotropic "
+                "plate: when it bends only the springs of the layer of centres give, which run along the grid and do "
+                "not resist "
+                "shear. Pulled along the grid that layer has %.2f N/m (1/c is %.2f) and nu = %.3f; sheared, %.3f "
+                "N/m; so pulled along "
+                "its diagonal, nu = %.3f. The disc rolls up where that costs least, at 45° to the grid, and has (1 + "
+                "nu)/2 = "
                 "%.3f to show.", c.along, 1 / (double)singe_default_material().compliance[SINGE_GREEN].value,
                 c.coupled / c.along, c.shear, diagonal, (1 + diagonal) / 2);
     report_measure(lab->report, "stiffness", "stiffness along the grid times the compliance", c.along *

@@ -143,8 +143,8 @@ typedef struct SingeMaterialDef {
     SingeParam strength;      ///< N/m, the line force at which it tears before it burns, > 0, may be INFINITY
     SingeParam char_strength; ///< N/m, the same of what is burnt to m_min; between the two geometric in burn progress
 
-    /// 1/s, A of Arrhenius kinetics, >= 0: above 0 what can still burn falls at A exp(-E/(R T)) in place of mass_rate times
-    /// the excess over ignition, its order ash_exponent; T counts to rate_ceiling above ignition at most
+    /// 1/s, A of Arrhenius kinetics, >= 0: above 0 what can still burn falls at A exp(-E/(R T)) in place of mass_rate
+    /// times the excess over ignition, its order ash_exponent; T counts to rate_ceiling above ignition at most
     SingeParam pre_exponential;
     SingeParam activation_energy; ///< J/mol, E, >= 0
 } SingeMaterialDef;

@@ -14,8 +14,8 @@
 //
 //   dx/dt = -(A/F) x^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
 //
-// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)), or A dt exp(-E/(R T_e))/F, is a number. dx/dt = -(k/dt) x^p is
-// then solved exactly, so that no step however long passes m_min, and x falls by
+// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)), or A dt exp(-E/(R T_e))/F, is a
+// number. dx/dt = -(k/dt) x^p is then solved exactly, so that no step however long passes m_min, and x falls by
 //
 //   p = 0     k, at most x
 //   p = 1/2   (k/2) (2 sqrt(x) - k/2), and all of x once k/2 >= sqrt(x)
@@ -44,7 +44,8 @@ static float fall(float x, float k, float p) {
 static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
     const float gas_constant = 8.314462618f; // J/(mol K)
     float temperature = field_at(matter->ignition_temperature, i) + excess;
-    return field_at(matter->pre_exponential, i) * expf(-field_at(matter->activation_energy, i) / (gas_constant * temperature));
+    float exponent = field_at(matter->activation_energy, i) / (gas_constant * temperature);
+    return field_at(matter->pre_exponential, i) * expf(-exponent);
 }
 
 /// One particle's new mass; NaN comes through.
