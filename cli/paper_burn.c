@@ -91,7 +91,7 @@ typedef struct Column {
 } Column;
 
 static SingeResult fig4_column(Lab *lab, int i, Column *column, uint8_t **rgb, int size[2], SingeError *error) {
-    static const double times[ROWS] = {0.9, 1.6, 2.4, 3.6};
+    static const double times[ROWS] = {0.9, 1.6, 2.3, 2.7};
     static const char *const variants[COLUMNS][2] = {
         {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0"}, {"sheets.0.material.ablate=no", ""},
         {"", ""}, {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, picture: rate.png}", ""}};
@@ -102,6 +102,7 @@ static SingeResult fig4_column(Lab *lab, int i, Column *column, uint8_t **rgb, i
         result = play_until(&play, times[k], error);
         if (!result) result = play_draw(&play, &rgb[k], size, error);
     }
+    if (!result) result = play_until(&play, 3.6, error);
     SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};
     if (!result) result = play_surface(&play, error);
     if (!result)
@@ -113,7 +114,7 @@ static SingeResult fig4_column(Lab *lab, int i, Column *column, uint8_t **rgb, i
 
 SingeResult paper_fig4(Lab *lab, SingeError *error) {
     static const char *const names[COLUMNS] = {"(a) boundary only", "(b) shrinkage only", "(c) both", "(d) texture"};
-    static const char *const rows[ROWS] = {"0.9 s", "1.6 s", "2.4 s", "3.6 s"};
+    static const char *const rows[ROWS] = {"0.9 s", "1.6 s", "2.3 s", "2.7 s"};
     Column c[COLUMNS] = {{0}};
     uint8_t *rgb[COLUMNS][ROWS] = {{NULL}};
     int size[2] = {0};
