@@ -141,13 +141,23 @@ static void echo(const char *text) {
     fflush(stdout);
 }
 
+/// Whether a cell of a table has no number, or a range of none: "nan", "+nan", "nan to nan".
+static bool is_nothing(const char *text, int length) {
+    text += strspn(text, "+-") < (size_t)length ? strspn(text, "+-") : 0;
+    return length >= 3 && strncmp(text, "nan", 3) == 0;
+}
+
 static void row(FILE *file, const char *text, const char *tag) {
     echo(text);
-    fprintf(file, "<tr><%s>", tag);
-    for (; *text; text++)
-        if (*text == '|') fprintf(file, "</%s><%s>", tag, tag);
-        else fputc(*text, file);
-    fprintf(file, "</%s></tr>\n", tag);
+    fputs("<tr>", file);
+    for (;; text++) {
+        int length = (int)strcspn(text, "|");
+        if (is_nothing(text, length)) fprintf(file, "<%s>-</%s>", tag, tag);
+        else fprintf(file, "<%s>%.*s</%s>", tag, length, text, tag);
+        text += length;
+        if (!*text) break;
+    }
+    fputs("</tr>\n", file);
 }
 
 void report_heads(Report *report, const char *heads) {
