@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "cli/paper_states.h"
+#include "cli/lab/paper_states.h"
 #include "cli/singular.h"
 
 static void test_singular_values(void **unused) {

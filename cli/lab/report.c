@@ -1,4 +1,4 @@
-#include "cli/report.h"
+#include "cli/lab/report.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/paper.h"
-#include "cli/paper_states.h"
+#include "cli/lab/paper.h"
+#include "cli/lab/paper_states.h"
 #include "formats/formats.h"
 
 enum { CELLS = 20, STEPS = 20, COUNTED = 7, LINES = SINGE_COLOUR_COUNT + 1 };

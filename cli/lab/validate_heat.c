@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/validate.h"
+#include "cli/lab/validate.h"
 
 static const double alpha = 1e-4, slab = 0.08, warm_mean = 600, amplitude = 300; // m2/s, m, K
 

@@ -7,7 +7,7 @@
 #include "bench/bench.h"
 #include "bench/strip.h"
 #include "cli/bench_materials.h"
-#include "cli/validate.h"
+#include "cli/lab/validate.h"
 
 static const BenchValue *cell(const BenchTable *table, int row, const char *column) {
     for (int c = 0; c < table->column_count; c++)

@@ -1,5 +1,5 @@
 // singe paper: every experiment of the paper, computed here, beside what the paper shows.
-#include "cli/paper.h"
+#include "cli/lab/paper.h"
 
 #include <stdio.h>
 #include <string.h>

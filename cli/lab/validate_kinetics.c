@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/validate.h"
+#include "cli/lab/validate.h"
 
 typedef struct Kinetics { double cellulose, char_mass, ash; } Kinetics;
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 
 #include "bench/strip.h"
-#include "cli/paper.h"
-#include "cli/paper_states.h"
+#include "cli/lab/paper.h"
+#include "cli/lab/paper_states.h"
 
 /// Mass left of a particle that starts 100 K above ignition and burns by eq 4, its heat by eq 1 with that sign.
 static double mass_left(double sign) {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/paper.h"
-#include "cli/paper_states.h"
+#include "cli/lab/paper.h"
+#include "cli/lab/paper_states.h"
 #include "cli/singular.h"
 
 enum { CELLS = 6, WARM_STEPS = 200, STEPS = 7 };

@@ -1,4 +1,4 @@
-#include "cli/paper_states.h"
+#include "cli/lab/paper_states.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/validate.h"
+#include "cli/lab/validate.h"
 
 // ---- a clamped strip: w = rho g l^4/(8 D) + rho g l^2/(2 S)
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/paper.h"
+#include "cli/lab/paper.h"
 
 enum { STEPS = 5 };
 

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "cli/plot.h"
+#include "cli/lab/plot.h"
 #include "singe/base.h"
 
 typedef struct Report Report;

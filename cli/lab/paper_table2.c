@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/paper.h"
-#include "cli/paper_states.h"
+#include "cli/lab/paper.h"
+#include "cli/lab/paper_states.h"
 
 typedef struct Table2Row {
     int cells;             ///< a side: 10 springs each

@@ -5,7 +5,7 @@
 #include "cli/console.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
-#include "cli/report.h"
+#include "cli/lab/report.h"
 #include "singe/singe.h"
 
 typedef struct Lab {

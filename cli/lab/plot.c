@@ -1,4 +1,4 @@
-#include "cli/plot.h"
+#include "cli/lab/plot.h"
 
 #include <math.h>
 #include <stdlib.h>

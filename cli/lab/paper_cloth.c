@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/paper.h"
+#include "cli/lab/paper.h"
 
 // ---- Fig 7 a, b: a torus on a sphere
 

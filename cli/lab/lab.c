@@ -1,4 +1,4 @@
-#include "cli/lab.h"
+#include "cli/lab/lab.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/paper.h"
+#include "cli/lab/paper.h"
 
 static const char *const inks[SINGE_COLOUR_COUNT] = {
     [SINGE_RED] = "#d62728", [SINGE_GREEN] = "#2ca02c", [SINGE_BLUE] = "#1f77b4", [SINGE_YELLOW] = "#e0b000"};

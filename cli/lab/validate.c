@@ -1,5 +1,5 @@
 // singe validate: the physics against sources outside the project.
-#include "cli/validate.h"
+#include "cli/lab/validate.h"
 
 #include <stdio.h>
 #include <string.h>

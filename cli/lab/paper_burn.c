@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/paper.h"
+#include "cli/lab/paper.h"
 
 static const char *const small_grid = "sheets.0.grid.cells=[30, 42]";
 
