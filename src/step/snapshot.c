@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 6 };
+enum { SNAPSHOT_VERSION = 7 };
 
 typedef struct SnapshotHeader {
     char magic[8];      ///< "SINGESIM"
