@@ -73,11 +73,7 @@ PENDING = set()
 #   faults that are counted but not held against the mesh: drawn in cells of which a fire has left a part, whose other
 #   corners hang on by a diagonal
 PENDING_FAULTS = {
-    "slivers": {"stretched_edges"},
-    "sliver-triangles": {"stretched_edges"},
-    "stretched": {"stretched_edges"},
     "tiny-cells": {"stretched_edges"},
-    "honeycomb": {"stretched_edges"},
 }
 
 # a mesh that begins crossed may stay so
