@@ -5,58 +5,7 @@
 #include <string.h>
 
 #include "bench/sheet.h"
-#include "cli/args.h"
-#include "cli/folder.h"
 #include "cli/text.h"
-#include "scene/builtin.h"
-
-extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded as they are
-
-ExitCode lab_fail(const SingeError *error) {
-    fprintf(stderr, "singe: error: %s\n", error->message[0] ? error->message : singe_result_name(error->code));
-    return EXIT_FAILED;
-}
-
-/// Lays the scenes beside the report, where `singe run` finds them.
-static SingeResult write_scenes(const Lab *lab, SingeError *error) {
-    SingeResult result = folder_make(lab->scenes, error);
-    for (const SceneBuiltin *file = paper_files; file->name && !result; file++) {
-        char *path = text_format("%s/%s", lab->scenes, file->name);
-        result = file_write(path, file->bytes, file->size, error);
-        free(path);
-    }
-    return result;
-}
-
-static SingeResult run_item(Lab *lab, const LabItem *item, SingeError *error) {
-    double begun = console_clock();
-    report_item(lab->report, item->name, item->heading, item->shows);
-    SingeResult result = item->run(lab, error);
-    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
-    char time[32];
-    console_duration(console_clock() - begun, time);
-    console_note(&lab->console, "%s: %s", item->name, time);
-    return result;
-}
-
-ExitCode lab_run(const LabItem *items, int count, const char *name, const char *title, const char *lead,
-                 const char *folder, bool quick, int threads) {
-    SingeError error = {0};
-    Lab lab = {.quick = quick, .threads = threads, .console = console_make(false)};
-    lab.report = report_open(folder, title, lead, &error);
-    if (!lab.report) return lab_fail(&error);
-    lab.scenes = text_format("%s/scenes", folder);
-    SingeResult result = write_scenes(&lab, &error);
-    ExitCode code = EXIT_GOOD;
-    for (int i = 0; i < count && !result; i++)
-        if (!name || strcmp(name, items[i].name) == 0) result = run_item(&lab, &items[i], &error);
-    if (result) code = lab_fail(&error);
-    int failed = 0;
-    if (report_close(lab.report, &failed, &error)) code = lab_fail(&error);
-    printf("\n%s/index.html: %s\n", folder, failed ? "measures fail" : "all measures hold");
-    free(lab.scenes);
-    return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
-}
 
 // ---- scenes
 

@@ -16,22 +16,6 @@ typedef struct Lab {
     char *scenes; ///< folder of the scene files, within the report's
 } Lab;
 
-/// An experiment: fills its item of the report.
-typedef SingeResult LabFn(Lab *lab, SingeError *error);
-
-typedef struct LabItem {
-    const char *name, *heading, *shows; ///< of the report's item
-    LabFn *run;
-} LabItem;
-
-/// Runs the item of that name, or all of them (NULL), into a report in the folder. Returns EXIT_FAILED where a measure
-/// does not hold.
-ExitCode lab_run(const LabItem *items, int count, const char *name, const char *title, const char *lead,
-                 const char *folder, bool quick, int threads);
-
-/// Prints the error and returns the exit code that goes with it.
-ExitCode lab_fail(const SingeError *error);
-
 // ---- a scene that is played
 
 typedef struct Play {
@@ -73,7 +57,6 @@ typedef struct LabGrid {
 } LabGrid;
 
 /// From the origin to sides along x and y; vertex i + j (cells[0] + 1). Inert but for what its material is told.
-
 LabGrid lab_grid(int across, int along, float cell);
 SINGE_NODISCARD SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error);
 

@@ -1,71 +1,59 @@
 // singe paper: every experiment of the paper, computed here, beside what the paper shows.
 #include "cli/lab/paper.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "cli/args.h"
-
 /// In the order of the page.
-static const LabItem items[] = {
-    {"fig1", "Fig 1, 12: burning paper", "Paper that starts above its ignition point and loses mass at a rate "
-                                        "weighted by the "
-     "texture shown: burnt regions bend, and interior regions wrinkle with them.", paper_fig1},
+static const PageItem items[] = {
+    {"fig1", "Fig 1, 12: burning paper",
+     "Paper that starts above its ignition point and loses mass at a rate weighted by the texture shown: burnt regions "
+     "bend, and interior regions wrinkle with them.", paper_fig1},
     {"fig2", "Fig 2: one layer shrinks, and the shell curls",
      "A linear beam and the BCS shell in 2D; when one layer shrinks both curve.", paper_fig2},
-    {"fig3", "Fig 3: the body-centred square", "Cells with a lattice point each, offset from the plane, and springs "
-                                        "of four "
-     "colours: 4, 2, 2 and 2 a cell.", paper_fig3},
-    {"fig4", "Fig 4: a hot sphere crosses a sheet", "A sheet held at two corners: (a) boundary change only; (b) "
-                                        "shrinkage; (c) "
-     "both; (d) with a texture for the rate of mass loss. It separates into two parts, with more detail from column to "
-     "column.", paper_fig4},
-    {"fig5", "Fig 5: states of a spring", "Springs shrunk to 87.5 %, 62.5 %, 57.5 % and 50 % of their length, of "
-                                        "which the "
-     "latter two are partly burnt, and one that is burnt out.", paper_fig5},
+    {"fig3", "Fig 3: the body-centred square",
+     "Cells with a lattice point each, offset from the plane, and springs of four colours: 4, 2, 2 and 2 a cell.",
+     paper_fig3},
+    {"fig4", "Fig 4: a hot sphere crosses a sheet",
+     "A sheet held at two corners: (a) boundary change only; (b) shrinkage; (c) both; (d) with a texture for the rate "
+     "of mass loss. It separates into two parts, with more detail from column to column.", paper_fig4},
+    {"fig5", "Fig 5: states of a spring",
+     "Springs shrunk to 87.5 %, 62.5 %, 57.5 % and 50 % of their length, of which the latter two are partly burnt, and "
+     "one that is burnt out.", paper_fig5},
     {"fig6", "Fig 6: marching triangles", "Four cases of a triangle, by how many of its corners are left.", paper_fig6},
-    {"fig7ab", "Fig 7 a, b: a torus on a sphere", "A torus falls on a sphere of 1.2 times the radius of its hole. "
-                                        "With the "
-     "paper's method (a) it stays there; with a mass-spring model (b) it stretches, passes the sphere and meets the "
-     "ground.",
-     paper_fig7ab},
-    {"fig7cd", "Fig 7 c, d: uniform shrinkage", "The blue springs of a whole shell shrink alike. With the paper's "
-                                        "method (c) "
-     "it makes complicated wrinkles; with a mass-spring model (d) it loses them.", paper_fig7cd},
-    {"fig10", "Fig 10: thickness and weights", "Thickness to side 1:20, 1:80, 1:400 with weights of 1, and 1:400 "
-                                        "with a weight "
-     "of 0.1 for blue and yellow springs: from a stiff plate to a limp cloth.", paper_fig10},
-    {"weights", "Section 7.2: inhomogeneous weights", "\"It is also possible to obtain a shell which has "
-                                        "inhomogeneous bending "
-     "stiffness by assigning different weights to the springs in each subset.\"", paper_weights},
-    {"fig8", "Fig 8: errors over projection steps", "The error of one colour may rise while others are projected; "
-                                        "the sum "
-     "of all \"always decreases\".", paper_fig8},
+    {"fig7ab", "Fig 7 a, b: a torus on a sphere",
+     "A torus falls on a sphere of 1.2 times the radius of its hole. With the paper's method (a) it stays there; with "
+     "a mass-spring model (b) it stretches, passes the sphere and meets the ground.", paper_fig7ab},
+    {"fig7cd", "Fig 7 c, d: uniform shrinkage",
+     "The blue springs of a whole shell shrink alike. With the paper's method (c) it makes complicated wrinkles; with "
+     "a mass-spring model (d) it loses them.", paper_fig7cd},
+    {"fig10", "Fig 10: thickness and weights",
+     "Thickness to side 1:20, 1:80, 1:400 with weights of 1, and 1:400 with a weight of 0.1 for blue and yellow "
+     "springs: from a stiff plate to a limp cloth.", paper_fig10},
+    {"weights", "Section 7.2: inhomogeneous weights",
+     "\"It is also possible to obtain a shell which has inhomogeneous bending stiffness by assigning different weights "
+     "to the springs in each subset.\"", paper_weights},
+    {"fig8", "Fig 8: errors over projection steps",
+     "The error of one colour may rise while others are projected; the sum of all \"always decreases\".", paper_fig8},
     {"fig11", "Fig 11: a burning torus", "Any quad mesh makes a shell: a torus burns, lit by a hot ball.", paper_fig11},
-    {"mass-loss", "Section 6: what m_loss does", "\"When m_loss is close to m_init, then the shell burns out "
-                                        "quickly; but if "
-     "m_loss is less than m_min, the shell wrinkles but remains intact.\"", paper_mass_loss},
-    {"rival", "Sections 2, 3: the rival idea", "\"The bending of thin shells during burning is not caused by "
-                                        "differences in "
-     "temperature (Melek et al., Liu et al.), but by shrinkage.\"", paper_rival},
-    {"table1", "Fig 9, Table 1: two springs that exclude each other", "A particle between two fixed points settles "
-                                        "where the two "
-     "springs compete to a draw: ten positions.", paper_table1},
-    {"all-at-once", "Section 7.1: all colours at once", "More constraints than degrees of freedom, 10 to 6, and "
-                                        "gradients that "
-     "depend on each other: fast projection of all springs in one system diverges.", paper_all_at_once},
-    {"table2", "Table 2: time of a step", "Time in proportion to the number of springs, with conjugate gradients on "
-                                        "an ELLPACK "
-     "matrix, on a quad-core machine of 2011.", paper_table2},
-    {"adaptive", "Section 8.2: adaptivity", "\"It is not straightforward to apply our method to adaptive BCS, BCC or "
-                                        "irregular "
-     "meshes.\"", paper_adaptive},
-    {"readings", "Ambiguities and misprints", "Where the paper can be read in more than one way; docs/equations.md "
-                                        "has them with "
-     "all the differences that are choices.", paper_readings},
+    {"mass-loss", "Section 6: what m_loss does",
+     "\"When m_loss is close to m_init, then the shell burns out quickly; but if m_loss is less than m_min, the shell "
+     "wrinkles but remains intact.\"", paper_mass_loss},
+    {"rival", "Sections 2, 3: the rival idea",
+     "\"The bending of thin shells during burning is not caused by differences in temperature (Melek et al., Liu et "
+     "al.), but by shrinkage.\"", paper_rival},
+    {"table1", "Fig 9, Table 1: two springs that exclude each other",
+     "A particle between two fixed points settles where the two springs compete to a draw: ten positions.",
+     paper_table1},
+    {"all-at-once", "Section 7.1: all colours at once",
+     "More constraints than degrees of freedom, 10 to 6, and gradients that depend on each other: fast projection of "
+     "all springs in one system diverges.", paper_all_at_once},
+    {"table2", "Table 2: time of a step",
+     "Time in proportion to the number of springs, with conjugate gradients on an ELLPACK matrix, on a quad-core "
+     "machine of 2011.", paper_table2},
+    {"adaptive", "Section 8.2: adaptivity",
+     "\"It is not straightforward to apply our method to adaptive BCS, BCC or irregular meshes.\"", paper_adaptive},
+    {"readings", "Ambiguities and misprints",
+     "Where the paper can be read in more than one way; docs/equations.md has them with all the differences that are "
+     "choices.", paper_readings},
 };
-
-enum { ITEM_COUNT = sizeof items / sizeof *items };
 
 enum { OPT_OUTPUT, OPT_QUICK, OPT_THREADS, OPT_COUNT };
 
@@ -84,44 +72,10 @@ static const ArgCommand paper_command = {
     "\n"
     "Exit codes: 0 good, 1 failed or a measure does not hold, 2 bad usage."};
 
-/// Whether there is an item of that name, or a message.
-static bool item_known(const ArgReader *reader, const char *word) {
-    for (int i = 0; i < ITEM_COUNT; i++)
-        if (strcmp(word, items[i].name) == 0) return true;
-    const char *near = args_nearest(word, items, ITEM_COUNT, sizeof items[0]);
-    if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", word, near);
-    else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", word);
-    return false;
-}
+static const Page page = {
+    items, sizeof items / sizeof *items, "out/paper", "The paper, figure by figure",
+    "<i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, its experiments as this program runs them. "
+    "Each item says what the paper shows, then what came out here, and holds measures of it against stated bars. The "
+    "scenes are in <code>scenes/</code> beside this page; <code>singe run</code> plays them."};
 
-int command_paper(int argc, char **argv) {
-    ArgReader reader = args_begin(&paper_command, argc, argv);
-    const char *value, *folder = "out/paper", *name = NULL;
-    bool quick = false;
-    int threads = job_threads();
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        switch (option) {
-        case ARG_OPERAND:
-            name = strcmp(value, "all") == 0 ? NULL : value;
-            if (name && !item_known(&reader, name)) return EXIT_INPUT;
-            break;
-        case OPT_OUTPUT:
-            if (!value[0]) return args_complain(&reader, "--output needs a folder"), EXIT_INPUT;
-            folder = value;
-            break;
-        case OPT_QUICK: quick = true; break;
-        case OPT_THREADS:
-            if (!args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads)) return EXIT_INPUT;
-            break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: return EXIT_INPUT;
-        }
-    }
-    return lab_run(items, ITEM_COUNT, name, "The paper, figure by figure",
-                   "<i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, its experiments as this "
-                   "program "
-                   "runs them. Each item says what the paper shows, then what came out here, and holds measures of it "
-                   "against stated bars. The scenes are in <code>scenes/</code> beside this page; <code>singe "
-                   "run</code> "
-                   "plays them.", folder, quick, threads);
-}
+int command_paper(int argc, char **argv) { return page_run(&page, &paper_command, argc, argv); }

@@ -1,33 +1,27 @@
 // singe validate: the physics against sources outside the project.
 #include "cli/lab/validate.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#include "cli/args.h"
-
-static const LabItem items[] = {
-    {"heat", "The heat equation, eq 2", "A slab's mode, insulated at both ends, decays as exp(-alpha k² "
-                                        "t).", validate_heat},
+static const PageItem items[] = {
+    {"heat", "The heat equation, eq 2",
+     "A slab's mode, insulated at both ends, decays as exp(-alpha k² t).", validate_heat},
     {"umbrella", "The umbrella's factor, eq 3", "A hot spot's variance grows by 2 alpha t in every direction.",
      validate_umbrella},
-    {"front", "Speed of the front", "Office paper of 80 g/m² 4.4 to 7.0 mm/s, speed in proportion to 1/grammage "
-                                    "(Thomas &amp; Law, "
-     "Fire Research Note 584); fire climbs many times as fast as it creeps.", validate_front},
-    {"pmma", "Sheets of PMMA, downward", "8.96 mm/s at 25 um to 0.435 mm/s at 402 um (BASS-II); de Ris (1969): V = "
-                                        "sqrt 2 k_g "
-     "(T_f - T_v)/(T_v - T_a)/(rho c tau).", validate_pmma},
+    {"front", "Speed of the front",
+     "Office paper of 80 g/m² 4.4 to 7.0 mm/s, speed in proportion to 1/grammage (Thomas &amp; Law, Fire Research Note "
+     "584); fire climbs many times as fast as it creeps.", validate_front},
+    {"pmma", "Sheets of PMMA, downward",
+     "8.96 mm/s at 25 um to 0.435 mm/s at 402 um (BASS-II); de Ris (1969): V = sqrt 2 k_g (T_f - T_v)/(T_v - T_a)/(rho "
+     "c tau).", validate_pmma},
     {"beam", "A clamped strip", "Plate theory: w = rho g l&#8308;/(8 D) + rho g l²/(2 S).", validate_beam},
-    {"disc", "A bilayer disc", "Bent far, a disc of two layers is a cylinder of (1 + nu)/2 of its natural mean "
-                               "curvature, 3/4 at "
-     "nu = 1/2 (arXiv 1509.05259).", validate_disc},
-    {"kinetics", "Kinetics of cellulose", "Kashiwagi &amp; Nambu (1992), as in FDS: pyrolysis, oxidation and glow of "
-                                        "cellulose in "
-     "air at 1, 3 and 5 K/min.", validate_kinetics},
+    {"disc", "A bilayer disc",
+     "Bent far, a disc of two layers is a cylinder of (1 + nu)/2 of its natural mean curvature, 3/4 at nu = 1/2 (arXiv "
+     "1509.05259).", validate_disc},
+    {"kinetics", "Kinetics of cellulose",
+     "Kashiwagi &amp; Nambu (1992), as in FDS: pyrolysis, oxidation and glow of cellulose in air at 1, 3 and 5 K/min.",
+     validate_kinetics},
     {"ledgers", "Ledgers of heat and mass", "Energy and mass are kept.", validate_ledgers},
 };
 
-enum { ITEM_COUNT = sizeof items / sizeof *items };
 enum { OPT_OUTPUT, OPT_ONLY, OPT_QUICK, OPT_THREADS, OPT_COUNT };
 
 static const ArgOption validate_options[OPT_COUNT] = {
@@ -42,33 +36,9 @@ static const ArgCommand validate_command = {
                       "DIR/index.html.",
     validate_options, OPT_COUNT, "Exit codes: 0 good, 1 failed or a measure does not hold, 2 bad usage."};
 
-int command_validate(int argc, char **argv) {
-    ArgReader reader = args_begin(&validate_command, argc, argv);
-    const char *value, *folder = "out/validate", *name = NULL;
-    bool quick = false, known = true;
-    int threads = job_threads();
-    for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
-        switch (option) {
-        case OPT_OUTPUT:
-            if (!value[0]) return args_complain(&reader, "--output needs a folder"), EXIT_INPUT;
-            folder = value;
-            break;
-        case OPT_ONLY:
-            name = value, known = false;
-            for (int i = 0; i < ITEM_COUNT; i++) known = known || strcmp(value, items[i].name) == 0;
-            if (!known) return args_complain(&reader, "--only: there is no '%s'", value), EXIT_INPUT;
-            break;
-        case OPT_QUICK: quick = true; break;
-        case OPT_THREADS:
-            if (!args_int(&reader, option, value, 1, JOB_THREADS_MAX, &threads)) return EXIT_INPUT;
-            break;
-        case ARG_HELP: return EXIT_GOOD;
-        default: return EXIT_INPUT;
-        }
-    }
-    return lab_run(items, ITEM_COUNT, name, "The physics against outside truth",
-                   "What this program computes beside solutions, formulas and measurements that come from elsewhere. "
-                   "Each item "
-                   "says what the source has, what came out here, and whether stated measures hold.", folder, quick,
-                   threads);
-}
+static const Page page = {
+    items, sizeof items / sizeof *items, "out/validate", "The physics against outside truth",
+    "What this program computes beside solutions, formulas and measurements that come from elsewhere. Each item says "
+    "what the source has, what came out here, and whether stated measures hold."};
+
+int command_validate(int argc, char **argv) { return page_run(&page, &validate_command, argc, argv); }

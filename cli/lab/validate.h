@@ -2,7 +2,7 @@
 #ifndef CLI_VALIDATE_H
 #define CLI_VALIDATE_H
 
-#include "cli/lab/lab.h"
+#include "cli/lab/page.h"
 
 LabFn validate_heat, validate_umbrella, validate_front, validate_pmma, validate_disc, validate_beam, validate_kinetics,
     validate_ledgers;
