@@ -82,6 +82,13 @@ SingeResult play_shoot(Play *play, const char *caption, SingeError *error) {
     return SINGE_OK;
 }
 
+SingeResult play_shoot_at(Play *play, double time, SingeError *error) {
+    char caption[40];
+    snprintf(caption, sizeof caption, "%.1f s", time);
+    SingeResult result = play_until(play, time, error);
+    return result ? result : play_shoot(play, caption, error);
+}
+
 void play_close(Play *play) {
     singe_surface_free(&play->surface);
     pictures_close(play->pictures);

@@ -39,6 +39,8 @@ SINGE_NODISCARD SingeResult play_surface(Play *play, SingeError *error);
 SINGE_NODISCARD SingeResult play_draw(Play *play, uint8_t **rgb, int size[2], SingeError *error);
 /// Puts a picture into the report.
 SINGE_NODISCARD SingeResult play_shoot(Play *play, const char *caption, SingeError *error);
+/// Steps to a time and puts a picture into the report whose caption is the time.
+SINGE_NODISCARD SingeResult play_shoot_at(Play *play, double time, SingeError *error);
 void play_close(Play *play);
 
 // ---- a grid of cells in the xy plane without a scene

@@ -58,23 +58,19 @@ SingeResult paper_fig1(Lab *lab, SingeError *error) {
     report_pictures(lab->report, 4);
     show_texture(lab, picture);
     for (int i = 0; i < 6 && !result; i++) {
-        char caption[40];
-        snprintf(caption, sizeof caption, "%.1f s", times[i]);
-        result = play_until(&play, times[i], error);
-        if (!result) result = play_shoot(&play, caption, error);
+        result = play_shoot_at(&play, times[i], error);
         SingeView view = singe_sim_view(play.sim);
         if (i == 0) correlation = rate_correlation(&view, picture), before = shape_bend(&view);
         bend = fmax(bend, shape_bend(&view)), inner = fmax(inner, bend_of_unburnt(&view, 0.7f));
     }
     if (!result) {
         SingeView view = singe_sim_view(play.sim);
-        report_measure(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 "
-                                        "s", correlation,
-                       0.9, 1);
+        report_measure(lab->report, "correlation", "correlation of the texture with the mass lost after 0.1 s",
+                       correlation, 0.9, 1);
         report_measure(lab->report, "bend", "degrees from cell to cell, at most", bend, fmax(5, 3 * before), INFINITY);
-        report_measure(lab->report, "inner", "the same of cells that have most of their mass: \"interior regions ... "
-                                        "also "
-                       "wrinkle\"", inner, 3, INFINITY);
+        report_measure(lab->report, "inner",
+                       "the same of cells that have most of their mass: \"interior regions ... also wrinkle\"", inner,
+                       3, INFINITY);
         report_measure(lab->report, "burnt", "share of cells gone in the end", 1 - shape_left(&view), 0.3, 1);
     }
     play_close(&play);
@@ -133,9 +129,8 @@ SingeResult paper_fig4(Lab *lab, SingeError *error) {
     for (int i = 0; i < COLUMNS; i++)
         report_row(lab->report, "%s|%.1f|%d|%.2f|%.2f", names[i], 100 * c[i].left, c[i].pieces, c[i].bend, c[i].border);
     report_measure(lab->report, "b_whole", "(b) share of cells left", c[1].left, 1, 1);
-    report_measure(lab->report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two "
-                                        "parts", c[0].pieces,
-                   2, INFINITY);
+    report_measure(lab->report, "a_parts", "(a) pieces of more than 5 %: the shell separates into two parts",
+                   c[0].pieces, 2, INFINITY);
     report_measure(lab->report, "c_parts", "(c) the same", c[2].pieces, 2, INFINITY);
     report_measure(lab->report, "c_bend", "bend, (c) over (a): more detail with shrinkage", c[2].bend / c[0].bend, 1.3,
                    INFINITY);
@@ -167,10 +162,7 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
     SingeResult result = play_open(&play, lab, "fig11.yaml", sets, error);
     report_pictures(lab->report, 3);
     for (int i = 0; i < 6 && !result; i++) {
-        char caption[40];
-        snprintf(caption, sizeof caption, "%.1f s", times[i]);
-        result = play_until(&play, times[i], error);
-        if (!result) result = play_shoot(&play, caption, error);
+        result = play_shoot_at(&play, times[i], error);
         SingeView view = singe_sim_view(play.sim);
         lit[i] = sectors_lit(&view);
     }
@@ -179,8 +171,8 @@ SingeResult paper_fig11(Lab *lab, SingeError *error) {
         report_measure(lab->report, "start", "of 12 sectors around the hole, those alight after 1.5 s", lit[1], 1, 6);
         report_measure(lab->report, "end", "after 8 s: the fire went both ways around", lit[5], 12, 12);
         report_measure(lab->report, "left", "share of cells left then", shape_left(&view), 0, 0.8);
-        report_measure(lab->report, "ledger", "error of the heat "
-                                        "ledger", singe_sim_stats(play.sim).ledger_error, 0, 1e-4);
+        report_measure(lab->report, "ledger", "error of the heat ledger", singe_sim_stats(play.sim).ledger_error, 0,
+                       1e-4);
     }
     play_close(&play);
     return result;
@@ -310,11 +302,11 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     double most = 0, hottest = 0;
     for (int k = 0; k < RIVAL_LOOKS; k++)
         most = fmax(most, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
-    report_text(lab->report, "A strip of card is heated from below for a second and cools. The lower side is up to "
-                             "%.0f K "
-                "hotter, and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
-                "difference (dashed, scaled to the same largest curl) is flat again as soon as the strip is "
-                "cold.", hottest, most);
+    report_text(lab->report,
+                "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K hotter, "
+                "and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
+                "difference (dashed, scaled to the same largest curl) is flat again as soon as the strip is cold.",
+                hottest, most);
     scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
     for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = most * difference[rival_shots[s]];
     rival_draw(report_drawing(lab->report), (const double (*)[RIVAL_POINTS][2])profiles, bend);

@@ -1,7 +1,7 @@
 // Figures 2, 3, 5 and 6: the shell as it is built, the curl of one shrunk layer, the states of a spring and the cases
 // of marching triangles, all read from what the simulation holds.
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
 #include "cli/lab/paper.h"
 
@@ -71,12 +71,11 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
     Sight above = sight_fit(&view, 0, acos(-1) / 2, 330, 260), aside = sight_fit(&view, 0.5, 0.45, 460, 260);
     draw_springs(report_drawing(lab->report), &view, &above, "rgby");
     draw_springs(report_drawing(lab->report), &view, &aside, "rgby");
-    report_text(lab->report, "4 x 3 cells, from above and from the side: <b style=\"color:#1f77b4\">blue</b> mesh "
-                             "edges, "
-                "<b style=\"color:#2ca02c\">green</b> between the centres of neighbouring cells, "
-                "<b style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> "
-                "across a "
-                "cell. Centres lie one thickness above the corners' plane.");
+    report_text(lab->report,
+                "4 x 3 cells, from above and from the side: <b style=\"color:#1f77b4\">blue</b> mesh edges, <b "
+                "style=\"color:#2ca02c\">green</b> between the centres of neighbouring cells, <b "
+                "style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> across "
+                "a cell. Centres lie one thickness above the corners' plane.");
     singe_sim_destroy(sim);
     // counts a cell on a large grid; the border's share falls with its size
     enum { LARGE = 60 };
@@ -159,11 +158,10 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
-    report_text(lab->report, "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with "
-                             "its blue "
-                "layer 5 and 10 %% shorter. Red springs take half of it, the mean of their ends, which makes the "
-                "layers part "
-                "a little; the shell's value knows that, the beam's does not.", 1e3 * curl_thickness, 1e3 * curl_cell);
+    report_text(lab->report,
+                "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with its blue layer 5 "
+                "and 10 %% shorter. Red springs take half of it, the mean of their ends, which makes the layers part a "
+                "little; the shell's value knows that, the beam's does not.", 1e3 * curl_thickness, 1e3 * curl_cell);
     report_heads(lab->report, "shrunk by %|curvature 1/m|shell, exact|beam, e/((1-e)t)");
     for (int i = 0; i < CURL_CASES; i++)
         report_row(lab->report, "%.0f|%.2f|%.2f|%.2f", percent[i], measured[i], exact[i], beam[i]);
@@ -177,11 +175,30 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     return SINGE_OK;
 }
 
+// ---- Fig 5 and 6: grids burnt down to given masses
+
+/// Builds and burns a grid whose material has lab_sets_mass, and draws what is left. The caller destroys *sim, which
+/// may be NULL, and frees the surface in any case.
+static SingeResult burn_to(Lab *lab, LabGrid *grid, const float *mass, double mass_loss, SingeSim **sim,
+                           SingeSurface *surface, SingeError *error) {
+    grid->mass = mass, grid->material.mass_loss = singe_param((float)mass_loss), grid->material.ablate = true;
+    *sim = NULL;
+    SingeResult result = lab_build(lab, grid, sim, error);
+    if (!result) result = lab_steps(*sim, 200, error);
+    if (!result && (result = singe_sim_surface(*sim, surface))) *error = *singe_sim_error(*sim);
+    return result;
+}
+
 // ---- Fig 5: the states of a spring
 
 enum { STATES = 5, STATE_COLUMNS = STATES + 1 };
 static const double state_mass[STATE_COLUMNS][2] = {{1, .75}, {.75, .5}, {.95, .2}, {.8, .2}, {.1, .05}, {.1, .1}};
 static const double state_loss = 0.3;
+
+/// What is left of an end's mass above m_loss.
+static double state_left(int i, int end) { return state_mass[i][end] - state_loss; }
+/// Whether one end is left and the other is not.
+static bool state_is_cut(int i) { return state_left(i, 0) * state_left(i, 1) < 0; }
 
 /// The target length of the blue spring up column i over that at rest; -1 where it is gone.
 static double state_ratio(const SingeView *view, uint32_t i) {
@@ -226,6 +243,26 @@ static void state_draw(FILE *file, const double *ratio, const double *cut) {
     fprintf(file, "</svg>\n");
 }
 
+/// A row of the table for each spring. *worst and *worst_cut are the largest differences from the paper.
+static void state_table(Lab *lab, const double *ratio, const double *cut, double *worst, double *worst_cut) {
+    static const char *const states[] = {"shrunk", "shrunk", "partly burnt", "partly burnt", "burnt"};
+    static const double expected[STATES] = {0.875, 0.625, 0.575, 0.5, -1};
+    *worst = *worst_cut = 0;
+    report_heads(lab->report, "case|m_0|m_1|state|length|paper|cut at t|eq 7");
+    for (int i = 0; i < STATES; i++) {
+        char length[40] = "removed|removed", cuts[40] = "-|-";
+        if (ratio[i] >= 0) snprintf(length, sizeof length, "%.2f %%|%.1f %%", 100 * ratio[i], 100 * expected[i]);
+        if (state_is_cut(i)) {
+            const double t = state_left(i, 0) / (state_left(i, 0) - state_left(i, 1));
+            if (ratio[i] >= 0) snprintf(cuts, sizeof cuts, "%.4f|%.4f", cut[i], t);
+            *worst_cut = fmax(*worst_cut, fabs(cut[i] - t));
+        }
+        report_row(lab->report, "%c|%g|%g|%s|%s|%s", 'a' + i, state_mass[i][0], state_mass[i][1], states[i], length,
+                   cuts);
+        *worst = fmax(*worst, fabs(ratio[i] - expected[i]));
+    }
+}
+
 SingeResult paper_fig5(Lab *lab, SingeError *error) {
     const double cell = 0.01;
     float mass[2 * STATE_COLUMNS];
@@ -233,36 +270,20 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
     for (int i = 0; i < STATE_COLUMNS; i++)
         for (int k = 0; k < 2; k++) mass[i + k * STATE_COLUMNS] = (float)fmin(state_mass[i][k], 0.999999);
     lab_sets_mass(&grid.material);
-    grid.material.mass_loss = singe_param((float)state_loss), grid.material.ablate = true;
-    grid.mass = mass;
     SingeSim *sim;
     SingeSurface surface = {0};
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
-    result = lab_steps(sim, 200, error);
-    if (!result && (result = singe_sim_surface(sim, &surface))) *error = *singe_sim_error(sim);
+    SingeResult result = burn_to(lab, &grid, mass, state_loss, &sim, &surface, error);
     if (!result) {
-        static const char *const states[] = {"shrunk", "shrunk", "partly burnt", "partly burnt", "burnt"};
-        static const double expected[STATES] = {0.875, 0.625, 0.575, 0.5, -1};
         SingeView view = singe_sim_view(sim);
-        double worst = 0, worst_cut = 0, ratio[STATES], cut[STATES];
-        report_heads(lab->report, "case|m_0|m_1|state|length|paper|cut at t|eq 7");
+        double worst, worst_cut, ratio[STATES], cut[STATES];
         for (int i = 0; i < STATES; i++) {
-            double m0 = state_mass[i][0] - state_loss, m1 = state_mass[i][1] - state_loss, t = m0 / (m0 - m1);
-            ratio[i] = state_ratio(&view, (uint32_t)i), cut[i] = m0 * m1 < 0 ? state_cut(&surface, i, cell) : -1;
-            if (ratio[i] < 0) report_row(lab->report, "%c|%g|%g|%s|removed|removed|-|-", 'a' + i, state_mass[i][0],
-                                         state_mass[i][1], states[i]);
-            else if (m0 * m1 < 0) report_row(lab->report, "%c|%g|%g|%s|%.2f %%|%.1f %%|%.4f|%.4f", 'a' + i,
-                                             state_mass[i][0], state_mass[i][1], states[i], 100 * ratio[i],
-                                             100 * expected[i], cut[i], t);
-            else report_row(lab->report, "%c|%g|%g|%s|%.2f %%|%.1f %%|-|-", 'a' + i, state_mass[i][0],
-                            state_mass[i][1], states[i], 100 * ratio[i], 100 * expected[i]);
-            worst = fmax(worst, fabs(ratio[i] - expected[i]));
-            if (m0 * m1 < 0) worst_cut = fmax(worst_cut, fabs(cut[i] - t));
+            ratio[i] = state_ratio(&view, (uint32_t)i);
+            cut[i] = state_is_cut(i) ? state_cut(&surface, i, cell) : -1;
         }
+        state_table(lab, ratio, cut, &worst, &worst_cut);
         state_draw(report_drawing(lab->report), ratio, cut);
-        report_measure(lab->report, "lengths", "largest difference of the lengths, removed counting as "
-                                        "-1", worst, 0, 1e-4);
+        report_measure(lab->report, "lengths", "largest difference of the lengths, removed counting as -1", worst, 0,
+                       1e-4);
         report_measure(lab->report, "cuts", "largest difference of the cuts of c and d from eq 7", worst_cut, 0, 1e-3);
     }
     singe_surface_free(&surface);
@@ -307,6 +328,62 @@ static void march_draw(FILE *file, const SingeSurface *surface, double cell, con
     fprintf(file, "</svg>\n");
 }
 
+typedef struct March {
+    int cases[4];    ///< triangles by how many of their corners are left
+    double expected; ///< m2 that eq 7 leaves
+    int count;
+    double middles[4 * MARCH_CELLS * MARCH_CELLS][3]; ///< of the triangles: x, y, case
+} March;
+
+/// A cell's four triangles around its centre.
+static void march_cell(March *march, const SingeView *view, const float *mass, uint32_t cell, double side) {
+    const uint32_t *corner = view->cells[cell], m = view->vertex_count + cell;
+    for (int k = 0; k < 4; k++) {
+        uint32_t a = corner[k], b = corner[(k + 1) % 4];
+        double level[3] = {(double)mass[a] - march_loss, (double)mass[b] - march_loss, 0};
+        for (int i = 0; i < 4; i++) level[2] += (double)mass[corner[i]] / 4;
+        level[2] -= march_loss;
+        int inside;
+        march->expected += march_share(level, &inside) * side * side / 4;
+        march->cases[inside]++;
+        double *middle = march->middles[march->count++];
+        for (int d = 0; d < 2; d++)
+            middle[d] = ((double)view->rest_position[a][d] + (double)view->rest_position[b][d] +
+                         (double)view->rest_position[m][d]) / 3;
+        middle[2] = inside;
+    }
+}
+
+/// m2 in the rest plane.
+static double drawn_area(const SingeSurface *surface) {
+    double area = 0;
+    for (uint32_t t = 0; t < surface->triangle_count; t++) {
+        const float *p = surface->rest_position[surface->triangles[t][0]];
+        const float *q = surface->rest_position[surface->triangles[t][1]];
+        const float *r = surface->rest_position[surface->triangles[t][2]];
+        area += fabs(((double)q[0] - (double)p[0]) * ((double)r[1] - (double)p[1]) -
+                     ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) / 2;
+    }
+    return area;
+}
+
+static void march_report(Lab *lab, const SingeSurface *surface, const March *march, double side) {
+    static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
+    int fewest = march->cases[0];
+    march_draw(report_drawing(lab->report), surface, side, march->middles, march->count);
+    report_text(lab->report,
+                "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
+                "tell the case of each triangle.", MARCH_CELLS, MARCH_CELLS);
+    report_heads(lab->report, "corners left|drawn as|triangles");
+    for (int k = 3; k >= 0; k--) {
+        report_row(lab->report, "%d|%s|%d", k, shapes[k], march->cases[k]);
+        if (march->cases[k] < fewest) fewest = march->cases[k];
+    }
+    report_measure(lab->report, "cases", "triangles of the rarest case", fewest, 1, INFINITY);
+    report_measure(lab->report, "area", "drawn area over that of eq 7", drawn_area(surface) / march->expected, 0.999,
+                   1.001);
+}
+
 SingeResult paper_fig6(Lab *lab, SingeError *error) {
     enum { ROW = MARCH_CELLS + 1 };
     const double cell = 0.01;
@@ -315,53 +392,15 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
     for (int v = 0; v < ROW * ROW; v++)
         mass[v] = (float)(0.5 + 0.3 * sin(1.3 * (v % ROW) + 0.4) * cos(0.9 * (v / ROW) + 0.2 * (v % ROW)) + 0.03);
     lab_sets_mass(&grid.material);
-    grid.material.mass_loss = singe_param((float)march_loss), grid.material.ablate = true;
     grid.material.shrink_front = grid.material.shrink_back = singe_param(0);
-    grid.mass = mass;
     SingeSim *sim;
     SingeSurface surface = {0};
-    SingeResult result = lab_build(lab, &grid, &sim, error);
-    if (result) return result;
-    result = lab_steps(sim, 200, error);
-    if (!result && (result = singe_sim_surface(sim, &surface))) *error = *singe_sim_error(sim);
+    SingeResult result = burn_to(lab, &grid, mass, march_loss, &sim, &surface, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        double expected = 0, drawn = 0, middles[4 * MARCH_CELLS * MARCH_CELLS][3];
-        int cases[4] = {0}, count = 0;
-        for (uint32_t c = 0; c < view.cell_count; c++)
-            for (int k = 0; k < 4; k++) {
-                uint32_t a = view.cells[c][k], b = view.cells[c][(k + 1) % 4], m = view.vertex_count + c;
-                double level[3] = {(double)mass[a] - march_loss, (double)mass[b] - march_loss, 0};
-                for (int i = 0; i < 4; i++) level[2] += (double)mass[view.cells[c][i]] / 4;
-                level[2] -= march_loss;
-                int inside;
-                expected += march_share(level, &inside) * cell * cell / 4;
-                cases[inside]++;
-                for (int d = 0; d < 2; d++)
-                    middles[count][d] = ((double)view.rest_position[a][d] + (double)view.rest_position[b][d] +
-                                         (double)view.rest_position[m][d]) / 3;
-                middles[count++][2] = inside;
-            }
-        for (uint32_t t = 0; t < surface.triangle_count; t++) {
-            const float *p = surface.rest_position[surface.triangles[t][0]];
-            const float *q = surface.rest_position[surface.triangles[t][1]];
-            const float *r = surface.rest_position[surface.triangles[t][2]];
-            drawn += fabs(((double)q[0] - (double)p[0]) * ((double)r[1] - (double)p[1]) -
-                          ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) / 2;
-        }
-        march_draw(report_drawing(lab->report), &surface, cell, (const double (*)[3])middles, count);
-        report_text(lab->report, "%d x %d cells whose masses are given, each cell four triangles around its virtual "
-                                 "centre; the "
-                    "dots tell the case of each triangle.", MARCH_CELLS, MARCH_CELLS);
-        report_heads(lab->report, "corners left|drawn as|triangles");
-        static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
-        int fewest = cases[0];
-        for (int k = 3; k >= 0; k--) {
-            report_row(lab->report, "%d|%s|%d", k, shapes[k], cases[k]);
-            if (cases[k] < fewest) fewest = cases[k];
-        }
-        report_measure(lab->report, "cases", "triangles of the rarest case", fewest, 1, INFINITY);
-        report_measure(lab->report, "area", "drawn area over that of eq 7", drawn / expected, 0.999, 1.001);
+        March march = {.count = 0};
+        for (uint32_t c = 0; c < view.cell_count; c++) march_cell(&march, &view, mass, c, cell);
+        march_report(lab, &surface, &march, cell);
     }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
