@@ -40,11 +40,10 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
     uint32_t free_count = 0, springs = singe_network_set_size(all, 0);
     double spare, colour_spare = 0;
     for (uint32_t i = 0; i < view.particle_count; i++) free_count += !(view.particle_flags[i] & SINGE_PINNED);
-    report_text(lab->report, "%d x %d cells: %u constraints, %u degrees of freedom: 10 to %.2f. On a sheet without "
-                             "end it "
-                "is 10 to 6. The singular values are those of J M<sup>-1/2</sup>; %g of the largest counts as "
-                "0.", CELLS,
-                CELLS, springs, 3 * free_count, 10.0 * 3 * free_count / springs, zero_share);
+    report_text(lab->report,
+                "%d x %d cells: %u constraints, %u degrees of freedom: 10 to %.2f. On a sheet without end it is 10 to "
+                "6. The singular values are those of J M<sup>-1/2</sup>; %g of the largest counts as 0.", CELLS, CELLS,
+                springs, 3 * free_count, 10.0 * 3 * free_count / springs, zero_share);
     report_heads(lab->report, "springs|constraints|rank|too many|smallest above 0, over the largest");
     SingeResult result = set_print(lab, all, 0, "all", view.particle_count, &spare);
     for (uint32_t c = 0; c < SINGE_COLOUR_COUNT && !result; c++) {
@@ -52,9 +51,8 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
         result = set_print(lab, colours, c, names[c], view.particle_count, &more);
         colour_spare += more;
     }
-    report_measure(lab->report, "ratio", "constraints over degrees of freedom, all at "
-                                        "once", springs / (3.0 * free_count),
-                   1.0001, INFINITY);
+    report_measure(lab->report, "ratio", "constraints over degrees of freedom, all at once",
+                   springs / (3.0 * free_count), 1.0001, INFINITY);
     report_measure(lab->report, "deficit_all", "constraints beyond the rank, all at once", spare, 1, INFINITY);
     report_measure(lab->report, "deficit_colours", "the same of the four colours, each in a system of its own",
                    colour_spare, 0, 0);
@@ -85,8 +83,8 @@ static void contenders_run(Lab *lab, const Contender *contenders, int count, dou
     double errors[3][STEPS + 1];
     uint32_t iterations[3] = {0};
     bool broken[3] = {false};
-    report_text(lab->report, "Error |C| of all springs in m after each projection step. The third has a floor of %g "
-                             "on its "
+    report_text(lab->report,
+                "Error |C| of all springs in m after each projection step. The third has a floor of %g on its "
                 "diagonal, as <code>solver: paper</code> has.", floor);
     report_heads(lab->report, "step|all at once|colour after colour|all at once, floor");
     for (int step = 0; step <= STEPS; step++) {
@@ -105,9 +103,8 @@ static void contenders_run(Lab *lab, const Contender *contenders, int count, dou
                    broken[0] ? 1e9 : errors[0][STEPS] / errors[0][0], 1, INFINITY);
     report_measure(lab->report, "colours_converge", "the same, colour after colour", errors[1][STEPS] / errors[1][0], 0,
                    0.9);
-    report_measure(lab->report, "floor_converges", "the same, all at once with a "
-                                        "floor", errors[2][STEPS] / errors[2][0],
-                   0, 0.5);
+    report_measure(lab->report, "floor_converges", "the same, all at once with a floor",
+                   errors[2][STEPS] / errors[2][0], 0, 0.5);
 }
 
 static SingeResult all_at_once_run(Lab *lab, const SingeSim *sim, SingeError *error) {

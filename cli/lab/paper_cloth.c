@@ -48,11 +48,10 @@ SingeResult paper_fig7ab(Lab *lab, SingeError *error) {
     for (int i = 0; i < 4 && !result; i++)
         report_measure(lab->report, toruses[i].measure, toruses[i].what, lowest[i], toruses[i].held ? 0.05 : -INFINITY,
                        toruses[i].held ? INFINITY : 0.02);
-    report_text(lab->report, "The sphere stands free above the ground. What the mass-spring model does is a matter "
-                             "of its "
-                "stiffness, of which the paper says nothing: springs of 1 N/m stretch under the torus' weight of "
-                "0.13 N, "
-                "those of 100 N/m hold it, at the price of three times as many substeps.");
+    report_text(lab->report,
+                "The sphere stands free above the ground. What the mass-spring model does is a matter of its "
+                "stiffness, of which the paper says nothing: springs of 1 N/m stretch under the torus' weight of 0.13 "
+                "N, those of 100 N/m hold it, at the price of three times as many substeps.");
     return result;
 }
 
@@ -104,9 +103,10 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
         for (int i = 0; i < SHRINK_CASES; i++) power[i] += pow(spectra[i].height[b], 2);
     }
     report_plot(lab->report, &plot);
-    report_text(lab->report, "The spectrum is that of the height over the sheet's rest plane, along all of its grid "
-                             "lines; what is below 0.1 um counts as that. "
-                "Angles from cell to cell: %.2f degrees with strands, %.2f with soft springs.", bend[0], bend[1]);
+    report_text(lab->report,
+                "The spectrum is that of the height over the sheet's rest plane, along all of its grid lines; what is "
+                "below 0.1 um counts as that. Angles from cell to cell: %.2f degrees with strands, %.2f with soft "
+                "springs.", bend[0], bend[1]);
     report_measure(lab->report, "power", "power of wrinkles from four cells to 5 cm, over that of mass-spring",
                    power[0] / power[1], 10, INFINITY);
     report_measure(lab->report, "bands", "the smallest ratio of heights in any of these bands", least, 1, INFINITY);
@@ -159,9 +159,9 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
     if (result) return result;
     report_heads(lab->report, "thickness, weight|sag mm|bend degrees");
     for (int i = 0; i < SHELLS; i++) report_row(lab->report, "%s|%.1f|%.2f", names[i], 1e3 * sag[i], bend[i]);
-    report_text(lab->report, "Sag: height of the middle over the mean of the border. Bend: the mean slope of the "
-                             "border's "
-                "cells, across the border.");
+    report_text(lab->report,
+                "Sag: height of the middle over the mean of the border. Bend: the mean slope of the border's cells, "
+                "across the border.");
     report_measure(lab->report, "sag_b_a", "sag, (b) over (a)", sag[1] / sag[0], 1.1, INFINITY);
     report_measure(lab->report, "sag_c_b", "sag, (c) over (b)", sag[2] / sag[1], 1.02, INFINITY);
     report_measure(lab->report, "sag_d_c", "sag, (d) over (c)", sag[3] / sag[2], 1.0, INFINITY);
@@ -192,9 +192,8 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
             drop[x > 0] += 0.12 - (double)view.position[v][2], count[x > 0]++;
         }
         for (int k = 0; k < 2; k++) drop[k] /= count[k];
-        report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the firm "
-                                 "one.", 1e3 * drop[0],
-                    1e3 * drop[1]);
+        report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the firm one.",
+                    1e3 * drop[0], 1e3 * drop[1]);
         report_measure(lab->report, "ratio", "fall of the soft end over that of the firm one", drop[0] / drop[1], 1.5,
                        INFINITY);
     }

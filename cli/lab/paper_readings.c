@@ -85,27 +85,27 @@ static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
     if (!result) result = burn_strip(&lossless, &hot, error);
     if (result) return result;
     const double printed = mass_left(-1), read = mass_left(1);
-    report_row(lab->report, "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts "
-                            "itself out with "
+    report_row(lab->report,
+               "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts itself out with "
                "%.0f %% of its mass left; ours goes to m_min, %.0f %%", 100 * printed, 100 * read);
     report_row(lab->report, "eq 1, text|\"the ratio of heat to mass, mu\"|eta; mu is eq 4's rate|-");
-    report_row(lab->report, "eq 1|no losses|convection and radiation|without them the front is at %.0f C, with them at "
-               "%.0f C", hot.hottest - 273.15, ours.hottest - 273.15);
+    report_row(lab->report,
+               "eq 1|no losses|convection and radiation|without them the front is at %.0f C, with them at %.0f C",
+               hot.hottest - 273.15, ours.hottest - 273.15);
     report_row(lab->report, "eq 2|alpha nabla^2|alpha nabla^2 T|a misprint");
-    report_row(lab->report, "eq 3|lengths of the moment|initial lengths|weights go with 1/d^2: a spring at half its "
-                            "length "
-               "conducts 4 times as much, at the least length of 5 %% 400 times");
-    report_row(lab->report, "eq 3|taken for nabla^2|used only where asked for|on squares it is half of nabla^2 "
-                            "(singe validate)");
-    report_row(lab->report, "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min "
-                            "takes 10 %% of "
+    report_row(lab->report,
+               "eq 3|lengths of the moment|initial lengths|weights go with 1/d^2: a spring at half its length conducts "
+               "4 times as much, at the least length of 5 %% 400 times");
+    report_row(lab->report,
+               "eq 3|taken for nabla^2|used only where asked for|on squares it is half of nabla^2 (singe validate)");
+    report_row(lab->report,
+               "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
                "the time by the line, %.0f %% by ours: ash is seen before it goes", 100 * sqrt(0.1));
-    report_measure(lab->report, "eq1_printed", "eq 1 as printed: share of mass at which fire puts itself "
-                                        "out", printed, 0.9, 1);
+    report_measure(lab->report, "eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out", printed,
+                   0.9, 1);
     report_measure(lab->report, "eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151);
-    report_measure(lab->report, "losses", "hottest without losses over that with them, "
-                                        "kelvin", hot.hottest / ours.hottest,
-                   1.1, INFINITY);
+    report_measure(lab->report, "losses", "hottest without losses over that with them, kelvin",
+                   hot.hottest / ours.hottest, 1.1, INFINITY);
     return SINGE_OK;
 }
 
@@ -125,36 +125,33 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     singe_sim_destroy(sim);
     const double divided = spring_error(0.1, true), multiplied = spring_error(0.1, false);
     report_heads(lab->report, "where|the paper|our reading|the other reading");
-    report_row(lab->report, "eq 6|l_rest|l_init, which is the same length|compounded, a spring of v = 0.9 is at %.0e "
-                            "of its "
-               "length after 100 steps", pow(0.9, 100));
-    report_row(lab->report, "section 6|m'_1 = m_0 - m_loss|m_1 - m_loss|m'_0 = m'_1 always: no spring is ever partly "
-                            "burnt; "
-               "two of Fig 5's five are");
+    report_row(lab->report,
+               "eq 6|l_rest|l_init, which is the same length|compounded, a spring of v = 0.9 is at %.0e of its length "
+               "after 100 steps", pow(0.9, 100));
+    report_row(lab->report,
+               "section 6|m'_1 = m_0 - m_loss|m_1 - m_loss|m'_0 = m'_1 always: no spring is ever partly burnt; two of "
+               "Fig 5's five are");
     report_row(lab->report, "eq 9|x + v|x + h v|to the letter the sheet is lost after %d steps of 200", literal);
-    report_row(lab->report, "eq 16|J J^T|J M^-1 J^T|the centre of 1 and 9 kg moves by %.0f %% of what their spring "
-                            "closes, "
-               "with M by %.0e", 100 * without, with_mass);
-    report_row(lab->report, "section 7.2|the displacement is divided by w|eq 19: C is multiplied|a spring of w = 0.1 "
-                            "that is 20 %% "
+    report_row(lab->report,
+               "eq 16|J J^T|J M^-1 J^T|the centre of 1 and 9 kg moves by %.0f %% of what their spring closes, with M "
+               "by %.0e", 100 * without, with_mass);
+    report_row(lab->report,
+               "section 7.2|the displacement is divided by w|eq 19: C is multiplied|a spring of w = 0.1 that is 20 %% "
                "too long: after 7 projections off by %.1e if divided, by %.2f if multiplied, which is softer, as in "
-               "Fig 10",
-               divided, multiplied);
-    report_row(lab->report, "Table 2|10,000 springs in the last row|100,000|7412.92 ms at 0.074 ms each are %.0f "
-                            "springs",
+               "Fig 10", divided, multiplied);
+    report_row(lab->report,
+               "Table 2|10,000 springs in the last row|100,000|7412.92 ms at 0.074 ms each are %.0f springs",
                7412.92 / 0.074);
-    report_row(lab->report, "section 8.1|N_s = 7|N_n = 7|N_s is the number of springs; a row of the matrix on a grid "
-                            "has %d",
-               row);
-    report_row(lab->report, "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, "
-                            "11|section 8|all "
-               "of these sources are there");
+    report_row(lab->report,
+               "section 8.1|N_s = 7|N_n = 7|N_s is the number of springs; a row of the matrix on a grid has %d", row);
+    report_row(lab->report,
+               "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, 11|section 8|all of "
+               "these sources are there");
     report_measure(lab->report, "literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0, 100);
     report_measure(lab->report, "ours_steps", "as read: steps of 200", ours, 200, 200);
     report_measure(lab->report, "mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6);
-    report_measure(lab->report, "divided", "section 7.2's division: error after 7 projections over that "
-                                        "before", divided / 0.2,
-                   10, INFINITY);
+    report_measure(lab->report, "divided", "section 7.2's division: error after 7 projections over that before",
+                   divided / 0.2, 10, INFINITY);
     report_measure(lab->report, "multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8);
     report_measure(lab->report, "row", "entries in a row of the matrix", row, 7, 7);
     return SINGE_OK;
@@ -212,13 +209,12 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
                    rows[i].triangles,                   rows[i].edge);
         low = fmin(low, rows[i].speed), high = fmax(high, rows[i].speed);
     }
-    report_text(lab->report, "Cells that are refined near the front were not built. The front is thickened to what "
-                             "the cells "
-                "hold, so that its speed hardly hangs on them, and the edge is drawn finer than they are; what finer "
-                "cells add "
-                "are finer wrinkles, which are wanted wherever it has burnt, and not only at the front. A step of "
-                "the finest "
-                "sheet here costs %.0f times that of the coarsest.", rows[CASES - 1].step_ms / rows[0].step_ms);
+    report_text(lab->report,
+                "Cells that are refined near the front were not built. The front is thickened to what the cells hold, "
+                "so that its speed hardly hangs on them, and the edge is drawn finer than they are; what finer cells "
+                "add are finer wrinkles, which are wanted wherever it has burnt, and not only at the front. A step of "
+                "the finest sheet here costs %.0f times that of the coarsest.",
+                rows[CASES - 1].step_ms / rows[0].step_ms);
     report_measure(lab->report, "speed", "fastest front over slowest, over these cells", high / low, 1, 1.15);
     report_measure(lab->report, "edge", "border drawn of the coarsest cells over that of the finest", rows[0].edge /
                    rows[CASES - 1].edge, 0.7, 1.4);

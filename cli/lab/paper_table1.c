@@ -64,9 +64,9 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"paper's digits", "#111", NULL, paper[0], STEPS + 1, true, false});
     plot_add(&plot, (PlotLine){"", "#111", NULL, paper[1], STEPS + 1, true, false});
     report_plot(lab->report, &plot);
-    report_text(lab->report, "The paper's digits are cut, not rounded, and come out when the system takes the two "
-                             "fixed "
-                             "points for free and they are put back after each projection.");
+    report_text(lab->report,
+                "The paper's digits are cut, not rounded, and come out when the system takes the two fixed points for "
+                "free and they are put back after each projection.");
     singe_network_destroy(network);
     report_measure(lab->report, "largest_difference", "largest difference of the ten positions", worst, 0, 5e-5);
     return result;

@@ -102,12 +102,13 @@ static void table2_plot(Lab *lab, const Table2 *table) {
 SingeResult paper_table2(Lab *lab, SingeError *error) {
     Table2 table = {0};
     SingeResult result = SINGE_OK;
-    report_text(lab->report, "ms a step: 7 projections of all colours, h = 2 ms, a swinging sheet, one thread. "
-                "(b) with early exit, (c) fully iterated, (c)/(a) ms a spring; CG: iterations a step; the paper's "
-                "columns, "
-                "then the paper's solver here, then strands. Strain: mean over the mesh's edges at the end.");
-    report_heads(lab->report, "springs|paper (b)|paper (c)|(c)/(a)|here (b)|here (c)|(c)/(a)|CG|strand|(c)/strand|"
-                              "strain paper|strain strand");
+    report_text(lab->report,
+                "ms a step: 7 projections of all colours, h = 2 ms, a swinging sheet, one thread. (b) with early exit, "
+                "(c) fully iterated, (c)/(a) ms a spring; CG: iterations a step; the paper's columns, then the paper's "
+                "solver here, then strands. Strain: mean over the mesh's edges at the end.");
+    report_heads(lab->report,
+                 "springs|paper (b)|paper (c)|(c)/(a)|here (b)|here (c)|(c)/(a)|CG|strand|(c)/strand|strain "
+                 "paper|strain strand");
     for (int i = 0; i < (lab->quick ? QUICK_COUNT : ROW_COUNT) && !result; i++)
         result = table2_row(lab, &table2[i], &table, error);
     if (result) return result;
@@ -115,15 +116,14 @@ SingeResult paper_table2(Lab *lab, SingeError *error) {
     const int last = table.count - 1;
     double iteration[2] = {table.full[0] / table.iterations[0], table.full[last] / table.iterations[last]};
     double growth = log(iteration[1] / iteration[0]) / log(table.springs[last] / table.springs[0]);
-    report_text(lab->report, "Here the number of iterations grows with the sheet, as it must where a chain of "
-                             "springs has to be "
+    report_text(lab->report,
+                "Here the number of iterations grows with the sheet, as it must where a chain of springs has to be "
                 "known from end to end; an iteration is linear.");
-    report_measure(lab->report, "growth", "time of an iteration grows with the springs to the "
-                                        "power", growth, 0.6, 1.45);
+    report_measure(lab->report, "growth", "time of an iteration grows with the springs to the power", growth, 0.6,
+                   1.45);
     report_measure(lab->report, "early_exit", "(c) over (b) at the largest size; the paper's is 7 to 22",
                    table.full[last] / table.early[last], 1.2, INFINITY);
-    report_measure(lab->report, "strand_gain", "(c) over strands at the largest "
-                                        "size", table.full[last] / table.strand[last],
-                   10, INFINITY);
+    report_measure(lab->report, "strand_gain", "(c) over strands at the largest size",
+                   table.full[last] / table.strand[last], 10, INFINITY);
     return SINGE_OK;
 }

@@ -61,8 +61,8 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
     options.material_count = materials.count, options.materials = materials.items;
     SingeResult result = bench_front(&options, &table, error);
     if (!result) {
-        report_heads(lab->report, "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest "
-                                  "C|basis|finding");
+        report_heads(lab->report,
+                     "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest C|basis|finding");
         for (int row = 0; row < table.row_count; row++) front_row(lab, &table, row, &worst);
         report_text(lab->report, "One grammage of one material is calibrated; the others are predictions. The "
                                  "sources' ranges "
@@ -127,15 +127,14 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"here", "#b2182b", bass_um, ours, SHEETS, false, false});
     report_plot(lab->report, &plot);
     const double measured = slope(bass_um, bass_mm_s, SHEETS), here = slope(bass_um, ours, SHEETS);
-    report_text(lab->report, "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of "
-                             "combustion are "
-                "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, "
-                "the speed "
-                "goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast where "
-                "it is thick. "
-                "de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.", measured, gas_k, pmma_flame);
-    report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory "
-                                        "-1", here, -1.05, -0.95);
+    report_text(lab->report,
+                "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of combustion are "
+                "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, the "
+                "speed goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast "
+                "where it is thick. de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.", measured,
+                gas_k, pmma_flame);
+    report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory -1", here, -1.05,
+                   -0.95);
     report_measure(lab->report, "power_measured", "the same, less what was measured", here - measured, -0.25, 0.25);
     report_measure(lab->report, "mean", "geometric mean of here over BASS-II", exp(ratio), 0.5, 2);
     report_measure(lab->report, "worst", "the same at the worst thickness, up or down", exp(spread), 1, 2.5);

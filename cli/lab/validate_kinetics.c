@@ -130,9 +130,9 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
     double off = 0, residue = 0, apart = 0, first = 0, rising = INFINITY;
     SingeResult result = SINGE_OK;
     for (int i = 0; i < LOOKS; i++) temperature[i] = 300 + 5 * i - 273.15;
-    report_heads(lab->report, "heated by|three reactions: peak C|residue %|one reaction, fine: peak C|residue "
-                              "%|simulated: peak "
-                              "C|residue %");
+    report_heads(lab->report,
+                 "heated by|three reactions: peak C|residue %|one reaction, fine: peak C|residue %|simulated: peak "
+                 "C|residue %");
     for (int i = 0; i < RATES && !result; i++) {
         KineticsRun three = kinetics_run(rates[i], 0.05, NULL, 0), one = one_reaction(rates[i], 0.05), sim;
         kinetics_run(rates[i], 0.5, loss[i], LOOKS);
@@ -150,20 +150,18 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
         plot_add(&plot, (PlotLine){names[i], inks[i], temperature, loss[i], LOOKS, false, false});
     report_plot(lab->report, &plot);
     const double ignition = (double)singe_default_material().ignition_temperature.value;
-    report_text(lab->report, "Three reactions: Kashiwagi and Nambu's, integrated here by themselves. The simulation "
-                             "has one, the "
-                "oxidation of cellulose, and keeps its char, which in the three glows away in the end. It is a "
-                "choice of the "
-                "material (<code>pre_exponential</code>, <code>activation_energy</code>); by default it burns by eq "
-                "4, from "
-                "%.0f C on.", ignition - 273.15);
+    report_text(lab->report,
+                "Three reactions: Kashiwagi and Nambu's, integrated here by themselves. The simulation has one, the "
+                "oxidation of cellulose, and keeps its char, which in the three glows away in the end. It is a choice "
+                "of the material (<code>pre_exponential</code>, <code>activation_energy</code>); by default it burns "
+                "by eq 4, from %.0f C on.", ignition - 273.15);
     report_measure(lab->report, "peak", "simulated, a kelvin a step: K of the peak from the fine reference", off, 0, 2);
     report_measure(lab->report, "residue", "the same: difference of the residue", residue, 0, 1e-3);
     report_measure(lab->report, "three", "simulated: K of the peak from that of the three reactions", apart, 0, 10);
-    report_measure(lab->report, "shift", "simulated: least shift of the peak at 3 and 5 K/min from that at 1, "
-                                        "K", rising, 10, 40);
-    report_measure(lab->report, "threshold", "peak at 1 K/min less eq 4's ignition temperature, "
-                                        "K", first - ignition, 0, 80);
+    report_measure(lab->report, "shift", "simulated: least shift of the peak at 3 and 5 K/min from that at 1, K",
+                   rising, 10, 40);
+    report_measure(lab->report, "threshold", "peak at 1 K/min less eq 4's ignition temperature, K", first - ignition, 0,
+                   80);
     return SINGE_OK;
 }
 

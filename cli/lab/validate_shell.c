@@ -80,8 +80,8 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
                    b->shear,                   1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
         worst = fmax(worst, fabs(sag / plate - 1));
     }
-    report_text(lab->report, "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, "
-                             "D = t²/c, by "
+    report_text(lab->report,
+                "A strip of 10 by 4 cm, 80 g/m2, clamped over 1 cm. The first three have one stiffness, D = t²/c, by "
                 "three thicknesses; the fifth is soft in transverse shear.");
     report_measure(lab->report, "sag", "largest difference of the sag from plate theory, as a share", worst, 0, 0.15);
     return SINGE_OK;
@@ -211,18 +211,15 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
         report_row(lab->report, "%.1f|%.2f|%.1f|%.2f|%.2f|%.3f|%.0f°", 100 * shrinks[i], natural,
                    natural * disc_radius * disc_radius / disc_thickness, p[0], p[1], ratio[i], angle);
     }
-    report_text(lab->report, "A disc of 6 cm whose corner layer shrinks. Bent far it cannot be a bowl (Gauss) and "
-                             "becomes a "
+    report_text(lab->report,
+                "A disc of 6 cm whose corner layer shrinks. Bent far it cannot be a bowl (Gauss) and becomes a "
                 "cylinder of mean curvature (1 + nu)/2 times the natural one; 3/4 is that of nu = 1/2. This shell is "
-                "no isotropic "
-                "plate: when it bends only the springs of the layer of centres give, which run along the grid and do "
-                "not resist "
-                "shear. Pulled along the grid that layer has %.2f N/m (1/c is %.2f) and nu = %.3f; sheared, %.3f "
-                "N/m; so pulled along "
-                "its diagonal, nu = %.3f. The disc rolls up where that costs least, at 45° to the grid, and has (1 + "
-                "nu)/2 = "
-                "%.3f to show.", c.along, 1 / (double)singe_default_material().compliance[SINGE_GREEN].value,
-                c.coupled / c.along, c.shear, diagonal, (1 + diagonal) / 2);
+                "no isotropic plate: when it bends only the springs of the layer of centres give, which run along the "
+                "grid and do not resist shear. Pulled along the grid that layer has %.2f N/m (1/c is %.2f) and nu = "
+                "%.3f; sheared, %.3f N/m; so pulled along its diagonal, nu = %.3f. The disc rolls up where that costs "
+                "least, at 45° to the grid, and has (1 + nu)/2 = %.3f to show.", c.along,
+                1 / (double)singe_default_material().compliance[SINGE_GREEN].value, c.coupled / c.along, c.shear,
+                diagonal, (1 + diagonal) / 2);
     report_measure(lab->report, "stiffness", "stiffness along the grid times the compliance", c.along *
                    (double)singe_default_material().compliance[SINGE_GREEN].value, 0.9, 1.1);
     report_measure(lab->report, "poisson_grid", "nu along the grid, by a pull test", c.coupled / c.along, -0.1, 0.1);
