@@ -3,6 +3,7 @@
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"
+#include "support/support.h"
 
 #include <string.h>
 
@@ -439,39 +440,24 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
     finish(b, plan);
 }
 
-typedef struct Budget {
-    int left;      ///< allocations until one fails, negative for no end
-    size_t held;
-} Budget;
-
-static void *budget_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Budget *budget = context;
-    if (new_size && budget->left == 0) return NULL;
-    if (new_size && budget->left > 0) budget->left--;
-    budget->held += new_size - old_size;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
 static void plan_survives_lack_of_memory(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
-    Budget budget = {0, 0};
-    Memory memory = memory_make((SingeAllocator){budget_resize, &budget});
+    TestAllocator allocator = {0};
+    Memory memory = memory_make(test_allocator(&allocator));
     SingeResult result = SINGE_ERROR_MEMORY;
     AblatePlan *plan;
     int n = 0;
     for (; result; n++) {
-        budget.left = n;
+        allocator.calls = 0, allocator.fail_at = n + 1;
         result = ablate_plan_create(&memory, &b->shell, &plan);
-        assert_true(result == SINGE_OK || (result == SINGE_ERROR_MEMORY && !plan && budget.held == 0));
+        assert_true(result == SINGE_OK || (result == SINGE_ERROR_MEMORY && !plan && allocator.bytes == 0));
     }
     assert_true(n > 3);
-    assert_int_equal(memory.held, budget.held);
+    assert_int_equal(memory.held, allocator.bytes);
     ablate_plan_free(&memory, plan);
-    assert_int_equal(budget.held, 0);
+    assert_int_equal(allocator.bytes, 0);
     ablate_plan_free(&memory, NULL);
     burning_sheet_free(b);
 }

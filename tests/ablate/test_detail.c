@@ -5,6 +5,7 @@
 #include "ablate/surface_fine.h"
 #include "base/random.h"
 #include "shell/split.h"
+#include "support/support.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -596,15 +597,6 @@ static void walks_cross_cells(void **unused) {
     finish(d);
 }
 
-static void *stingy_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    int *left = context;
-    (void)old_size;
-    if (new_size && (*left)-- == 0) return NULL;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
 static void survives_lack_of_memory(void **unused) {
     (void)unused;
     Drawing *d = drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
@@ -613,16 +605,16 @@ static void survives_lack_of_memory(void **unused) {
     burn_rings(d, 0.02f);
     int failures = 0;
     for (int n = 0; result; n++) {
-        int left = n, plenty = -1;
-        Memory memory = memory_make((SingeAllocator){stingy_resize, &left});
-        SingeSurface surface = {.allocator = {stingy_resize, &left}};
+        TestAllocator allocator = {.fail_at = n + 1};
+        Memory memory = memory_make(test_allocator(&allocator));
+        SingeSurface surface = {.allocator = test_allocator(&allocator)};
         result = ablate_surface_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL);
         assert_int_equal(memory.held, 0);
         assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
         failures += result != SINGE_OK;
         if (result) assert_int_equal(surface.vertex_count + surface.triangle_count + surface.vertex_capacity, 0);
-        surface.allocator.context = &plenty;
         singe_surface_free(&surface);
+        assert_int_equal(allocator.bytes, 0);
     }
     assert_true(failures > 30);
     finish(d);

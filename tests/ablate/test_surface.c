@@ -5,6 +5,7 @@
 #include "ablate/drawn_mesh.h"
 #include "base/random.h"
 #include "base/vec.h"
+#include "support/support.h"
 
 #include <string.h>
 
@@ -307,21 +308,6 @@ static void sheets_and_pieces_are_kept_apart(void **unused) {
     finish(d);
 }
 
-typedef struct Budget {
-    int left;      ///< allocations until one fails, negative for no end
-    size_t held;
-} Budget;
-
-static void *budget_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Budget *budget = context;
-    if (new_size && budget->left == 0) return NULL;
-    if (new_size && budget->left > 0) budget->left--;
-    budget->held += new_size - old_size;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
 /// Every allocation of a first drawing and of one that must grow fails once.
 static void survives_lack_of_memory(void **unused) {
     (void)unused;
@@ -330,24 +316,24 @@ static void survives_lack_of_memory(void **unused) {
     for (int grow = 0; grow < 2; grow++) {
         SingeResult result = SINGE_ERROR_MEMORY;
         for (int n = 0; result; n++) {
-            Budget budget = {-1, 0};
-            SingeSurface surface = {.allocator = {budget_resize, &budget}};
+            TestAllocator allocator = {0};
+            SingeSurface surface = {.allocator = test_allocator(&allocator)};
             const BurningSheet *b = small->sheet;
             if (grow) assert_int_equal(ablate_surface(small->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
-            budget.left = n;
+            allocator.calls = 0, allocator.fail_at = n + 1;
             b = large->sheet;
             result = ablate_surface(large->plan, &b->shell, &b->state, &surface, NULL);
             assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
             if (result) {
                 failures++;
                 assert_int_equal(surface.vertex_count + surface.triangle_count, 0);
-                assert_int_equal(budget.held, 0);
-                budget.left = -1; // it can be used again
+                assert_int_equal(allocator.bytes, 0);
+                allocator.fail_at = 0; // it can be used again
                 assert_int_equal(ablate_surface(large->plan, &b->shell, &b->state, &surface, NULL), SINGE_OK);
             }
             assert_int_equal(surface.triangle_count, 9 * 9 * 4);
             singe_surface_free(&surface);
-            assert_int_equal(budget.held, 0);
+            assert_int_equal(allocator.bytes, 0);
         }
     }
     assert_int_equal(failures, 2 * 15);

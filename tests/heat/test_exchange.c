@@ -1,5 +1,6 @@
 // What particles exchange with the air, and the failures of the step.
 #include "heat/rig.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -241,18 +242,6 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
     }
 }
 
-typedef struct Failing { int left; } Failing;
-
-static void *failing_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Failing *failing = context;
-    (void)old_size;
-    if (new_size == 0) {
-        free(block);
-        return NULL;
-    }
-    return failing->left-- > 0 ? realloc(block, new_size) : NULL;
-}
-
 static void running_out_of_memory_is_clean(void **unused) {
     (void)unused;
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
@@ -267,8 +256,8 @@ static void running_out_of_memory_is_clean(void **unused) {
     ball.kind = SINGE_SOURCE_BALL, ball.path = &path, ball.path_count = 1;
     for (int what = 0; what < 3; what++)
         for (int n = 0;; n++) {
-            Failing failing = {n};
-            Memory memory = memory_make((SingeAllocator){failing_resize, &failing});
+            TestAllocator allocator = {.fail_at = n + 1};
+            Memory memory = memory_make(test_allocator(&allocator));
             HeatPlan *plan = NULL;
             Source source = {0};
             SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)

@@ -3,6 +3,7 @@
 #include "fixture.h"
 #include "synthetic.h"
 #include "synthetic_gas.h"
+#include "support/support.h"
 
 #include <math.h>
 
@@ -244,25 +245,14 @@ static void test_same_bytes(void **state) {
     synthetic_gas_free(&gas), synthetic_gas_free(&other), synthetic_free(&surface);
 }
 
-typedef struct Pool { int left; long held; } Pool;
-
-static void *pool_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    Pool *pool = context;
-    if (new_size && pool->left-- <= 0) return NULL;
-    pool->held += (long)new_size - (long)old_size;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
-static void test_refused(void **state) {
+static void test_bad_gas(void **state) {
     (void)state;
     static Ball ball;
     SingeError error;
     PreviewDef def = small();
-    Pool pool = {.left = 1000};
+    TestAllocator allocator = {0};
     Preview *preview = NULL;
-    assert_int_equal(preview_create(&def, (SingeAllocator){pool_resize, &pool}, &preview, &error), SINGE_OK);
+    assert_int_equal(preview_create(&def, test_allocator(&allocator), &preview, &error), SINGE_OK);
     ball_make(&ball, 0, 0, 0.2f, 0.03f, 4e6f, 0);
     SingeGas bad[5] = {ball.gas, ball.gas, ball.gas, ball.gas, ball.gas};
     bad[0].cell = 0, bad[1].cell = NAN, bad[2].origin[1] = INFINITY, bad[3].flame = NULL, bad[4].size[2] = 1u << 31;
@@ -273,12 +263,16 @@ static void test_refused(void **state) {
     ball.flame[7] = NAN;
     assert_int_equal(preview_set_gas(preview, &ball.gas, &error), SINGE_ERROR_ARGUMENT);
     ball.flame[7] = 0;
-    int needed = 0;
-    for (pool.left = 0; preview_set_gas(preview, &ball.gas, &error); pool.left = ++needed)
-        assert_int_equal(error.code, SINGE_ERROR_MEMORY);
+    SingeResult result = SINGE_ERROR_MEMORY;
+    int needed = -1;
+    while (result) {
+        allocator.calls = 0, allocator.fail_at = ++needed + 1;
+        result = preview_set_gas(preview, &ball.gas, &error);
+        if (result) assert_int_equal(error.code, SINGE_ERROR_MEMORY);
+    }
     assert_in_range(needed, 1, 5);
     preview_destroy(preview);
-    assert_int_equal(pool.held, 0);
+    assert_int_equal(allocator.bytes, 0);
 }
 
 int main(void) {
@@ -286,7 +280,7 @@ int main(void) {
         cmocka_unit_test(test_nothing_burns), cmocka_unit_test(test_flame), cmocka_unit_test(test_flicker),
         cmocka_unit_test(test_hidden),
         cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_layer), cmocka_unit_test(test_light), cmocka_unit_test(test_smoke),
-        cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_bad_gas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 
 #include "fixture.h"
 #include "synthetic.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -361,17 +362,6 @@ static void test_odd_sizes(void **state) {
     synthetic_free(&surface);
 }
 
-typedef struct Budget { int left; size_t held; } Budget;
-
-static void *spend(void *context, void *block, size_t old_size, size_t new_size) {
-    Budget *budget = context;
-    if (new_size && budget->left-- <= 0) return NULL;
-    budget->held += new_size - old_size;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
 /// Every allocation fails once: the right result, nothing left behind, and a failed frame can be drawn again.
 static void test_out_of_memory(void **state) {
     (void)state;
@@ -387,20 +377,20 @@ static void test_out_of_memory(void **state) {
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;
     for (int n = 0; n < 60 && !succeeded; n++) {
-        Budget budget = {.left = n};
-        SingeAllocator allocator = {spend, &budget};
+        TestAllocator allocator = {.fail_at = n + 1};
         Preview *preview = NULL;
         SingeError error = {0};
-        SingeResult result = preview_create(&def, allocator, &preview, &error);
+        SingeResult result = preview_create(&def, test_allocator(&allocator), &preview, &error);
         if (!result) result = preview_draw(preview, &q.surface, 0, rgb, &error);
         succeeded = !result;
         if (result) assert_int_equal(result, SINGE_ERROR_MEMORY);
         if (result && preview) {
-            budget.left = 1000;
+            allocator.fail_at = 0;
             assert_int_equal(preview_draw(preview, &q.surface, 0, rgb, &error), SINGE_OK);
         }
         preview_destroy(preview);
-        assert_int_equal(budget.held, 0);
+        assert_int_equal(allocator.bytes, 0);
+        assert_int_equal(allocator.faults, 0);
     }
     assert_true(succeeded);
 }
