@@ -110,6 +110,21 @@ def overlap_in_plane(a, b):
     return any(twice)
 
 
+def within(p, q, t):
+    """Whether a segment in the plane of a triangle has points of its inside."""
+    low, high, n = Fraction(0), Fraction(1), normal(t)
+    for i in range(3):
+        inward = cross(n, minus(t[(i + 1) % 3], t[i]))
+        f, g = dot(inward, minus(p, t[i])), dot(inward, minus(q, t[i]))
+        if f <= 0 and g <= 0:
+            return False
+        if f < 0:
+            low = max(low, f / (f - g))
+        if g < 0:
+            high = min(high, f / (f - g))
+    return low < high
+
+
 def triangles_cross(a, b):
     n = normal(a)
     height = [dot(n, minus(p, a[0])) for p in b]
@@ -120,17 +135,7 @@ def triangles_cross(a, b):
     ends = [p for p, h in zip(b, height) if h == 0]
     sides = [(i, j) for i, j in ((0, 1), (1, 2), (2, 0)) if height[i] * height[j] < 0]
     ends += [between(b[i], b[j], height[i], height[j]) for i, j in sides]
-    low, high = Fraction(0), Fraction(1)  # along what b has in the plane of a
-    for i in range(3):
-        inward = cross(n, minus(a[(i + 1) % 3], a[i]))
-        f, g = (dot(inward, minus(p, a[i])) for p in ends)
-        if f <= 0 and g <= 0:
-            return False
-        if f < 0:
-            low = max(low, f / (f - g))
-        if g < 0:
-            high = min(high, f / (f - g))
-    return low < high
+    return within(*ends, a)
 
 
 def neighbours(triangles, at):
@@ -147,21 +152,6 @@ def neighbours(triangles, at):
         alone = [g[0] for g in edges.values() if len(g) == 1]
         joined += [(place, *g) for g in groups + ([alone] if len(alone) == 2 else [])]
     return joined
-
-
-def within(p, q, t):
-    """Whether a segment in the plane of a triangle has points of its inside."""
-    low, high, n = Fraction(0), Fraction(1), normal(t)
-    for i in range(3):
-        inward = cross(n, minus(t[(i + 1) % 3], t[i]))
-        f, g = dot(inward, minus(p, t[i])), dot(inward, minus(q, t[i]))
-        if f <= 0 and g <= 0:
-            return False
-        if f < 0:
-            low = max(low, f / (f - g))
-        if g < 0:
-            high = min(high, f / (f - g))
-    return low < high
 
 
 def angle(axis, origin, first, p):
