@@ -17,7 +17,6 @@ static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", 
                                              "delaunay"};
 
 enum { SUBSTEPS = 60 };
-static const double right_motion[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
 
 enum { NAME, BECOME, TRI, CELLS, HALVED, IRREGULAR, STRAND, CPU, BLUE, YELLOW, FALL, OFF, RESULT, COLUMNS };
 static const BenchColumn columns[COLUMNS] = {
@@ -224,13 +223,8 @@ static double irregular_percent(const Mesh *mesh) {
     return inside ? 100.0 * irregular / inside : 0;
 }
 
-static bool add_row(BenchTable *table, Triangles kind, MeshQuads quads, const Mesh *mesh, const MeshReport *report,
+static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh, const MeshReport *report,
                     const Trajectory *t) {
-    double off = 0;
-    for (int m = 0; m < TRAJECTORY_MARKS; m++) {
-        double way = 100 * fabs(t->fall[m] - right_motion[m]);
-        if (!(way <= off)) off = way;
-    }
     BenchValue row[COLUMNS] = {
         [NAME] = bench_text(names[kind]),
         [BECOME] = bench_text(kind <= MOVED ? "-" : quads == MESH_QUADS_SPLIT ? "split" : "pair"),
@@ -243,7 +237,7 @@ static bool add_row(BenchTable *table, Triangles kind, MeshQuads quads, const Me
         [BLUE] = strain_percent(&t->strain[SINGE_BLUE]),
         [YELLOW] = strain_percent(&t->strain[SINGE_YELLOW]),
         [FALL] = {.number = {t->fall[0], t->fall[1], t->fall[2]}},
-        [OFF] = bench_number(off),
+        [OFF] = bench_number(trajectory_off(setup, t)),
         [RESULT] = bench_text(t->diverged ? "diverged" : "ok"),
     };
     return table_add(table, row);
@@ -266,7 +260,7 @@ static SingeResult measure(BenchSetup setup, Triangles kind, MeshQuads quads, in
     setup.shape = &shape;
     Trajectory *trajectory = result ? NULL : trajectory_run(&setup, frames, 1, INFINITY, error);
     if (!result && !trajectory) result = error->code;
-    if (!result && !add_row(table, kind, quads, &mesh, &report, trajectory)) result = SINGE_ERROR_MEMORY;
+    if (!result && !add_row(table, &setup, kind, quads, &mesh, &report, trajectory)) result = SINGE_ERROR_MEMORY;
     trajectory_free(trajectory);
     mesh_free(&mesh);
     return result;

@@ -13,8 +13,6 @@
 /// What hangs from one corner whips: from 100 cells on, the more cells, the more substeps.
 enum { DEFAULT_STEPS = 20, SWING_SUBSTEPS = 60, ONE_CORNER_SUBSTEPS = 240, ONE_CORNER_CELLS = 100 };
 
-static const double right_motion[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
-
 enum {
     CELLS, THICKNESS, SUBSTEPS, CPU_MEDIAN, CPU_MEAN, DYNAMICS, BLUE, RED, GREEN, YELLOW, FALL, OFF, SPEED, INVERTED,
     BARS, RESULT, COLUMNS
@@ -39,17 +37,6 @@ static const BenchColumn columns[COLUMNS] = {
     [RESULT] = {"result", NULL, 8, NULL},
 };
 
-/// cm, how far the centre of mass is at most from the right motion; NAN where that is not known.
-static double motion_error(const BenchSetup *setup, const Trajectory *trajectory) {
-    double most = 0;
-    if (setup->state != BENCH_SWING || setup->pins != 2) return NAN;
-    for (int m = 0; m < TRAJECTORY_MARKS; m++) {
-        double off = 100 * fabs(trajectory->fall[m] - right_motion[m]);
-        if (!(off <= most)) most = off; // NaN stays: not reached
-    }
-    return most;
-}
-
 /// Whether the sheet is inextensible and moves as it should; "-" where that is not known.
 static const char *bars_held(const BenchSetup *setup, const Trajectory *t, double off) {
     const double scale = setup->pins == 1 ? 10 : 1, max = 0.5 * scale, p99 = 0.05 * scale, off_most = 2;
@@ -61,7 +48,7 @@ static const char *bars_held(const BenchSetup *setup, const Trajectory *t, doubl
 }
 
 static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {
-    const double off = motion_error(setup, t);
+    const double off = trajectory_off(setup, t);
     BenchValue row[COLUMNS] = {
         [CELLS] = bench_number(setup->cells),
         [THICKNESS] = bench_number(1e3 * (double)setup->thickness),

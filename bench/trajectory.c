@@ -69,3 +69,14 @@ void trajectory_free(Trajectory *trajectory) {
     if (trajectory) free(trajectory->cpu_ms);
     free(trajectory);
 }
+
+double trajectory_off(const BenchSetup *setup, const Trajectory *trajectory) {
+    static const double right[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
+    double most = 0;
+    if (setup->state != BENCH_SWING || setup->pins != 2) return NAN;
+    for (int m = 0; m < TRAJECTORY_MARKS; m++) {
+        double off = 100 * fabs(trajectory->fall[m] - right[m]);
+        if (!(off <= most)) most = off; // NaN stays: not reached
+    }
+    return most;
+}

@@ -27,4 +27,8 @@ typedef struct Trajectory {
 Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, double budget, SingeError *error);
 void trajectory_free(Trajectory *trajectory);
 
+/// cm, how far the centre of mass is at most, at the marks, from where all solvers converge to with finer time steps;
+/// NAN where that is not known (it is of BENCH_SWING held at two corners) or a mark is not reached.
+double trajectory_off(const BenchSetup *setup, const Trajectory *trajectory);
+
 #endif
