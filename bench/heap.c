@@ -5,6 +5,7 @@
 
 #include "bench/bench.h"
 #include "bench/machine.h"
+#include "bench/numbers.h"
 
 enum { STEPS = 20, ROOM = 4096 };
 static const float side = 1;                   // m
@@ -95,26 +96,20 @@ static SingeResult build(const BenchOptions *options, int cells, SingeSim **sim,
     return result;
 }
 
-static int ascending(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
                  int frames) {
     SingeTimers t = singe_sim_timers(sim);
     SingeCensus census = singe_sim_census(sim);
     SingeStats stats = singe_sim_stats(sim);
-    double springs = 0, sum = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
+    double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c];
-    for (int f = 0; f < frames; f++) sum += frame_ms[f];
-    qsort(frame_ms, (size_t)frames, sizeof *frame_ms, ascending);
+    double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
     row[CELLS] = bench_number(cells);
     row[SPRINGS] = bench_number(springs);
     row[THREADS] = bench_number(options->threads);
-    row[FRAME_MEDIAN] = bench_number(frame_ms[frames / 2]);
+    row[FRAME_MEDIAN] = bench_number(median);
     row[FRAME_MOST] = bench_number(frame_ms[frames - 1]);
-    row[STEP_MEAN] = bench_number(sum / steps);
+    row[STEP_MEAN] = bench_number(mean * frames / steps);
     row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
     row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
     row[ABLATE] = bench_number(a_frame * t.seconds[SINGE_STAGE_ABLATE]);

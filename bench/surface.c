@@ -1,9 +1,8 @@
 // What the drawn surface of a burning sheet costs, with the cells as they are and refined near the front.
-#include <stdlib.h>
-
 #include "bench/bench.h"
 #include "bench/burning.h"
 #include "bench/machine.h"
+#include "bench/numbers.h"
 #include "bench/timing.h"
 
 enum { BURNING_STEPS = 240, DRAWINGS = 15 };
@@ -23,11 +22,6 @@ static const BenchColumn columns[COLUMNS] = {
     [CACHE] = {"cache_mb", "%.2f", 8, NULL},
 };
 
-static int ascending(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /// Draws the present state some times; medians of wall and processor time.
 static SingeResult time_drawings(SingeSim *sim, SingeSurface *surface, double *wall, double *cpu) {
     double walls[DRAWINGS], cpus[DRAWINGS];
@@ -37,9 +31,7 @@ static SingeResult time_drawings(SingeSim *sim, SingeSurface *surface, double *w
         if (result) return result;
         walls[i] = 1e3 * (machine_clock() - begun), cpus[i] = 1e3 * (machine_cpu_clock() - cpu_begun);
     }
-    qsort(walls, DRAWINGS, sizeof *walls, ascending);
-    qsort(cpus, DRAWINGS, sizeof *cpus, ascending);
-    *wall = walls[DRAWINGS / 2], *cpu = cpus[DRAWINGS / 2];
+    *wall = numbers_median(walls, DRAWINGS), *cpu = numbers_median(cpus, DRAWINGS);
     return SINGE_OK;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench/machine.h"
+#include "bench/numbers.h"
 #include "preview/preview.h"
 
 enum { PICTURE, TRIANGLES, SAMPLES, SECONDS, LEAST, WALL, COLUMNS };
@@ -103,11 +104,6 @@ static const Shot shots[] = {
     {"lens", {0.05f, -0.40f, 0.36f}, {0, -0.012f, 0}, 0.58f, 0.008f, 0.02f},
 };
 
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static SingeResult measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
                            BenchTable *table, SingeError *error) {
     PreviewDef def = preview_default();
@@ -129,11 +125,11 @@ static SingeResult measure(const BenchOptions *options, const Shot *shot, const 
     preview_destroy(preview);
     free(rgb);
     if (result) return result;
-    qsort(cpu, REPEATS, sizeof *cpu, ascending), qsort(wall, REPEATS, sizeof *wall, ascending);
+    double seconds = numbers_median(cpu, REPEATS);
     BenchValue row[COLUMNS] = {
         [PICTURE] = bench_text(shot->name), [TRIANGLES] = bench_number(surface->triangle_count),
-        [SAMPLES] = bench_number(def.samples), [SECONDS] = bench_number(cpu[REPEATS / 2]),
-        [LEAST] = bench_number(cpu[0]), [WALL] = bench_number(wall[REPEATS / 2])};
+        [SAMPLES] = bench_number(def.samples), [SECONDS] = bench_number(seconds),
+        [LEAST] = bench_number(cpu[0]), [WALL] = bench_number(numbers_median(wall, REPEATS))};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 

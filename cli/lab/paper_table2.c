@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bench/numbers.h"
 #include "cli/lab/paper.h"
 #include "cli/lab/paper_states.h"
 
@@ -25,12 +26,6 @@ typedef struct Cost {
     double strain;       ///< mean over the mesh's edges, at the end
 } Cost;
 
-static int compare(const void *a, const void *b) {
-    double x, y;
-    x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static SingeResult cost_measure(int cells, const SingeSolverDef *solver, int threads, Cost *cost, SingeError *error) {
     SingeSim *sim;
     SingeResult result = paper_sim(PAPER_SWING, cells, solver, threads, &sim, error);
@@ -45,8 +40,7 @@ static SingeResult cost_measure(int cells, const SingeSolverDef *solver, int thr
         before = now;
     }
     if (result) *error = *singe_sim_error(sim);
-    qsort(times, TIMED_STEPS, sizeof *times, compare);
-    *cost = (Cost){times[TIMED_STEPS / 2],
+    *cost = (Cost){numbers_median(times, TIMED_STEPS),
                    (double)(before.projection_iterations - first.projection_iterations) / TIMED_STEPS,
                    singe_sim_stats(sim).strain_mean};
     singe_sim_destroy(sim);
