@@ -205,3 +205,15 @@ int folder_frames(const Folder *folder, int *first, int *last) {
     free(path);
     return count;
 }
+
+ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
+    int lowest, highest;
+    if (folder_frames(folder, &lowest, &highest) == 0) {
+        console_error(console, "no frames %s/ply/%s.*.ply", folder->path, folder->name);
+        return EXIT_INPUT;
+    }
+    if (*first == 0) *first = lowest, *last = highest;
+    if (*first >= lowest && *last <= highest) return EXIT_GOOD;
+    console_error(console, "frames %d-%d are asked for, but %s has %d-%d", *first, *last, folder->path, lowest, highest);
+    return EXIT_INPUT;
+}

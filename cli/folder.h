@@ -3,6 +3,8 @@
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
+#include "cli/cli.h"
+#include "cli/console.h"
 #include "singe/base.h"
 
 typedef struct Folder {
@@ -45,6 +47,10 @@ SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error
 
 /// The smallest and greatest frame with a PLY, and how many there are; 0 when none.
 int folder_frames(const Folder *folder, int *first, int *last);
+
+/// Checks that there are PLYs of the frames asked for, from *first to *last, or sets both to all where *first is 0.
+/// A message has been printed unless the result is EXIT_GOOD.
+ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last);
 
 /// Fills *error with the path and the system's reason. Returns SINGE_ERROR_FILE.
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error);

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/numbers.h"
 #include "cli/args.h"
 #include "cli/cli.h"
 #include "cli/console.h"
@@ -204,11 +205,6 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
 
 // ---- the whole
 
-static int ascending(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /// Median and worst over the frames that have the number, and the worst one's frame; false where none has.
 static bool summary(const Measure *measure, Number number, double *median, double *worst, int *worst_frame) {
     const int frames = measure->last - measure->first + 1;
@@ -221,10 +217,7 @@ static bool summary(const Measure *measure, Number number, double *median, doubl
             *worst = value, *worst_frame = measure->first + i;
         values[count++] = value;
     }
-    if (count) {
-        qsort(values, (size_t)count, sizeof *values, ascending);
-        *median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-    }
+    if (count) *median = numbers_median(values, count);
     free(values);
     return count > 0;
 }
@@ -309,21 +302,6 @@ static ExitCode measure_all(Measure *measure) {
     return code;
 }
 
-// ---- the cache
-
-static ExitCode find_frames(Measure *measure) {
-    int first, last, count = folder_frames(&measure->folder, &first, &last);
-    if (count == 0) {
-        console_error(&measure->console, "no frames %s/ply/%s.*.ply", measure->folder.path, measure->folder.name);
-        return EXIT_INPUT;
-    }
-    if (measure->first == 0) measure->first = first, measure->last = last;
-    if (measure->first >= first && measure->last <= last) return EXIT_GOOD;
-    console_error(&measure->console, "frames %d-%d are asked for, but %s has %d-%d", measure->first, measure->last,
-                  measure->folder.path, first, last);
-    return EXIT_INPUT;
-}
-
 int command_measure(int argc, char **argv) {
     Measure measure = {.console = console_make(false)};
     ArgReader reader = args_begin(&measure_command, argc, argv);
@@ -339,7 +317,7 @@ int command_measure(int argc, char **argv) {
     ExitCode code = job_reopen(&measure.job, &measure.console, path, &sets, job_threads());
     if (code) return code;
     measure.folder = folder_name(path, measure.job.scene->name);
-    code = find_frames(&measure);
+    code = folder_span(&measure.folder, &measure.console, &measure.first, &measure.last);
     SingeError error = {0};
     if (!code && pictures_available() && pictures_open_sharp(&measure.job, EMBER_SCALE, &measure.pictures, &error)) {
         console_result(&measure.console, &error);

@@ -112,23 +112,6 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
     return EXIT_GOOD;
 }
 
-// ---- the cache
-
-static ExitCode find_frames(Render *render) {
-    const RenderOptions *o = render->options;
-    int first, last, count = folder_frames(&render->folder, &first, &last);
-    render->first = o->first ? o->first : first;
-    render->last = o->first ? o->last : last;
-    if (count == 0) {
-        console_error(render->console, "no frames %s/ply/%s.*.ply", render->folder.path, render->folder.name);
-        return EXIT_INPUT;
-    }
-    if (render->first >= first && render->last <= last) return EXIT_GOOD;
-    console_error(render->console, "frames %d-%d are asked for, but %s has %d-%d", render->first, render->last,
-                  render->folder.path, first, last);
-    return EXIT_INPUT;
-}
-
 // ---- drawing
 
 /// The gas of a frame; none where the cache has no file of it.
@@ -251,7 +234,8 @@ int command_render(int argc, char **argv) {
         code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
-            code = find_frames(&render);
+            render.first = options.first, render.last = options.last;
+            code = folder_span(&render.folder, &console, &render.first, &render.last);
         }
         if (!code) code = render_frames(&render);
         contact_sheet_free(&render.sheet);

@@ -234,19 +234,6 @@ static ExitCode find_folder(Verify *verify, const char *path) {
     return verify->folder.path ? EXIT_GOOD : EXIT_INPUT;
 }
 
-static ExitCode find_frames(Verify *verify) {
-    int first, last, count = folder_frames(&verify->folder, &first, &last);
-    if (count == 0) {
-        console_error(&verify->console, "no frames %s/ply/%s.*.ply", verify->folder.path, verify->folder.name);
-        return EXIT_INPUT;
-    }
-    if (verify->first == 0) verify->first = first, verify->last = last;
-    if (verify->first >= first && verify->last <= last) return EXIT_GOOD;
-    console_error(&verify->console, "frames %d-%d are asked for, but %s has %d-%d", verify->first, verify->last,
-                  verify->folder.path, first, last);
-    return EXIT_INPUT;
-}
-
 static bool read_stretch(const ArgReader *reader, const char *text, double *stretch) {
     char *end;
     *stretch = strtod(text, &end);
@@ -271,7 +258,7 @@ int command_verify(int argc, char **argv) {
     interrupt_watch();
     verify.findings = (Findings){.console = &verify.console, .stretch = verify.stretch};
     ExitCode code = find_folder(&verify, path);
-    if (!code) code = find_frames(&verify);
+    if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
     if (!code) code = verify_all(&verify);
     stats_table_free(&verify.stats);
