@@ -246,8 +246,8 @@ SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, 
 void scene_assets_free(SceneAssets *assets);
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
-/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused, or
-/// the first other object.
+/// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
+/// or the first other object.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 

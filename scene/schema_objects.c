@@ -1,0 +1,210 @@
+// What a scene has lists of: sheets, sources, colliders and pins.
+#include "scene/schema_rows.h"
+
+static const char *const source_names[] = {
+    [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_PICTURE] = "picture", [SINGE_SOURCE_SPOT] = "spot", NULL};
+static const char *const units_names[] = {
+    [SCENE_UNITS_M] = "m", [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm", [SCENE_UNITS_IN] = "in",
+    [SCENE_UNITS_FT] = "ft", NULL};
+static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
+static const char *const quads_names[] = {[MESH_QUADS_PAIR] = "pair", [MESH_QUADS_SPLIT] = "split", NULL};
+static const char *const collider_names[] = {
+    [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
+    [SINGE_COLLIDER_CAPSULE] = "capsule", [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield", [SINGE_COLLIDER_MESH] = "mesh",
+    NULL};
+static const char *const sides_names[] = {[SINGE_SIDES_TOUCHING] = "touching", [SINGE_SIDES_BOTH] = "both", NULL};
+
+enum {
+    BALL = 1 << SINGE_SOURCE_BALL, PICTURE = 1 << SINGE_SOURCE_PICTURE, SPOT = 1 << SINGE_SOURCE_SPOT,
+    PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
+    BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
+    HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD, MESH = 1 << SINGE_COLLIDER_MESH,
+    DRAWN = SPHERE | BOX | CAPSULE | HEIGHTFIELD | MESH,
+};
+
+// ---- parts that several objects share
+
+static const SchemaRow key_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SceneKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
+    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, ANY, .doc = "where"},
+    {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, TURN,
+     .doc = "turned about the x axis, then y, then z, all fixed in the world"},
+};
+static const Schema schema_key = {
+    .title = "a path's entry", .size = sizeof(SceneKey), ROWS(key_rows),
+    .doc = "Where something is at a time. Positions move in straight lines from entry to entry and rest before the "
+           "first and after the last; times must increase."};
+
+static const SchemaRow strength_rows[] = {
+    {"time", ROW_FLOAT, DIM_TIME, AT(SingeValueKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
+    {"value", ROW_FLOAT, DIM_FRACTION, AT(SingeValueKey, value), .min = 0, .max = 1e6, .flags = ROW_REQUIRED,
+     .doc = "how strong, 1 being the full flux"},
+};
+static const Schema schema_strength = {
+    .title = "a strength's entry", .size = sizeof(SingeValueKey), ROWS(strength_rows),
+    .doc = "How strong a picture source is at a time; straight lines in between. Times must increase."};
+
+// ---- sheets
+
+static const SchemaRow grid_rows[] = {
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4),
+     .flags = ROW_REQUIRED, .doc = "along x and y"},
+    {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
+     .doc = "how many cells along x and y"},
+    {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
+     .doc = "how far vertices lie off the grid, of a cell: folds and fronts then find no lines to follow; 0 is "
+            "regular"},
+    {"relief", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.relief), WITHIN(0, 1e3),
+     .doc = "root mean square height of the smooth waves in which the sheet lies from the start; 0 is flat"},
+    {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
+};
+static const Schema schema_grid = {
+    .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows), .defaults = default_grid,
+    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
+
+static ScenePlace *sheet_place(void *object) { return &((SceneSheet *)object)->place; }
+static const SchemaRow sheet_rows[] = {
+    {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
+     .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneSheet, mesh),
+     .doc = "a file of triangles, quads or polygons: OBJ, PLY, or what assimp reads ([meshes.md](meshes.md)); this or "
+            "`grid`"},
+    {"grid", ROW_MAP, DIM_NONE, AT(SceneSheet, grid), EXTRA(SceneSheet, grid.given), .sub = &schema_grid,
+     .doc = "a rectangle made by the program"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneSheet, picture),
+     .doc = "PNG or JPEG, printed on both sides in the preview"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
+     .doc = "linear red, green, blue; tints the picture"},
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
+     .doc = "times `units`: how large the mesh file is made"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneSheet, units), .names = units_names,
+     .doc = "what a number in the mesh file is; `ft` is a foot"},
+    {"up", ROW_ENUM, DIM_NONE, AT(SceneSheet, up), .names = up_names,
+     .doc = "the mesh file's axis that points up; a file whose y is up is turned by 90 degrees about x"},
+    {"weld", ROW_FLOAT, DIM_LENGTH, AT(SceneSheet, weld), FROM(0),
+     .doc = "vertices on open edges of the mesh that are this near are one, whatever their uv; 0: 1/100000 of its "
+            "size"},
+    {"quads", ROW_ENUM, DIM_NONE, AT(SceneSheet, quads), .names = quads_names,
+     .doc = "what becomes of triangles and polygons: `pair` joins triangles two by two; `split` makes n quads of every "
+            "face of n corners, with sides half as long"},
+    {"rotate", ROW_VECTOR, DIM_ANGLE, AT(SceneSheet, rotate), .length = 3, TURN,
+     .doc = "about x, then y, then z, after the scaling and `up`"},
+    {"translate", ROW_VECTOR, DIM_LENGTH, AT(SceneSheet, translate), .length = 3, WITHIN(-9000, 9000),
+     .doc = "after the rotation; a sheet must lie within 10 km of the origin"},
+    {"velocity", ROW_VECTOR, DIM_SPEED, AT(SceneSheet, velocity), .length = 3, ANY, .doc = "at the start"},
+    {"drop_pieces_below", ROW_FLOAT, DIM_AREA, AT(SceneSheet, drop_pieces_below), FROM(0),
+     .doc = "loose pieces smaller than this vanish; 0 keeps all"},
+    {"material", ROW_MAP, DIM_NONE, AT(SceneSheet, material), .sub = &schema_material, .doc = "what it is made of"},
+};
+const Schema schema_sheet = {
+    .title = "a sheet", .size = sizeof(SceneSheet), ROWS(sheet_rows), .defaults = default_sheet, .finish = finish_sheet,
+    .place = sheet_place, .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
+
+// ---- sources, colliders, pins
+
+static ScenePlace *source_place(void *object) { return &((SceneSource *)object)->place; }
+#define SOURCE(name, member, dim, kinds_, range_, text) \
+    {name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text}
+static const SchemaRow source_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
+     .doc =
+         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `picture`: a flux drawn on the sheet"},
+    SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
+    {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
+     .doc = "to here; `inf` is for ever"},
+    SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, KELVIN, "of the ball or the flame"),
+    SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "how well its heat reaches the sheet"),
+    SOURCE("radius", radius, DIM_LENGTH, BALL | SPOT, FROM(0), "full heat within it"),
+    SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
+           "beyond the radius, over which the heat falls to nothing"),
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
+     .kinds = SPOT, .flags = ROW_REQUIRED, ANY, .doc = "its centre"},
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
+     .kinds = BALL, .flags = ROW_SHORT, ANY, .doc = "its centre, when it does not move; this or `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
+     .sub = &schema_key, .doc = "its way; this or `position`"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneSource, picture), .kinds = PICTURE, .flags = ROW_REQUIRED,
+     .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
+    SOURCE("flux", flux, DIM_FLUX, PICTURE, FROM(0), "into each of the sheet's two layers where the picture is white"),
+    {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
+     .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
+     .doc = "multiplies the flux over time; 1 when not given"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
+};
+const Schema schema_source = {
+    .title = "a source", .size = sizeof(SceneSource), ROWS(source_rows), .kind_offset = offsetof(SceneSource, def.kind),
+    .defaults = default_source, .finish = finish_source, .place = source_place,
+    .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
+
+static ScenePlace *collider_place(void *object) { return &((SceneCollider *)object)->place; }
+#define COLLIDER(name, member, dim, kinds_, range_, text) \
+    {name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text}
+static const SchemaRow collider_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
+     .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
+            "(solid below heights over a rectangle of its own x-y plane) or `mesh` (what a closed mesh encloses)"},
+    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e6), "of the sphere or the capsule"),
+    {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX,
+     WITHIN(1e-6, 1e6), .doc = "half of the box's lengths along its own axes"},
+    COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
+     .doc = "a closed mesh of triangles or polygons: OBJ, PLY, or what assimp reads, whose faces turn "
+            "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
+            "turned"},
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
+     .doc = "times `units`: how large the mesh file is made"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
+     .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
+    {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = HEIGHTFIELD, .flags = ROW_REQUIRED,
+     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's middle, "
+            "straight between"},
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.size), .length = 2, .kinds = HEIGHTFIELD, WITHIN(1e-6, 1e4),
+     .doc = "of the rectangle, from the first pixels' middles to the last's, along x and y"},
+    {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
+     WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
+    {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
+     .flags = ROW_SHORT, ANY, .doc = "of its centre, when it does not move; instead of `path`"},
+    {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
+     .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
+    {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
+     .doc = "its way"},
+    COLLIDER("friction", friction, DIM_NONE, 0, WITHIN(0, 1000), "Coulomb's coefficient"),
+    COLLIDER("offset", offset, DIM_LENGTH, 0, WITHIN(0, 1000), "distance that sheets keep from the surface"),
+    COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, KELVIN, "matters when `conductance` is not 0"),
+    COLLIDER("conductance", conductance, DIM_CONDUCTANCE, 0, FROM(0), "heat exchanged in contact; 0 for none"),
+    COLLIDER("contact_distance", contact_distance, DIM_LENGTH, 0, WITHIN(0, 1000),
+             "how near counts as contact for heat"),
+    {"sides", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.sides), .names = sides_names,
+     .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the "
+            "one behind it as well, as if heat were through the sheet at once"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN,
+     WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN,
+     .doc = "drawn in the preview"},
+};
+const Schema schema_collider = {
+    .title = "a collider",
+    .size = sizeof(SceneCollider),
+    ROWS(collider_rows),
+    .kind_offset = offsetof(SceneCollider, def.kind),
+    .defaults = default_collider,
+    .finish = finish_collider,
+    .place = collider_place,
+    .doc = "A rigid thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
+
+static ScenePlace *pin_place(void *object) { return &((ScenePin *)object)->place; }
+static const SchemaRow pin_rows[] = {
+    {"sheet", ROW_TEXT, DIM_NONE, AT(ScenePin, sheet),
+     .doc = "name of the sheet, or its number from 0; the first by default"},
+    {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
+     .doc = "places [x, y, z] in the world at the start"},
+    {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
+     .doc = "what is this near to one of the points is held; 0 holds the nearest vertex of each"},
+    {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
+     .doc = "numbers of the mesh's vertices, from 0"},
+    {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
+     .doc = "how what is held moves, relative to the path's place at the start; held still without"},
+};
+const Schema schema_pin = {
+    .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
+    .place = pin_place, .doc = "Holds part of a sheet."};

@@ -1,0 +1,27 @@
+// What the schema's tables are written with.
+#ifndef SCENE_SCHEMA_ROWS_H
+#define SCENE_SCHEMA_ROWS_H
+
+#include "scene/schema.h"
+
+#define AT(type, member) .offset = offsetof(type, member)
+#define EXTRA(type, member) .extra = offsetof(type, member)
+#define DEGREE (3.14159265358979323846 / 180)
+#define ROWS(table) .rows = (table), .row_count = (int)(sizeof(table) / sizeof *(table))
+
+// ranges, in held units, never wider than what the library takes (tests/scene/test_ranges.c)
+#define MUCH 1e9
+#define ANY .min = -1e6, .max = 1e6
+#define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
+#define KELVIN .min = 1, .max = 1e4
+#define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH
+#define FROM(low) .min = (low), .max = MUCH
+#define OVER_OR_INF(low) .flags = ROW_OPEN_MIN | ROW_INF, .min = (low), .max = MUCH
+#define OVER_UP_TO(low, high) .flags = ROW_OPEN_MIN, .min = (low), .max = (high)
+#define WITHIN(low, high) .min = (low), .max = (high)
+#define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
+
+// the maps that the scene has, besides those that schema.c is about
+extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_preview;
+
+#endif
