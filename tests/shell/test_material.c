@@ -1,55 +1,5 @@
-// Parameters by number, picture, attribute and noise; ranges; Defs of other versions.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include "meshes.h"
-#include "shell/sheet.h"
-
-/// A unit square of n x n cells with uv = (x, y).
-typedef struct Square {
-    QuadMesh mesh;
-    float (*uv)[2];
-    SingeSheetDef def;
-} Square;
-
-static Square square_make(uint32_t n) {
-    Square square = {.mesh = mesh_grid(n, n, 1.0f / (float)n, 1.0f / (float)n)};
-    square.uv = malloc(square.mesh.vertex_count * sizeof *square.uv);
-    assert_non_null(square.uv);
-    for (uint32_t v = 0; v < square.mesh.vertex_count; v++)
-        memcpy(square.uv[v], square.mesh.position[v], sizeof *square.uv);
-    square.def = mesh_sheet(&square.mesh);
-    square.def.uv = square.uv[0];
-    return square;
-}
-
-static void square_free(Square *square) {
-    mesh_release(&square->mesh);
-    free(square->uv);
-}
-
-static SheetSource evaluate(Memory *memory, const SingeSheetDef *def) {
-    SheetSource source;
-    SingeError error = {0};
-    if (sheet_source_create(memory, def, &source, &error)) fail_msg("%s", error.message);
-    return source;
-}
-
-static void refuse(const SingeSheetDef *def, int64_t element, const char *says) {
-    Memory memory = memory_make((SingeAllocator){0});
-    SheetSource source;
-    SingeError error = {0};
-    assert_int_equal(sheet_source_create(&memory, def, &source, &error), SINGE_ERROR_ARGUMENT);
-    assert_int_equal(error.element, element);
-    if (!strstr(error.message, says)) fail_msg("%s", error.message);
-    assert_int_equal(memory.held, 0);
-}
+// All parameters of a material: numbers, ranges, that each may vary; Defs of other versions.
+#include "square.h"
 
 #define AT(member) offsetof(SingeMaterialDef, member)
 
@@ -103,11 +53,6 @@ static const struct {
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 
-/// Particle i of parameter p: vertices, then cells.
-static float param_at(const SheetSource *source, int p, uint32_t i) {
-    return sheet_param(source, p, i);
-}
-
 /// The list above is whole: the material knows no other parameter, and every array of the shell's is one of them.
 static void test_all_are_listed(void **state) {
     (void)state;
@@ -122,13 +67,6 @@ static void test_all_are_listed(void **state) {
     }
     assert_null(material_param(&material, VARYING));
     for (int p = 0; p < PARAM_COUNT; p++) assert_true(filled[p]);
-}
-
-static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) {
-    uv[0] = uv[1] = 0;
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 2; k++) uv[k] += square->uv[square->mesh.cells[cell][i]][k] / 4;
-    return uv;
 }
 
 // Every parameter goes to its own place, front and back of shrinkage each to its layer, and through the
@@ -174,119 +112,9 @@ static void test_numbers(void **state) {
         for (int k = 0; k < MORE; k++) assert_true(field_at(others[k], p) == 0.2f + 0.01f * (float)k);
         for (int k = 0; k < 4; k++) assert_true(field_at(matter->compliance[k], p) == 0.3f + 0.1f * (float)k);
     }
-    for (int k = 0; k < FIRST; k++) assert_true(param_at(&source, k, 3) == 0.01f * (float)(k + 1));
+    for (int k = 0; k < FIRST; k++) assert_true(sheet_param(&source, k, 3) == 0.01f * (float)(k + 1));
     shell_free(&memory, &shell);
     sheet_source_free(&memory, &source);
-    square_free(&square);
-}
-
-// The top row of the file is at v = 1; between pixel centres the value is linear, beyond them held.
-static void test_sample(void **state) {
-    (void)state;
-    static const float values[] = {0, 1, 2, 3, 4, 5};
-    SingePicture picture = {3, 2, values};
-    static const float expected[][3] = {
-        {1.0f / 6, 0.75f, 0}, {0.5f, 0.75f, 1}, {5.0f / 6, 0.25f, 5}, {0.5f, 0.5f, 2.5f}, {0, 1, 0}, {1, 1, 2},
-        {0, 0, 3}, {1, 0, 5}, {-7, 9, 0}, {9, -7, 5}, {1.0f / 3, 0.75f, 0.5f}, {1e38f, -1e38f, 5},
-    };
-    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
-        assert_float_equal(shell_sample_picture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
-    SingePicture dot = {1, 1, values + 4};
-    assert_float_equal(shell_sample_picture(&dot, 0.3f, 0.8f), 4, 0);
-}
-
-// A picture that is linear in u between its two pixels.
-static void test_picture(void **state) {
-    (void)state;
-    Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(8);
-    static const float values[] = {0, 1};
-    square.def.material.thickness =
-        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, values}};
-    SheetSource source = evaluate(&memory, &square.def);
-    for (uint32_t i = 0; i < 81 + 64; i++) {
-        float uv[2], u = i < 81 ? square.uv[i][0] : centre_uv(&square, i - 81, uv)[0];
-        float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
-        assert_float_equal(param_at(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
-    }
-    assert_null(source.sheet.material.thickness.picture.values);
-    sheet_source_free(&memory, &source);
-
-    square.def.uv = NULL;
-    refuse(&square.def, -1, "no uv");
-    square.def.uv = square.uv[0];
-    square.def.material.thickness.picture.width = 0;
-    refuse(&square.def, -1, "empty picture");
-    static const float broken[] = {0, NAN};
-    square.def.material.thickness.picture = (SingePicture){2, 1, broken};
-    refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
-    square_free(&square);
-}
-
-// Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
-static void test_attribute(void **state) {
-    (void)state;
-    Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(3);
-    float values[16];
-    for (int v = 0; v < 16; v++) values[v] = 0.25f * (float)v;
-    SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
-    attributes[0].values = values;
-    square.def.attribute_count = 2, square.def.attributes = attributes;
-    square.def.material.mass_rate =
-        (SingeParam){.value = 100, .to = 200, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
-    SheetSource source = evaluate(&memory, &square.def);
-    for (uint32_t v = 0; v < 16; v++)
-        assert_float_equal(param_at(&source, PARAM_MASS_RATE, v), 100 + 25 * (float)v, 1e-3f);
-    for (uint32_t c = 0; c < 9; c++) {
-        float mean = 0;
-        for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
-        assert_float_equal(param_at(&source, PARAM_MASS_RATE, 16 + c), 100 + mean, 1e-3f);
-    }
-    assert_null(source.sheet.material.mass_rate.attribute);
-    sheet_source_free(&memory, &source);
-
-    values[6] = -5; // -400
-    refuse(&square.def, 6, "mass_rate must be 0 or more, which it is not at vertex 6");
-    values[6] = NAN;
-    refuse(&square.def, 6, "vertex 6");
-    square.def.material.mass_rate.attribute = "char";
-    refuse(&square.def, -1, "no attribute 'char'");
-    square.def.material.mass_rate.attribute = NULL;
-    refuse(&square.def, -1, "names no attribute");
-    square_free(&square);
-}
-
-// Noise lies between the two values, varies, and depends on the seed and on the place alone.
-static void test_noise(void **state) {
-    (void)state;
-    Memory memory = memory_make((SingeAllocator){0});
-    Square square = square_make(24);
-    square.def.material.weight[SINGE_BLUE] =
-        (SingeParam){.value = 0.2f, .to = 1, .field = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
-    SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
-    square.def.material.weight[SINGE_BLUE].noise.seed = 6;
-    SheetSource c = evaluate(&memory, &square.def);
-    uint32_t total = 25 * 25 + 24 * 24, different = 0;
-    float low = 1, high = 0;
-    for (uint32_t i = 0; i < total; i++) {
-        float x = param_at(&a, PARAM_WEIGHT + SINGE_BLUE, i);
-        assert_true(x >= 0.2f && x <= 1);
-        assert_true(x == param_at(&b, PARAM_WEIGHT + SINGE_BLUE, i));
-        different += x != param_at(&c, PARAM_WEIGHT + SINGE_BLUE, i);
-        low = fminf(low, x), high = fmaxf(high, x);
-    }
-    assert_true(high - low > 0.4f);
-    assert_true(different > total / 2);
-    sheet_source_free(&memory, &a);
-    sheet_source_free(&memory, &b);
-    sheet_source_free(&memory, &c);
-    square.def.material.weight[SINGE_BLUE].noise.scale = 0;
-    refuse(&square.def, -1, "scale");
-    square.def.material.weight[SINGE_BLUE].noise = (SingeNoise){.scale = 1, .octaves = 9};
-    refuse(&square.def, -1, "octaves");
-    square.def.material.weight[SINGE_BLUE].field = (SingeFieldKind)7;
-    refuse(&square.def, -1, "unknown kind");
     square_free(&square);
 }
 
@@ -317,13 +145,13 @@ static void test_all_vary(void **state) {
             for (uint32_t i = 0; i < total; i++) {
                 bool here = varying[k].places & (i < 49 ? CORNERS : CENTRES);
                 for (int p = 0; p < PARAM_COUNT; p++) {
-                    float expected = here && p == varying[k].param ? param_at(&known, PARAM_THICKNESS, i)
-                                                                   : param_at(&plain, p, i);
-                    assert_true(param_at(&source, p, i) == expected);
+                    float expected = here && p == varying[k].param ? sheet_param(&known, PARAM_THICKNESS, i)
+                                                                   : sheet_param(&plain, p, i);
+                    assert_true(sheet_param(&source, p, i) == expected);
                 }
                 if (!here) continue;
-                low = fminf(low, param_at(&source, varying[k].param, i));
-                high = fmaxf(high, param_at(&source, varying[k].param, i));
+                low = fminf(low, sheet_param(&source, varying[k].param, i));
+                high = fmaxf(high, sheet_param(&source, varying[k].param, i));
             }
             assert_true(low >= 0.5f && high <= 0.9f && high - low > 0.1f);
             sheet_source_free(&memory, &source);
@@ -354,9 +182,9 @@ static void test_mass_varies(void **state) {
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     double ratio = 0;
     for (uint32_t p = 0; p < shell.particle_count; p++) {
-        float mass = param_at(&source, PARAM_GRAMMAGE, p) / 2 * shell.matter.area[p];
+        float mass = sheet_param(&source, PARAM_GRAMMAGE, p) / 2 * shell.matter.area[p];
         assert_true(shell.matter.mass[p] == mass);
-        assert_true(shell.matter.capacity[p] == mass * param_at(&source, PARAM_SPECIFIC_HEAT, p));
+        assert_true(shell.matter.capacity[p] == mass * sheet_param(&source, PARAM_SPECIFIC_HEAT, p));
         ratio += (double)field_at(shell.matter.capacity_ratio, p) / shell.particle_count;
         double per_area = (double)(shell.matter.capacity[p] / shell.matter.area[p]);
         assert_float_equal(per_area / (double)(shell.matter.capacity[0] / shell.matter.area[0]),
@@ -399,11 +227,11 @@ static void test_stated_for_a_grammage(void **state) {
         assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
         const Matter *matter = &shell.matter;
         for (uint32_t p = 0; p < shell.particle_count; p++) {
-            float grammage = param_at(&source, PARAM_GRAMMAGE, p), ratio = scaled ? 0.04f / grammage : 1;
+            float grammage = sheet_param(&source, PARAM_GRAMMAGE, p), ratio = scaled ? 0.04f / grammage : 1;
             assert_float_equal(field_at(matter->diffusivity, p), m->diffusivity.value * ratio, 1e-12f);
             assert_float_equal(field_at(matter->layer_exchange, p), m->layer_exchange.value * ratio, 1e-4f);
             assert_float_equal(field_at(matter->mass_rate, p), m->mass_rate.value * ratio, 1e-8f);
-            assert_float_equal(field_at(matter->heating, p), 4e6f / param_at(&source, PARAM_SPECIFIC_HEAT, p), 1e-3f);
+            assert_float_equal(field_at(matter->heating, p), 4e6f / sheet_param(&source, PARAM_SPECIFIC_HEAT, p), 1e-3f);
             assert_true(field_at(matter->gas_heat, p) == 12e6f);
         }
         assert_true(matter->mass_rate.mask == (scaled ? UINT32_MAX : 0)); // one value where it does not vary
@@ -527,11 +355,14 @@ static void test_name(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),   cmocka_unit_test(test_sample), cmocka_unit_test(test_picture),
-        cmocka_unit_test(test_attribute), cmocka_unit_test(test_noise),  cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_stated_for_a_grammage),
-        cmocka_unit_test(test_old_def),   cmocka_unit_test(test_name),   cmocka_unit_test(test_all_are_listed),
-        cmocka_unit_test(test_all_vary),  cmocka_unit_test(test_mass_varies),
+        cmocka_unit_test(test_old_def),
+        cmocka_unit_test(test_name),
+        cmocka_unit_test(test_all_are_listed),
+        cmocka_unit_test(test_all_vary),
+        cmocka_unit_test(test_mass_varies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

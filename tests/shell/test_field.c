@@ -1,0 +1,129 @@
+// A parameter's value at a particle, by picture, attribute and noise.
+#include "square.h"
+
+static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) {
+    uv[0] = uv[1] = 0;
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 2; k++) uv[k] += square->uv[square->mesh.cells[cell][i]][k] / 4;
+    return uv;
+}
+
+// The top row of the file is at v = 1; between pixel centres the value is linear, beyond them held.
+static void test_sample(void **state) {
+    (void)state;
+    static const float values[] = {0, 1, 2, 3, 4, 5};
+    SingePicture picture = {3, 2, values};
+    static const float expected[][3] = {
+        {1.0f / 6, 0.75f, 0}, {0.5f, 0.75f, 1}, {5.0f / 6, 0.25f, 5}, {0.5f, 0.5f, 2.5f}, {0, 1, 0}, {1, 1, 2},
+        {0, 0, 3}, {1, 0, 5}, {-7, 9, 0}, {9, -7, 5}, {1.0f / 3, 0.75f, 0.5f}, {1e38f, -1e38f, 5},
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
+        assert_float_equal(shell_sample_picture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
+    SingePicture dot = {1, 1, values + 4};
+    assert_float_equal(shell_sample_picture(&dot, 0.3f, 0.8f), 4, 0);
+}
+
+// A picture that is linear in u between its two pixels.
+static void test_picture(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(8);
+    static const float values[] = {0, 1};
+    square.def.material.thickness =
+        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, values}};
+    SheetSource source = evaluate(&memory, &square.def);
+    for (uint32_t i = 0; i < 81 + 64; i++) {
+        float uv[2], u = i < 81 ? square.uv[i][0] : centre_uv(&square, i - 81, uv)[0];
+        float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
+        assert_float_equal(sheet_param(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
+    }
+    assert_null(source.sheet.material.thickness.picture.values);
+    sheet_source_free(&memory, &source);
+
+    square.def.uv = NULL;
+    refuse(&square.def, -1, "no uv");
+    square.def.uv = square.uv[0];
+    square.def.material.thickness.picture.width = 0;
+    refuse(&square.def, -1, "empty picture");
+    static const float broken[] = {0, NAN};
+    square.def.material.thickness.picture = (SingePicture){2, 1, broken};
+    refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
+    square_free(&square);
+}
+
+// Attributes are taken as they are, beyond [0, 1] too; centres take the mean of their corners.
+static void test_attribute(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(3);
+    float values[16];
+    for (int v = 0; v < 16; v++) values[v] = 0.25f * (float)v;
+    SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
+    attributes[0].values = values;
+    square.def.attribute_count = 2, square.def.attributes = attributes;
+    square.def.material.mass_rate =
+        (SingeParam){.value = 100, .to = 200, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
+    SheetSource source = evaluate(&memory, &square.def);
+    for (uint32_t v = 0; v < 16; v++)
+        assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, v), 100 + 25 * (float)v, 1e-3f);
+    for (uint32_t c = 0; c < 9; c++) {
+        float mean = 0;
+        for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
+        assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, 16 + c), 100 + mean, 1e-3f);
+    }
+    assert_null(source.sheet.material.mass_rate.attribute);
+    sheet_source_free(&memory, &source);
+
+    values[6] = -5; // -400
+    refuse(&square.def, 6, "mass_rate must be 0 or more, which it is not at vertex 6");
+    values[6] = NAN;
+    refuse(&square.def, 6, "vertex 6");
+    square.def.material.mass_rate.attribute = "char";
+    refuse(&square.def, -1, "no attribute 'char'");
+    square.def.material.mass_rate.attribute = NULL;
+    refuse(&square.def, -1, "names no attribute");
+    square_free(&square);
+}
+
+// Noise lies between the two values, varies, and depends on the seed and on the place alone.
+static void test_noise(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    Square square = square_make(24);
+    square.def.material.weight[SINGE_BLUE] =
+        (SingeParam){.value = 0.2f, .to = 1, .field = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
+    SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
+    square.def.material.weight[SINGE_BLUE].noise.seed = 6;
+    SheetSource c = evaluate(&memory, &square.def);
+    uint32_t total = 25 * 25 + 24 * 24, different = 0;
+    float low = 1, high = 0;
+    for (uint32_t i = 0; i < total; i++) {
+        float x = sheet_param(&a, PARAM_WEIGHT + SINGE_BLUE, i);
+        assert_true(x >= 0.2f && x <= 1);
+        assert_true(x == sheet_param(&b, PARAM_WEIGHT + SINGE_BLUE, i));
+        different += x != sheet_param(&c, PARAM_WEIGHT + SINGE_BLUE, i);
+        low = fminf(low, x), high = fmaxf(high, x);
+    }
+    assert_true(high - low > 0.4f);
+    assert_true(different > total / 2);
+    sheet_source_free(&memory, &a);
+    sheet_source_free(&memory, &b);
+    sheet_source_free(&memory, &c);
+    square.def.material.weight[SINGE_BLUE].noise.scale = 0;
+    refuse(&square.def, -1, "scale");
+    square.def.material.weight[SINGE_BLUE].noise = (SingeNoise){.scale = 1, .octaves = 9};
+    refuse(&square.def, -1, "octaves");
+    square.def.material.weight[SINGE_BLUE].field = (SingeFieldKind)7;
+    refuse(&square.def, -1, "unknown kind");
+    square_free(&square);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sample),
+        cmocka_unit_test(test_picture),
+        cmocka_unit_test(test_attribute),
+        cmocka_unit_test(test_noise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
