@@ -1,7 +1,6 @@
 // Marching triangles: areas by hand, linear fields, no cracks, memory.
-#include "ablate/burning_sheet.h"
+#include "ablate/drawing.h"
 
-#include "ablate/ablate.h"
 #include "ablate/drawn_mesh.h"
 #include "base/random.h"
 #include "base/vec.h"
@@ -9,38 +8,9 @@
 
 #include <string.h>
 
-typedef struct Drawing {
-    BurningSheet *sheet;
-    AblatePlan *plan;
-    SingeSurface surface;
-} Drawing;
-
-static Drawing *drawing(uint32_t nx, uint32_t ny, float cell, const SingeMaterialDef *material) {
-    Drawing *d = calloc(1, sizeof *d);
-    d->sheet = burning_sheet(nx, ny, cell, material);
-    assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
-    return d;
-}
-
 static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
     SingeMaterialDef material = plain_material();
-    return drawing(nx, ny, cell, &material);
-}
-
-static void draw(Drawing *d) {
-    const BurningSheet *b = d->sheet;
-    assert_int_equal(ablate_surface(d->plan, &b->shell, &b->state, &d->surface, &d->sheet->error), SINGE_OK);
-}
-
-static void finish(Drawing *d) {
-    singe_surface_free(&d->surface);
-    ablate_plan_free(&d->sheet->memory, d->plan);
-    burning_sheet_free(d->sheet);
-    free(d);
-}
-
-static void set_level(Drawing *d, uint32_t particle, float level) {
-    d->sheet->state.burn.mass[particle] = field_at(d->sheet->shell.matter.mass_loss, particle) + level;
+    return drawing_of(burning_sheet(nx, ny, cell, &material));
 }
 
 static void cases_of_one_cell(void **unused) {
@@ -69,17 +39,13 @@ static void cases_of_one_cell(void **unused) {
         Drawing *d = plain_drawing(1, 1, 1);
         for (int i = 0; i < 5; i++)
             set_level(d, i < 4 ? d->sheet->shell.cells[0][i] : 4, 0.25f * (float)cases[k].level[i]);
-        draw(d);
+        draw_coarse(d);
         assert_float_equal(area_of(&d->surface), cases[k].area, 1e-6);
         assert_int_equal(d->surface.triangle_count, cases[k].triangles);
         assert_int_equal(d->surface.vertex_count, cases[k].vertices);
-        finish(d);
+        drawing_free(d);
     }
 }
-
-/// A field a x + b y + c of the rest position.
-typedef struct Linear { double a, b, c; } Linear;
-static double value_at(Linear f, const float *p) { return f.a * (double)p[0] + f.b * (double)p[1] + f.c; }
 
 /// Area of the rectangle [0, w] x [0, h] where f >= 0, by clipping its polygon.
 static double clipped_area(Linear f, double w, double h) {
@@ -99,21 +65,6 @@ static double clipped_area(Linear f, double w, double h) {
     return area / 2;
 }
 
-static void set_linear_fields(Drawing *d, Linear level) {
-    BurningSheet *b = d->sheet;
-    for (uint32_t i = 0; i < b->shell.particle_count; i++) {
-        const float *p = b->shell.rest_position[i];
-        set_level(d, i, (float)value_at(level, p));
-        b->state.heat.temperature[i] = (float)value_at((Linear){100, 200, 300}, p);
-        b->state.heat.temperature_peak[i] = (float)value_at((Linear){-50, 100, 900}, p);
-        b->state.burn.burn_rate[i] = (float)value_at((Linear){0.1, -0.1, 1}, p);
-        b->state.burn.time_ignited[i] = (float)value_at((Linear){2, 1, 5}, p);
-        b->state.dynamics.velocity[i][0] = (float)value_at((Linear){1, 2, 3}, p);
-        b->state.dynamics.velocity[i][2] = (float)value_at((Linear){-3, 1, 0}, p);
-        b->state.dynamics.position[i][2] = i < b->shell.vertex_count ? 0.5f * p[0] : 77; // tilted; centres do not count
-    }
-}
-
 static void linear_fields_are_exact(void **unused) {
     (void)unused;
     const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
@@ -121,58 +72,35 @@ static void linear_fields_are_exact(void **unused) {
         Drawing *d = plain_drawing(7, 5, 1);
         const SingeSurface *s = &d->surface;
         set_linear_fields(d, levels[k]);
-        draw(d);
+        draw_coarse(d);
         assert_float_equal(area_of(s), clipped_area(levels[k], 7, 5), 2e-5);
-        for (uint32_t v = 0; v < s->vertex_count; v++) {
-            const float *p = s->position[v];
-            assert_float_equal(s->temperature[v], value_at((Linear){100, 200, 300}, p), 1e-3);
-            assert_float_equal(s->temperature_peak[v], value_at((Linear){-50, 100, 900}, p), 1e-3);
-            assert_float_equal(s->burn_rate[v], value_at((Linear){0.1, -0.1, 1}, p), 1e-5);
-            assert_float_equal(s->time_ignited[v], value_at((Linear){2, 1, 5}, p), 2e-5);
-            assert_float_equal(s->velocity[v][0], value_at((Linear){1, 2, 3}, p), 2e-5);
-            assert_float_equal(s->velocity[v][1], 0, 0);
-            assert_float_equal(s->velocity[v][2], value_at((Linear){-3, 1, 0}, p), 2e-5);
-            assert_float_equal(s->mass[v], 0.25 + value_at(levels[k], p), 2e-6);
-            assert_float_equal(p[2], 0.5 * (double)p[0], 2e-6);
-            assert_float_equal(s->uv[v][0], p[0] / 7, 1e-6);
-            assert_float_equal(s->uv[v][1], p[1] / 5, 1e-6);
-            assert_float_equal(s->rest_position[v][0], p[0], 1e-6);
-            assert_float_equal(s->rest_position[v][1], p[1], 1e-6);
-            assert_float_equal(s->rest_position[v][2], 0, 0);
-            assert_float_equal(s->normal[v][0], -0.5 / sqrt(1.25), 1e-5);
-            assert_float_equal(s->normal[v][1], 0, 1e-5);
-            assert_float_equal(s->normal[v][2], 1 / sqrt(1.25), 1e-5);
-            assert_int_equal(s->sheet[v], 0);
-            assert_int_equal(s->piece[v], 0);
-            if (s->source_vertex[v] < 0) continue;
-            assert_memory_equal(p, d->sheet->state.dynamics.position[s->source_vertex[v]], 12);
-        }
-        finish(d);
+        expect_linear_fields(d, levels[k], 1e-5);
+        drawing_free(d);
     }
 }
 
 static void whole_sheet_keeps_the_input_order(void **unused) {
     (void)unused;
     Drawing *d = plain_drawing(4, 3, 0.01f);
-    draw(d);
+    draw_coarse(d);
     assert_int_equal(d->surface.triangle_count, 48);
     assert_int_equal(d->surface.vertex_count, 20 + 12);
     for (int v = 0; v < 32; v++) assert_int_equal(d->surface.source_vertex[v], v < 20 ? v : -1);
-    finish(d);
+    drawing_free(d);
 }
 
 static void without_ablation_all_is_drawn(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     material.ablate = false;
-    Drawing *d = drawing(3, 3, 1, &material);
+    Drawing *d = drawing_of(burning_sheet(3, 3, 1, &material));
     for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) d->sheet->state.burn.mass[i] = i & 1 ? 0.15f : 0.5f;
-    draw(d);
+    draw_coarse(d);
     assert_float_equal(area_of(&d->surface), 9, 1e-5);
     assert_int_equal(d->surface.triangle_count, 36);
     assert_float_equal(d->surface.burn[1], 1, 0);
     assert_float_equal(d->surface.burn[2], 0.5 / 0.85, 1e-6);
-    finish(d);
+    drawing_free(d);
 }
 
 static void never_ignited_ends_do_not_count(void **unused) {
@@ -181,10 +109,10 @@ static void never_ignited_ends_do_not_count(void **unused) {
     for (uint32_t i = 0; i < 5; i++) set_level(d, i, -0.25f);
     set_level(d, 0, 0.25f);
     for (uint32_t i = 1; i < 5; i++) d->sheet->state.burn.time_ignited[i] = 4;
-    draw(d);
+    draw_coarse(d);
     assert_float_equal(d->surface.time_ignited[0], -1, 0);
     for (uint32_t v = 1; v < 4; v++) assert_float_equal(d->surface.time_ignited[v], 4, 0);
-    finish(d);
+    drawing_free(d);
 }
 
 /// The part of a triangle with area `whole` that is inside, by eq 7.
@@ -241,13 +169,13 @@ static void random_levels_leave_no_cracks(void **unused) {
         State *state = &d->sheet->state;
         SingeResult result = ablate_step(d->plan, shell, state, NULL, 293, &state->ablate, &d->sheet->events, NULL);
         assert_int_equal(result, SINGE_OK);
-        draw(d);
+        draw_coarse(d);
         assert_true(expected > 1);
         assert_float_equal(area_of(s), expected, 1e-4);
         expect_no_cracks(s, 12, 9);
         for (uint32_t v = 0; v < s->vertex_count; v++) // what is shared is there once
             for (uint32_t w = 0; w < v; w++) assert_true(memcmp(s->position[v], s->position[w], 12) != 0);
-        finish(d);
+        drawing_free(d);
     }
 }
 
@@ -261,7 +189,7 @@ static void levels_near_zero_leave_no_cracks(void **unused) {
             mass_loss[i] = 0; // tiny levels need a float's full range
             d->sheet->state.burn.mass[i] = levels[random_hash(i, seed, 1, 0) % 7];
         }
-        draw(d);
+        draw_coarse(d);
         const SingeSurface *s = &d->surface;
         size_t count = 3 * (size_t)s->triangle_count;
         Edge *edges = drawn_edges(s);
@@ -271,7 +199,7 @@ static void levels_near_zero_leave_no_cracks(void **unused) {
         }
         assert_true(area_of(s) > 0); // and no triangle without area
         free(edges);
-        finish(d);
+        drawing_free(d);
     }
 }
 
@@ -283,10 +211,10 @@ static void crumpled_normals_are_unit(void **unused) {
     for (uint32_t i = 0; i < 49; i++)
         for (uint32_t k = 0; k < 3; k++) position[i][k] += 0.02f * random_unit(random_hash(i, k, 5, 0));
     for (uint32_t k = 1; k < 4; k++) memcpy(position[corners[k]], position[corners[0]], 16); // a cell in one point
-    draw(d);
+    draw_coarse(d);
     for (uint32_t v = 0; v < d->surface.vertex_count; v++)
         assert_float_equal(vec_length(vec_load(d->surface.normal[v])), 1, 1e-5);
-    finish(d);
+    drawing_free(d);
 }
 
 static void sheets_and_pieces_are_kept_apart(void **unused) {
@@ -297,7 +225,7 @@ static void sheets_and_pieces_are_kept_apart(void **unused) {
     assert_int_equal(ablate_plan_create(&d->sheet->memory, &d->sheet->shell, &d->plan), SINGE_OK);
     ablate_label(d->plan, &d->sheet->shell, &d->sheet->state.ablate);
     set_level(d, shell_centre(&d->sheet->shell, 4), -0.25f); // a cell of the second sheet
-    draw(d);
+    draw_coarse(d);
     for (uint32_t t = 0; t < d->surface.triangle_count; t++) {
         int32_t sheet = d->surface.position[d->surface.triangles[t][0]][0] > 0.5f;
         for (int i = 0; i < 3; i++) {
@@ -305,7 +233,7 @@ static void sheets_and_pieces_are_kept_apart(void **unused) {
             assert_int_equal(d->surface.piece[d->surface.triangles[t][i]], sheet);
         }
     }
-    finish(d);
+    drawing_free(d);
 }
 
 /// Every allocation of a first drawing and of one that must grow fails once.
@@ -338,7 +266,7 @@ static void survives_lack_of_memory(void **unused) {
     }
     assert_int_equal(failures, 2 * 15);
     singe_surface_free(NULL);
-    finish(small), finish(large);
+    drawing_free(small), drawing_free(large);
 }
 
 int main(void) {
