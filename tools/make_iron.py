@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes examples/hot-iron/iron.obj and handle.obj: a flat iron of cast metal and its wooden grip, closed meshes of
-quads in millimetres, the middle of the sole at the origin, the tip towards +x, z up. Only for changing the example: both
-files are in the repository.
+quads in millimetres, the middle of the sole at the origin, the tip towards +x, z up. Only for changing the example:
+both files are in the repository.
 """
 
 import math
@@ -64,8 +64,8 @@ def outline(inset, along):
 def iron():
     mesh = Mesh("a flat iron, millimetres")
     # height, inset, share of the length: a chamfered sole, walls that lean in, a rounded top
-    levels = [(0, 1.2, 0.975), (0.5, 0.45, 0.99), (1.6, 0, 1), (8, 0, 1), (10, 0.6, 0.99), (11, 2.2, 0.965), (24, 5.0, 0.9),
-              (31, 6.6, 0.86), (34.5, 9, 0.82), (36, 13, 0.74)]
+    levels = [(0, 1.2, 0.975), (0.5, 0.45, 0.99), (1.6, 0, 1), (8, 0, 1), (10, 0.6, 0.99), (11, 2.2, 0.965),
+              (24, 5.0, 0.9), (31, 6.6, 0.86), (34.5, 9, 0.82), (36, 13, 0.74)]
     rings = [[mesh.vertex(x, y, z) for x, y in outline(inset, along)] for z, inset, along in levels]
     mesh.tube(rings, mesh.strips)
     mesh.write(FOLDER / "iron.obj")

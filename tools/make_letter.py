@@ -59,8 +59,10 @@ def relief(x, y):
 
 def make_mesh(path):
     lines = [
-        "# A sheet of A4 paper, 0.210 x 0.297 m, in the x-y plane, centred at the origin; it lies in waves of about 1 mm.",
-        f"# {CELLS_X} x {CELLS_Y} quads; vertices lie off the grid by up to {JITTER:.0%} of a cell, so that folds and fronts",
+        "# A sheet of A4 paper, 0.210 x 0.297 m, in the x-y plane, centred at the origin; it lies in waves of about "
+        "1 mm.",
+        f"# {CELLS_X} x {CELLS_Y} quads; vertices lie off the grid by up to {JITTER:.0%} of a cell, so that folds and "
+        "fronts",
         "# find no lines to follow. The picture is undistorted: u = x / 0.210 + 0.5, v = y / 0.297 + 0.5.",
         "# Made by tools/make_letter.py.",
         "o letter",
@@ -167,11 +169,12 @@ def stroke(draw, points, thin, thick, ink):
 def signature(draw, x, y, size):
     """A pointed M, a trailing hand, and a paraph below it."""
     s = size * SCALE
-    hand = [(0.00, 0.62), (0.10, 0.92), (0.20, 0.55), (0.30, 0.05), (0.36, 0.45), (0.38, 0.95), (0.46, 0.45), (0.58, 0.02),
-            (0.63, 0.45), (0.66, 0.88), (0.74, 0.90), (0.82, 0.66), (0.92, 0.60), (0.86, 0.80), (0.96, 0.90), (1.06, 0.66),
-            (1.10, 0.88), (1.20, 0.64), (1.30, 0.62), (1.24, 0.84), (1.34, 0.84), (1.36, 1.25), (1.26, 1.42), (1.24, 1.24),
-            (1.44, 0.86), (1.50, 0.66), (1.56, 0.88), (1.66, 0.86), (1.72, 0.64), (1.78, 0.88), (1.92, 0.62), (1.98, 0.86),
-            (2.12, 0.30), (2.10, 0.84), (2.24, 0.88), (2.34, 0.64), (2.40, 0.84), (2.66, 0.72), (2.95, 0.80)]
+    hand = [(0.00, 0.62), (0.10, 0.92), (0.20, 0.55), (0.30, 0.05), (0.36, 0.45), (0.38, 0.95), (0.46, 0.45),
+            (0.58, 0.02), (0.63, 0.45), (0.66, 0.88), (0.74, 0.90), (0.82, 0.66), (0.92, 0.60), (0.86, 0.80),
+            (0.96, 0.90), (1.06, 0.66), (1.10, 0.88), (1.20, 0.64), (1.30, 0.62), (1.24, 0.84), (1.34, 0.84),
+            (1.36, 1.25), (1.26, 1.42), (1.24, 1.24), (1.44, 0.86), (1.50, 0.66), (1.56, 0.88), (1.66, 0.86),
+            (1.72, 0.64), (1.78, 0.88), (1.92, 0.62), (1.98, 0.86), (2.12, 0.30), (2.10, 0.84), (2.24, 0.88),
+            (2.34, 0.64), (2.40, 0.84), (2.66, 0.72), (2.95, 0.80)]
     stroke(draw, [(x + px * s, y + py * s) for px, py in hand], 1.1 * SCALE, 3.0 * SCALE, INK)
     paraph = [(2.70, 1.12), (1.90, 1.30), (0.90, 1.46), (0.30, 1.58), (0.80, 1.66), (1.80, 1.50), (2.50, 1.46)]
     stroke(draw, [(x + px * s, y + py * s) for px, py in paraph], 0.9 * SCALE, 2.2 * SCALE, INK)
@@ -189,7 +192,8 @@ def letterhead(draw):
     y, middle = 206 * SCALE, w // 2
     for sign in (-1, 1):
         draw.line((middle + sign * 22 * SCALE, y, middle + sign * 330 * SCALE, y), fill=HEAD, width=2 * SCALE)
-    draw.polygon([(middle, y - 9 * SCALE), (middle + 9 * SCALE, y), (middle, y + 9 * SCALE), (middle - 9 * SCALE, y)], fill=HEAD)
+    r = 9 * SCALE
+    draw.polygon([(middle, y - r), (middle + r, y), (middle, y + r), (middle - r, y)], fill=HEAD)
 
 
 def write_letter(draw, rng):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures of examples/newspaper, curtain, shirt and page-hot. Only for changing them: they are in the repository.
+"""Makes the pictures of examples/newspaper, curtain, shirt and page-hot. Only for changing them: they are in the
+repository.
 
 Needs Pillow, numpy and the Debian package fonts-ebgaramond.
 Usage: python3 tools/make_pictures.py [newspaper] [curtain] [shirt] [page]   (default: all)
@@ -29,6 +30,12 @@ def clouds(rng, width, height, cells, octaves):
     return np.clip(field / (2.5 * field.std()), -1, 1)
 
 
+def blurred(mask, radius):
+    """A mask with soft edges, from 0 to 1."""
+    image = Image.fromarray((mask * 255).astype("uint8")).filter(ImageFilter.GaussianBlur(radius))
+    return np.asarray(image, dtype=float) / 255
+
+
 def save(image, path):
     image.save(path, quality=86, optimize=True, subsampling=2)
     print(f"{path.name}: {path.stat().st_size // 1000} kB")
@@ -46,24 +53,26 @@ LINE = ("No. 4,117", "THURSDAY, THE FIRST OF NOVEMBER", "One Penny")
 HEADLINE = "LAMP HOUSE LOST TO FIRE"
 BELOW = "Flames seen from the roads · Nobody hurt · Letters of forty years are gone"
 PARAGRAPHS = (
-    "The old Lamp House at the end of the quay burnt to its walls last night. The fire was first seen by the watch of the "
-    "barque Halcyon, which lay at anchor in the roads, and who took it for a signal until it began to climb.",
-    "By the time that the engine had been drawn along the sea wall the roof was gone. The wind held to the west, and so the "
-    "net lofts and the chandler's were spared; sparks and flakes of burnt paper came down as far as the customs steps.",
-    "Miss Ashdown, who kept the lamps there for her father and then by herself, had left the town on the early coach. It is "
-    "said that a letter on her table was the first thing to burn, and that it had been lit at its middle.",
-    "Those who saw it tell us that paper does not burn as one would think. It browns before it blackens; it draws itself "
-    "together, and so it lifts and curls; a thin bright line walks through it and leaves a grey leaf behind that weighs nothing.",
-    "Mr Thorne, third mate of the Halcyon, came ashore at first light and walked through what is left. He asked for nothing but "
-    "the brass of the great lantern, which is whole.",
-    "The harbour board meets on Saturday. A light will be shown from a boat until a new house can be built, and masters are "
-    "asked to give the point half a mile more than they are used to.",
+    "The old Lamp House at the end of the quay burnt to its walls last night. The fire was first seen by the watch of "
+    "the barque Halcyon, which lay at anchor in the roads, and who took it for a signal until it began to climb.",
+    "By the time that the engine had been drawn along the sea wall the roof was gone. The wind held to the west, and "
+    "so the net lofts and the chandler's were spared; sparks and flakes of burnt paper came down as far as the "
+    "customs steps.",
+    "Miss Ashdown, who kept the lamps there for her father and then by herself, had left the town on the early coach. "
+    "It is said that a letter on her table was the first thing to burn, and that it had been lit at its middle.",
+    "Those who saw it tell us that paper does not burn as one would think. It browns before it blackens; it draws "
+    "itself together, and so it lifts and curls; a thin bright line walks through it and leaves a grey leaf behind "
+    "that weighs nothing.",
+    "Mr Thorne, third mate of the Halcyon, came ashore at first light and walked through what is left. He asked for "
+    "nothing but the brass of the great lantern, which is whole.",
+    "The harbour board meets on Saturday. A light will be shown from a boat until a new house can be built, and "
+    "masters are asked to give the point half a mile more than they are used to.",
     "A collection is made at the chapel for the two keepers. Dry goods are wanted, and boots.",
     "From the market: herring steady, coal dearer by a shilling, lamp oil not to be had.",
-    "The tide is high at ten minutes past seven and again at half past. The glass falls. Wind westerly, with rain by night; "
-    "small craft are warned.",
-    "Lost, between the quay and the coach office, a blue scarf. Whoever finds it may keep it, for it made its wearer look like "
-    "weather.",
+    "The tide is high at ten minutes past seven and again at half past. The glass falls. Wind westerly, with rain by "
+    "night; small craft are warned.",
+    "Lost, between the quay and the coach office, a blue scarf. Whoever finds it may keep it, for it made its wearer "
+    "look like weather.",
 )
 
 
@@ -202,12 +211,12 @@ def curtain():
     leaf = np.abs(v - 0.93 + 0.014 * np.sin(u * 2 * math.pi * 11)) < 0.0042
     dot = np.hypot((u * 22 % 1 - 0.5) / 22, (v - 0.93) * 1.4) < 0.0075
     dyed |= leaf | dot & (v > 0.9) & (v < 0.96)
-    mask = np.asarray(Image.fromarray((dyed * 255).astype("uint8")).filter(ImageFilter.GaussianBlur(0.8)), dtype=float) / 255
+    mask = blurred(dyed, 0.8)
     mask *= 0.86 + 0.10 * clouds(rng, w, h, 60, 3)
     colour = ground * (1 - mask[:, :, None]) + print_ * mask[:, :, None]
     weave = 1 + 0.035 * np.sin(u * w * 1.9) * np.sin(v * h * 1.9)
-    slub = 1 + 0.03 * np.asarray(Image.fromarray((rng.random((h, 24)) * 255).astype("uint8")).resize((w, h), Image.BICUBIC),
-                                 dtype=float)[:, :] / 255 + 0.03 * rng.random((h, 1)) + 0.02 * rng.random((1, w))
+    threads = Image.fromarray((rng.random((h, 24)) * 255).astype("uint8")).resize((w, h), Image.BICUBIC)
+    slub = 1 + 0.03 * np.asarray(threads, dtype=float) / 255 + 0.03 * rng.random((h, 1)) + 0.02 * rng.random((1, w))
     colour *= (weave * slub / 1.06)[:, :, None]
     save(Image.fromarray(np.clip(colour, 0, 255).astype("uint8")), EXAMPLES / "curtain" / "curtain.jpg")
 
@@ -223,8 +232,8 @@ def shirt():
     u, v = np.meshgrid((np.arange(w) + 0.5) / w, (np.arange(h) + 0.5) / h)
     up = 1 - v
     height = 0.85 + 1.2 * (up - 0.03)  # of the body above the floor, m
-    stripe = np.where(up < 0.6, (height < 1.30) & (height > 0.89) & (height / 0.034 % 1 < 0.36), (up - 0.77) * 1.2 / 0.034 % 1 < 0.36)
-    stripe = np.asarray(Image.fromarray((stripe * 255).astype("uint8")).filter(ImageFilter.GaussianBlur(0.7)), dtype=float) / 255
+    body, sleeve = height / 0.034 % 1 < 0.36, (up - 0.77) * 1.2 / 0.034 % 1 < 0.36
+    stripe = blurred(np.where(up < 0.6, (height < 1.30) & (height > 0.89) & body, sleeve), 0.7)
     rib = 1 + 0.03 * np.sin(u * w * 1.7) + 0.02 * rng.random((1, w)) + 0.02 * rng.random((h, w))
     colour = np.array((236, 230, 216.0)) * (1 - stripe[:, :, None]) + np.array((38, 52, 92.0)) * stripe[:, :, None]
     colour *= (rib / 1.05 * (1 + 0.03 * clouds(rng, w, h, 40, 3)))[:, :, None]
@@ -242,7 +251,8 @@ def page():
     broad, fine = clouds(rng, w, h, 4, 6), clouds(rng, w, h, 23, 4)
     veins = 1 - np.abs(clouds(rng, w, h, 7, 5)) * 3
     value = 0.42 + 0.52 * broad + 0.14 * fine + 0.22 * np.clip(veins, 0, 1)
-    Image.fromarray((255 * np.clip(value, 0, 1)).astype("uint8")).save(EXAMPLES / "page-hot" / "rate.png", optimize=True)
+    picture = Image.fromarray((255 * np.clip(value, 0, 1)).astype("uint8"))
+    picture.save(EXAMPLES / "page-hot" / "rate.png", optimize=True)
     print("rate.png")
 
 

@@ -4,8 +4,8 @@
     tools/make_shirt.py [FILE]
 
 Front and back are a grid each, sewn along the sides and the shoulders; the sleeves are tubes sewn to them. What is sewn
-shares its vertices; the uv do not: front, back and the sleeves are charts of their own, so seams of the uv run along the
-sides, the shoulders, around the arms and under the sleeves. Neck, hem and cuffs are open. Diagonals lie at random.
+shares its vertices; the uv do not: front, back and the sleeves are charts of their own, so seams of the uv run along
+the sides, the shoulders, around the arms and under the sleeves. Neck, hem and cuffs are open. Diagonals lie at random.
 
 Metres, z up, x to the left hand, the front towards -y. It hangs free around a body within |x| < 0.22, |y| < 0.10 at the
 chest; shoulders are at z = 1.45, the hem at z = 0.85.

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Makes examples/burning-torus/torus.obj: a torus of quads in metres around the z axis, with two charts of uv, one for
-each half of the ring: v goes around the hole, u around the tube from a cut on the inside. Only for changing the example: the file is in the repository.
+each half of the ring: v goes around the hole, u around the tube from a cut on the inside. Only for changing the
+example: the file is in the repository.
 
     tools/make_torus.py [--around N] [--across M] [FILE]
 """
