@@ -2,7 +2,8 @@
 #ifndef BENCH_FMA_H
 #define BENCH_FMA_H
 
-/// Runs `rounds` rounds, a multiple of 4, with the widest vectors that this processor has; the floating-point operations done.
+/// Runs `rounds` rounds, a multiple of 4, with the widest vectors that this processor has; the floating-point
+/// operations done.
 double fma_run(long rounds);
 
 #endif

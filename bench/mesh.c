@@ -1,8 +1,9 @@
 // The swinging sheet made of triangles: what mesh_make makes of them, and whether it is held as the sheet of quads is.
 //
-// Triangles are those of a grid with its diagonals in order, in turns or at random; the same with all numbers shuffled; rows of nearly equilateral ones; and
-// the Delaunay triangles of a grid whose vertices are moved by up to a third of a cell; beside these the quads of the
-// same vertices, which show what is the vertices' doing. The right motion and the bars are those of `swing`.
+// Triangles are those of a grid with its diagonals in order, in turns or at random; the same with all numbers shuffled;
+// rows of nearly equilateral ones; and the Delaunay triangles of a grid whose vertices are moved by up to a third of a
+// cell; beside these the quads of the same vertices, which show what is the vertices' doing. The right motion and the
+// bars are those of `swing`.
 #include "mesh/mesh.h"
 
 #include <math.h>
@@ -13,8 +14,8 @@
 #include "bench/trajectory.h"
 
 typedef enum Triangles { QUADS, MOVED, ORDERED, TURNS, RANDOM, SHUFFLED, EQUILATERAL, DELAUNAY, TRIANGLES } Triangles;
-static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", "turns", "random", "shuffled", "equilateral",
-                                             "delaunay"};
+static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", "turns", "random", "shuffled",
+                                             "equilateral", "delaunay"};
 
 enum { SUBSTEPS = 60 };
 
@@ -223,8 +224,8 @@ static double irregular_percent(const Mesh *mesh) {
     return inside ? 100.0 * irregular / inside : 0;
 }
 
-static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh, const MeshReport *report,
-                    const Trajectory *t) {
+static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, MeshQuads quads, const Mesh *mesh,
+                    const MeshReport *report, const Trajectory *t) {
     BenchValue row[COLUMNS] = {
         [NAME] = bench_text(names[kind]),
         [BECOME] = bench_text(kind <= MOVED ? "-" : quads == MESH_QUADS_SPLIT ? "split" : "pair"),

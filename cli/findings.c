@@ -247,7 +247,8 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     }
     qsort(sides, side_count, sizeof *sides, by_edge);
     for (size_t i = 0, end; i < side_count; i = end) {
-        for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) end++;
+        for (end = i + 1; end < side_count && sides[end].low == sides[i].low && sides[end].high == sides[i].high;)
+            end++;
         check_edge(frame, &sides[i], (uint32_t)(end - i), findings);
     }
     free(sides);

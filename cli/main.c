@@ -44,8 +44,8 @@ static int finish(int code) {
 
 int main(int argc, char **argv) {
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render, measure, verify, bench, paper or validate\nsee: singe --help\n",
-              stderr);
+        fputs("singe: error: needs a command: run, check, render, measure, verify, bench, paper or validate\n"
+              "see: singe --help\n", stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

@@ -39,7 +39,8 @@ static char *shell_quote(const char *text) {
     return quoted;
 }
 
-static void tell_command(Console *console, const char *what, VideoResult result, const char *why, char *const *arguments) {
+static void tell_command(Console *console, const char *what, VideoResult result, const char *why,
+                         char *const *arguments) {
     char *line = text_format("ffmpeg");
     for (char *const *a = arguments + 1; *a; a++) {
         char *quoted = shell_quote(*a), *longer = text_format("%s %s", line, quoted);

@@ -1,4 +1,5 @@
-// Both measures look at the unit normal N over the sheet at rest, on pixels that know nothing of the mesh (rest_raster.h).
+// Both measures look at the unit normal N over the sheet at rest, on pixels that know nothing of the mesh
+// (rest_raster.h).
 //
 // Creases. N is smoothed by a Gaussian of 2 mm, so that facets are not seen. The matrix
 //

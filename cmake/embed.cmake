@@ -1,5 +1,6 @@
 # Writes a C file that holds the files of a folder as rows of a table:
-#   cmake -DFOLDER=materials -DPATTERN=*.yaml -DTABLE=scene_builtins -DOUTPUT=builtin.c [-DWHOLE_NAMES=ON] -P embed.cmake
+#   cmake -DFOLDER=materials -DPATTERN=*.yaml -DTABLE=scene_builtins -DOUTPUT=builtin.c [-DWHOLE_NAMES=ON]
+#         -P embed.cmake
 # A row's name is the file's, without its ending unless WHOLE_NAMES.
 file(GLOB files "${FOLDER}/${PATTERN}")
 list(SORT files)

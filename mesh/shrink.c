@@ -1,7 +1,7 @@
 // Short sides go: springs that are far shorter than the rest cannot be held (docs/meshes.md), and what they show is
 // less than a cell. Vertices at the ends of short sides become one, the shortest first, as long as what becomes one
-// vertex is no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open edges become
-// one only along such an edge, so that nothing is pinched off.
+// vertex is no larger than such a side. Of two vertices one of which is on an open edge, that one stays; two on open
+// edges become one only along such an edge, so that nothing is pinched off.
 #include "mesh/work.h"
 
 #include <math.h>

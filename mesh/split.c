@@ -1,5 +1,6 @@
 // Every face of n corners becomes n quads: from a corner to the middle of its side, the face's centre, the middle of
-// the side before (Catmull and Clark, 1978, without their smoothing). Opposite sides of what was a quad still run through.
+// the side before (Catmull and Clark, 1978, without their smoothing). Opposite sides of what was a quad still run
+// through.
 #include "mesh/work.h"
 
 /// The vertex in the middle of each half-edge's side.

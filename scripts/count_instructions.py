@@ -52,7 +52,8 @@ def measure(program):
     with tempfile.TemporaryDirectory() as folder:
         counts = os.path.join(folder, "counts")
         run = subprocess.run(
-            ["valgrind", "--tool=callgrind", "--toggle-collect=measured_steps", f"--callgrind-out-file={counts}", program],
+            ["valgrind", "--tool=callgrind", "--toggle-collect=measured_steps", f"--callgrind-out-file={counts}",
+             program],
             capture_output=True, text=True, check=False)
         steps = re.search(r"^steps (\d+)$", run.stdout, re.M)
         if "lacks the instructions" in run.stderr:
@@ -93,7 +94,8 @@ def compare(counts, baseline):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=os.path.join(ROOT, "build", "bench", "singe_bench_instructions"))
-    parser.add_argument("--kind", default="GNU 12, x86_64, Release", help="compiler, processor and build of the program")
+    parser.add_argument("--kind", default="GNU 12, x86_64, Release",
+                        help="compiler, processor and build of the program")
     parser.add_argument("--update", action="store_true", help="write the baseline")
     options = parser.parse_args()
     if not shutil.which("valgrind"):

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, and writes down how long it took and
-# what `singe measure` says. Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
+# Draws docs/gallery: burns every example, keeps its best frame and a contact sheet, and writes down how long it took
+# and what `singe measure` says. Usage: scripts/draw_gallery.sh [EXAMPLE...], after a build in build/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 declare -A best=([letter]=0090 [letter-hanging]=0100 [hot-sphere]=0085 [page-hot]=0055 [newspaper]=0075

@@ -6,7 +6,8 @@
 
 typedef enum PaperState {
     PAPER_SWING, ///< 1 m x 1 m of 0.1 kg/m2, 1 mm thick, held at two corners, let go from level; no drag or damping
-    PAPER_SHRINK, ///< the same sheet free in space, all of it burning at one rate until lengths are 0.8 of what they were
+    /// the same sheet free in space, all of it burning at one rate until lengths are 0.8 of what they were
+    PAPER_SHRINK,
     PAPER_STATE_COUNT
 } PaperState;
 

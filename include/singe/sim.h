@@ -165,7 +165,7 @@ typedef struct SingeStats {
     /// ends.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
-    uint32_t tangled_cells;        ///< that crossed others as the simulation started, and are left alone until they part
+    uint32_t tangled_cells;        ///< that crossed others as the simulation started; left alone until they part
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
@@ -186,9 +186,9 @@ typedef struct SingeCensus {
 SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
-/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely and burnt edges ragged by noise that is
-/// fixed to the sheet (docs/equations.md); vertices of the input keep their `source_vertex`. All arrays belong to the
-/// surface.
+/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely and burnt edges ragged by noise that
+/// is fixed to the sheet (docs/equations.md); vertices of the input keep their `source_vertex`. All arrays belong to
+/// the surface.
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;
     uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
@@ -204,7 +204,8 @@ typedef struct SingeSurface {
     float *burn;               ///< char: burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
     float *time_ignited;       ///< s, -1 never
     int32_t *piece;            ///< id
-    int32_t *source_vertex;    ///< vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
+    /// vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
+    int32_t *source_vertex;
     int32_t *sheet;            ///< index of the sheet, in the order added
     uint32_t (*triangles)[3];
     uint32_t vertex_capacity, triangle_capacity; ///< allocated

@@ -173,13 +173,14 @@ typedef struct SingeSheetDef {
     SingeMaterialDef material;
     float velocity[3];         ///< m/s at the start
     float drop_pieces_below;   ///< m2; loose pieces smaller than this vanish; 0 keeps all
-    /// [8 * cell_count] uv of each cell's corners, or NULL where those of the vertices hold. Vertices where cells differ
-    /// lie on a seam: they are drawn once for each uv, at one place. `uv` is still needed, for what is one a vertex.
+    /// [8 * cell_count] uv of each cell's corners, or NULL where those of the vertices hold. Vertices where cells
+    /// differ lie on a seam: they are drawn once for each uv, at one place. `uv` is still needed, for what is one a
+    /// vertex.
     const float *corner_uv;
     const int32_t *source_vertex; ///< [vertex_count] what SingeSurface.source_vertex says: 0 up to source_count, or -1
     uint32_t source_count;        ///< vertices of the mesh that this one was made from; 0 without source_vertex
-    /// [4 * cell_count] the same of each cell's corners, or NULL: where a seam's vertices were several in that mesh. Needs
-    /// corner_uv and source_vertex.
+    /// [4 * cell_count] the same of each cell's corners, or NULL: where a seam's vertices were several in that mesh.
+    /// Needs corner_uv and source_vertex.
     const int32_t *corner_source_vertex;
 } SingeSheetDef;
 
@@ -397,8 +398,8 @@ static inline SingeGasDef singe_default_gas(void) {
 typedef struct SingeContactDef {
     size_t struct_size;
     bool enabled;    ///< no: they pass through themselves, as in the paper
-    /// m, distance that is kept between surfaces, > 0 to 1, and 2/5 of the smallest cell at most. It is not the material's
-    /// `thickness`, which lies between the two layers of the model
+    /// m, distance that is kept between surfaces, > 0 to 1, and 2/5 of the smallest cell at most. It is not the
+    /// material's `thickness`, which lies between the two layers of the model
     float thickness;
     float friction;  ///< Coulomb's coefficient, >= 0
 } SingeContactDef;
@@ -427,8 +428,8 @@ typedef struct SingeSimDef {
     float air_density;          ///< kg/m3, >= 0
     /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     float heat_tolerance;
-    /// m, distance of the points where the drawn surface is cut near the front, a cell's side over 23 at least; 0: cells
-    /// are drawn as they are (Fig 6)
+    /// m, distance of the points where the drawn surface is cut near the front, a cell's side over 23 at least; 0:
+    /// cells are drawn as they are (Fig 6)
     float surface_detail;
     float surface_raggedness; ///< m, how far noise eats into burnt edges at most, and half a cell; needs a detail
     SingeWindDef wind;

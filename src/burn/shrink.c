@@ -7,9 +7,9 @@
 //   s       mean of the ends' shrink factors; 1 is the paper, and the layers' difference makes curl
 //
 // Paper shrinks more across its fibres than along them: for bond paper that dries, 1.5 to 4 times (Roberts &
-// Etherington, Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio, `fibre_shrink`,
-// and b = e (q - 1)/(q + 1), lengths along the fibres become 1 - e + b of what they were, those across 1 - e - b. So all
-// springs measure one stretched plane: at the angle phi to the fibres
+// Etherington, Bookbinding and the Conservation of Books, 1982, "anisotropic behavior"). With q the ratio,
+// `fibre_shrink`, and b = e (q - 1)/(q + 1), lengths along the fibres become 1 - e + b of what they were, those across
+// 1 - e - b. So all springs measure one stretched plane: at the angle phi to the fibres
 //
 //   (l/l_init)^2 = (1 - e + b)^2 cos^2 phi + (1 - e - b)^2 sin^2 phi = (1 - e)^2 + b (b + 2 (1 - e) cos 2 phi)
 //

@@ -4,9 +4,9 @@
 //
 //   E = (1 - radiated) dm H_gas/pace
 //
-// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being what
-// of the heat of combustion did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the gas
-// moves, and its power is that of the real fire.
+// half a cell off the sheet on the particle's own side (the upper one, where the sheet lies level), H_gas J/kg being
+// what of the heat of combustion did not stay in the sheet (shell/matter.c). The fire runs `pace` times as fast as the
+// gas moves, and its power is that of the real fire.
 //
 // In turn the gas heats, from the place that the flow has come from, so that heat arrives by the flow only and not by
 // the size of the cells:

@@ -287,7 +287,8 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     *shell = (Shell){0};
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
-    if (!shell_alloc(memory, any_seams(sources, source_count), shell) || (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
+    if (!shell_alloc(memory, any_seams(sources, source_count), shell) ||
+        (place_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
         !matter_create(memory, shell, sources))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);

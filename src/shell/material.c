@@ -169,7 +169,8 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
     double uv[2] = {0}, place[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
-        for (int k = 0; k < 2; k++) uv[k] += (double)(count == 1 ? field->source->uv[v] : sheet_corner_uv(field->source, cell, i))[k] / count;
+        for (int k = 0; k < 2; k++)
+            uv[k] += (double)(count == 1 ? field->source->uv[v] : sheet_corner_uv(field->source, cell, i))[k] / count;
         for (int k = 0; k < 3; k++) place[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }

@@ -18,7 +18,8 @@
 
 #include <string.h>
 
-/// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are made of.
+/// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are
+/// made of.
 static Field *matter_field(Matter *matter, int param) {
     if (param >= PARAM_COMPLIANCE) return &matter->compliance[param - PARAM_COMPLIANCE];
     if (param >= PARAM_WEIGHT) return &matter->weight[param - PARAM_WEIGHT];

@@ -37,8 +37,8 @@ typedef struct CellSprings {
     uint32_t yellow[2]; ///< corners 0-2, corners 1-3
 } CellSprings;
 
-/// Material of each particle (its own layer: half the sheet's mass), at the grammage that it has. Area, mass and capacity of a vertex
-/// without cells are 0; it never lives.
+/// Material of each particle (its own layer: half the sheet's mass), at the grammage that it has. Area, mass and
+/// capacity of a vertex without cells are 0; it never lives.
 typedef struct Matter {
     float *area;               ///< m2 at rest
     float *mass;               ///< kg, initial

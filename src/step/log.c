@@ -93,14 +93,15 @@ void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
     if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
         sim->tangle_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: %u cells have crossings with others as the simulation starts; they are left alone until they have "
-                "parted",
+                "contact: %u cells have crossings with others as the simulation starts; they are left alone until they "
+                "have parted",
                 touches->tangled);
     }
     if (touches->unresolved && !sim->crossing_warned) {
         sim->crossing_warned = true;
-        sim_log(sim, SINGE_LOG_WARNING, "contact: at %.4g s cells could not be kept apart: what holds them pulls them through each other, or they "
-                "began on top of each other (said once)",
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: at %.4g s cells could not be kept apart: what holds them pulls them through each other, or "
+                "they began on top of each other (said once)",
                 sim->state.time);
     }
     if (touches->dropped && !sim->crowd_warned) {

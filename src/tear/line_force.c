@@ -6,8 +6,8 @@
 //   D     m     the spring at rest, in the plane of the sheet; L its length; l its target length
 //   share 1     of a red or yellow spring, and of what lies at the border; 1/2 of what two cells share
 //
-// Where an edge or a cell's diagonal is EDGE_STRETCH times as long as at rest, as in threads of char that carry more than
-// substeps hold (T in tear_step.c), its ends tear, whatever their strength.
+// Where an edge or a cell's diagonal is EDGE_STRETCH times as long as at rest, as in threads of char that carry more
+// than substeps hold (T in tear_step.c), its ends tear, whatever their strength.
 //
 // Both layers are in it: N is that of the sheet. It is filtered over time, so that what does not last some milliseconds
 // tears nothing,

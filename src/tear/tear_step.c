@@ -132,7 +132,8 @@ static void choose_leaders(TearPlan *plan, const State *state) {
         if (!(plan->ratio[v] > 1)) continue;
         uint32_t *leader = &plan->leader[state->ablate.piece[v]];
         if (plan->torn[v]) *leader = LEADER_RUNS;
-        else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader])) *leader = v;
+        else if (*leader == SHELL_NONE || (*leader != LEADER_RUNS && plan->ratio[v] > plan->ratio[*leader]))
+            *leader = v;
     }
 }
 
@@ -232,7 +233,8 @@ static int open_edge(const TearEdge *edges, int count, Vec way) {
     return open;
 }
 
-/// Cells that hang together with others by the vertex alone, for what lay between them has burnt; 0 where there are none.
+/// Cells that hang together with others by the vertex alone, for what lay between them has burnt; 0 where there are
+/// none.
 static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn) {
     int start[2] = {-1, -1};
     for (int j = 0; j < turn->count; j++) {

@@ -1,4 +1,5 @@
-"""singe bench fold: what stays of a fold is the same at every resolution and time step; without creases nothing stays."""
+"""singe bench fold: what stays of a fold is the same at every resolution and time step; without creases
+nothing stays."""
 
 import json
 import os

@@ -1,4 +1,5 @@
-"""singe bench tear: a strip that is pulled apart breaks at its weakest line, at the same load for all cells and steps."""
+"""singe bench tear: a strip that is pulled apart breaks at its weakest line, at the same load for all cells and
+steps."""
 
 import json
 import os

@@ -288,8 +288,8 @@ static void fibres_turn_shrinkage(void **unused) {
             for (uint32_t s = 0; s < b->shell.springs[colour].count; s++) {
                 const uint32_t *ends = b->shell.springs[colour].ends[s];
                 double d[3];
-                for (int axis = 0; axis < 3; axis++)
-                    d[axis] = (double)b->shell.rest_position[ends[1]][axis] - (double)b->shell.rest_position[ends[0]][axis];
+                const float *from = b->shell.rest_position[ends[0]], *to = b->shell.rest_position[ends[1]];
+                for (int axis = 0; axis < 3; axis++) d[axis] = (double)to[axis] - (double)from[axis];
                 double expected = stretched_length(d, angles[k], even + stretch, even - stretch, even);
                 assert_float_equal((double)b->state.burn.spring_length[colour][s], expected, 1e-7);
             }

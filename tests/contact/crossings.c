@@ -24,8 +24,8 @@ static double volume(Point a, Point b, Point c, Point d) { return dot(cross(minu
 /// Segment p-q strictly through triangle t.
 static bool pierces(Point p, Point q, const Point t[3]) {
     if ((volume(t[0], t[1], t[2], p) > 0) == (volume(t[0], t[1], t[2], q) > 0)) return false;
-    bool first = volume(p, q, t[0], t[1]) > 0, second = volume(p, q, t[1], t[2]) > 0, third = volume(p, q, t[2], t[0]) > 0;
-    return first == second && second == third;
+    const bool first = volume(p, q, t[0], t[1]) > 0;
+    return first == (volume(p, q, t[1], t[2]) > 0) && first == (volume(p, q, t[2], t[0]) > 0);
 }
 
 static bool has(const uint32_t t[3], uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }

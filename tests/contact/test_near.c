@@ -114,8 +114,8 @@ static bool cells_pierce(const Quad a[5], const Quad b[5], const unsigned shared
     return false;
 }
 
-/// What is shown not to cross does not: two cells at a side, and two at a corner with one between that shares a side with
-/// each, bent and sheared at random.
+/// What is shown not to cross does not: two cells at a side, and two at a corner with one between that shares a side
+/// with each, bent and sheared at random.
 static void what_is_parted_does_not_cross(void **unused) {
     (void)unused;
     int level[2] = {0}, parted[2] = {0}, crossed[2] = {0};

@@ -40,7 +40,8 @@ void quads_free(Quads *quads) {
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
     *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
     bench->settings = (DynamicsSettings){
-        .gravity = {0, 0, -9.81f}, .air_density = 1.2f, .solver = singe_default_solver(), .thread_count = threads, .time_step = 1.0f / 480};
+        .gravity = {0, 0, -9.81f}, .air_density = 1.2f, .solver = singe_default_solver(), .thread_count = threads,
+        .time_step = 1.0f / 480};
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = quads.vertex_count, def.positions = quads.positions;
     def.cell_count = quads.cell_count, def.cells = quads.cells;

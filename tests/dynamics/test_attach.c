@@ -71,7 +71,8 @@ static void test_none_is_too_far(void **unused) {
         for (int k = 0; k < count; k++) assert_true(far_from_start(&bench, corners[k]) == 0);
         // centres are off the mesh: left alone
         const uint32_t first = bench.shell.vertex_count;
-        assert_memory_equal(before[first], bench.state.dynamics.position[first], bench.shell.cell_count * sizeof *before);
+        assert_memory_equal(before[first], bench.state.dynamics.position[first],
+                            bench.shell.cell_count * sizeof *before);
         free(before);
         bench_close(&bench);
     }

@@ -324,8 +324,8 @@ static void what_is_pressed_stays_and_rests(void **unused) {
             ever += under;
         }
         double last = fastest(&bench, &under);
-        printf("pressed to %.2f mm: at most %.2f m/s, %.4f m/s after 1 s, %d times under the plate\n", 1e3 * (double)gap,
-               most, last, ever);
+        printf("pressed to %.2f mm: at most %.2f m/s, %.4f m/s after 1 s, %d times under the plate\n",
+               1e3 * (double)gap, most, last, ever);
         assert_true(ever == 0 && most < 2 && last < 0.02);
         collider_free(&bench.memory, &both[1]);
         close_all(&bench);

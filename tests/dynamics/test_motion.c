@@ -176,9 +176,9 @@ static double spin_left(int axis, float smoothing, bool bent) {
     return after[axis] / before[axis];
 }
 
-/// What a free sheet loses of its spin w is the projection's own, w^2 h t: x~ runs ahead on the tangent and is drawn back.
-/// Internal friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its strands'
-/// lines: up to a fifth in a second.
+/// What a free sheet loses of its spin w is the projection's own, w^2 h t: x~ runs ahead on the tangent and is drawn
+/// back. Internal friction takes less than 1e-3 from a flat sheet, and from a bent one where it turns out of its
+/// strands' lines: up to a fifth in a second.
 static void test_spin(void **unused) {
     (void)unused;
     const float smoothing = singe_default_solver().smoothing;

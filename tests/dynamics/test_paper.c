@@ -406,7 +406,8 @@ static void test_period(void **unused) {
         before = now;
     }
     assert_true(crossings > 3);
-    double period = h * (last - first) / (crossings - 1), expected = 2 * 3.14159265358979 / sqrt(stiffness * 90 * (1 - 0.01));
+    double period = h * (last - first) / (crossings - 1);
+    double expected = 2 * 3.14159265358979 / sqrt(stiffness * 90 * (1 - 0.01));
     print_message("period %.5f s, by the formula %.5f s\n", period, expected);
     assert_true(fabs(period / expected - 1) < 1e-3);
     network_free(&memory, &network);

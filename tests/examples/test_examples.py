@@ -96,8 +96,8 @@ class Example(Case):
         return sum(vertex["char"] > 0.95 for vertex in self.vertices(len(self.rows)))
 
     def look(self, frames, creases=1.2, power=3.0):
-        """What pictures are judged by, over some frames: an ember line of less than 3 mm, creases that do not follow the
-        mesh, and wrinkles where it has burnt."""
+        """What pictures are judged by, over some frames: an ember line of less than 3 mm, creases that do not follow
+        the mesh, and wrinkles where it has burnt."""
         self.singe("measure", self.path("whole"), "--frames", frames, "--csv", self.path("look.csv"), timeout=800)
         with open(self.path("look.csv")) as file:
             rows = list(csv.DictReader(file))
@@ -311,7 +311,8 @@ class CrumpledBall(Example):
         self.common()
         flat, held, lying = (self.extent(int(t * self.fps) + 1) for t in (0, 1.9, 2.65))
         lit = next(row["time"] for row in self.rows if row["ignited"] > 0)
-        self.say["size"] = ", ".join("x".join(f"{1e3 * side:.0f}" for side in size) for size in (flat, held, lying)) + " mm"
+        sizes = ("x".join(f"{1e3 * side:.0f}" for side in size) for size in (flat, held, lying))
+        self.say["size"] = ", ".join(sizes) + " mm"
         self.say["strain"] = f"mean {max(self.column('strain_mean')):.4f} p99 {max(self.column('strain_p99')):.4f}"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
         self.told()
@@ -332,8 +333,9 @@ class HotIron(Example):
     def parts(self, frame):
         """Vertices well under the sole, and those well beside it; the iron is turned by 20 degrees."""
         under, beside = [], []
+        back = complex(math.cos(math.pi / 9), -math.sin(math.pi / 9))
         for vertex in self.vertices(frame):
-            turned = complex(vertex["rest_x"], vertex["rest_y"]) * complex(math.cos(math.pi / 9), -math.sin(math.pi / 9))
+            turned = complex(vertex["rest_x"], vertex["rest_y"]) * back
             x, y = 1e3 * abs(turned.real), 1e3 * abs(turned.imag)
             if x < 40 and y < 15:
                 under.append(vertex)

@@ -130,7 +130,8 @@ static void faces_have_any_number_of_corners(void **state) {
     (void)state;
     Polygons mesh;
     SingeError error;
-    assert_int_equal(parse(SQUARE "v 2 0 0\nf 1 2 3\nf 1 3 4\nf 2 5 3\nf 1 2 5 3 4\nf 1 1 2\n", &mesh, &error), SINGE_OK);
+    assert_int_equal(parse(SQUARE "v 2 0 0\nf 1 2 3\nf 1 3 4\nf 2 5 3\nf 1 2 5 3 4\nf 1 1 2\n", &mesh, &error),
+                     SINGE_OK);
     static const uint32_t first[] = {0, 3, 6, 9, 14, 17}, lines[] = {6, 7, 8, 9, 10};
     static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 1, 4, 2, 0, 1, 4, 2, 3, 0, 0, 1};
     assert_int_equal(mesh.face_count, 5);
@@ -166,7 +167,8 @@ static void registry_goes_by_the_ending(void **state) {
     assert_message(&error, ".obj, .ply");
     assert_int_equal(polygons_read("a.ply", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, &error),
                      SINGE_ERROR_FORMAT);
-    assert_int_equal(polygons_read("obj", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, NULL), SINGE_ERROR_FORMAT);
+    assert_int_equal(polygons_read("obj", bytes, sizeof text - 1, (SingeAllocator){0}, &mesh, NULL),
+                     SINGE_ERROR_FORMAT);
 }
 
 static const char sample[] = SQUARE "v 2 0 0\nv 2 1 0\nvt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nvt 1 0\nvt 1 1\n"
@@ -279,7 +281,8 @@ static void worn_grid_keeps_its_outline(void **state) {
     mesh_free(&mesh), mesh_free(&plain);
 }
 
-// The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs (4 + 2 + 2 + 2 a cell, fewer at the border).
+// The example's sheet: A4, in low waves over the table, borders straight from above, at most 30,000 springs
+// (4 + 2 + 2 + 2 a cell, fewer at the border).
 static void the_letter_is_a4(void **state) {
     (void)state;
     Bytes bytes;

@@ -267,8 +267,9 @@ static void large_claims_take_no_memory(void **state) {
 // Triangles and polygons, and uv of each face's own (MeshLab), which may come before its corners.
 static void faces_have_uv_of_their_own(void **state) {
     (void)state;
-    static const char text[] = HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
-                                      "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
+    static const char text[] =
+        HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
+        "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
     Polygons mesh;
     SingeError error;
     if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);

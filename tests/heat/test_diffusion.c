@@ -191,7 +191,8 @@ static void umbrella_slab_mode_decays(void **unused) {
         rig_close(&rig);
     }
     double order[2] = {log2(error[0] / error[1]), log2(error[1] / error[2])};
-    print_message("umbrella: errors %.2g %.2g %.2g, orders %.2f %.2f\n", error[0], error[1], error[2], order[0], order[1]);
+    print_message("umbrella: errors %.2g %.2g %.2g, orders %.2f %.2f\n", error[0], error[1], error[2], order[0],
+                  order[1]);
     assert_true(error[1] < 0.02 && error[2] < 0.6 * error[1]);
     for (int k = 0; k < 2; k++) assert_true(order[k] > 0.75 && order[k] < 1.5);
 }

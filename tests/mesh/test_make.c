@@ -60,7 +60,8 @@ static void triangulated_grids_give_back_their_quads(void **state) {
 
 /// Inner vertices of other than four cells.
 static int irregular(const Mesh *mesh) {
-    int *cells = calloc(mesh->vertex_count, sizeof *cells), *sides = calloc(mesh->vertex_count, sizeof *sides), count = 0;
+    int *cells = calloc(mesh->vertex_count, sizeof *cells), *sides = calloc(mesh->vertex_count, sizeof *sides);
+    int count = 0;
     for (uint32_t i = 0; i < 4 * mesh->cell_count; i++) cells[mesh->cells[i]]++;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const float *p = mesh->positions + 3 * v;
@@ -77,12 +78,14 @@ static void rows_go_on(void **state) {
     text.size = 0;
     const int n = 20;
     for (int j = 0; j <= n; j++)
-        for (int i = 0; i <= n; i++) text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
+        for (int i = 0; i <= n; i++)
+            text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
     text_cells(&text, n, n, REGULAR);
     // rows lean the other way on odd rows: take the diagonal that makes equilateral triangles
     text.size = 0;
     for (int j = 0; j <= n; j++)
-        for (int i = 0; i <= n; i++) text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
+        for (int i = 0; i <= n; i++)
+            text_add(&text, "v %.7g %.7g 0\n", 0.01 * (i + 0.5 * (j % 2)), 0.01 * sqrt(0.75) * j);
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             int a = j * (n + 1) + i + 1, b = a + 1, c = b + n + 1, d = a + n + 1;
@@ -156,7 +159,8 @@ static void soup_is_welded(void **state) {
     for (int j = 0; j < 5; j++)
         for (int i = 0; i < 6; i++) {
             float x = 0.01f * (float)i, y = 0.01f * (float)j, noise = (i * 7 + j * 3) % 5 * 1e-8f, s = 0.01f;
-            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x + noise, y, x + s, y + noise, x + s, y + s);
+            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x + noise, y, x + s, y + noise, x + s,
+                     y + s);
             text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x, y, x + s, y + s, x, y + s + noise);
             text_add(&text, "f -6 -5 -4\nf -3 -2 -1\n");
         }
@@ -188,7 +192,8 @@ static void weld_keeps_layers_apart(void **state) {
     assert_int_equal(made.report.components, 2);
     mesh_free(&made.mesh);
     text.size = 0;
-    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.001 0 0\nv 2 0 0\nv 2 1 0\nv 1.001 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
+    text_add(&text,
+             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.001 0 0\nv 2 0 0\nv 2 1 0\nv 1.001 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
     made = make(&text);
     assert_int_equal(made.report.components, 2);
     mesh_free(&made.mesh);
@@ -263,7 +268,8 @@ static double volume(const Mesh *mesh) {
     double sum = 0;
     for (uint32_t c = 0; c < mesh->cell_count; c++)
         for (uint32_t k = 1; k < 3; k++) {
-            const float *a = mesh->positions + 3 * mesh->cells[4 * c], *b = mesh->positions + 3 * mesh->cells[4 * c + k];
+            const float *a = mesh->positions + 3 * mesh->cells[4 * c];
+            const float *b = mesh->positions + 3 * mesh->cells[4 * c + k];
             const float *d = mesh->positions + 3 * mesh->cells[4 * c + k + 1];
             sum += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) +
                     a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
@@ -288,7 +294,8 @@ static void edges_of_many_faces_are_cut(void **state) {
     (void)state;
     text.size = 0;
     add_cube(0, false, 0);
-    for (int i = 0; i < 8; i++) text_add(&text, "v %d %d %d\n", 1 + ((i & 3) == 1 || (i & 3) == 2), 1 + ((i & 3) >= 2), i >= 4);
+    for (int i = 0; i < 8; i++)
+        text_add(&text, "v %d %d %d\n", 1 + ((i & 3) == 1 || (i & 3) == 2), 1 + ((i & 3) >= 2), i >= 4);
     static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
     for (int f = 0; f < 6; f++) { // corners 1 and 5 of the second are 3 and 7 of the first
         text_add(&text, "f");
@@ -362,11 +369,13 @@ static void short_sides_shrink(void **state) {
     text.size = 0;
     const double x[] = {0, 0.01, 0.02, 0.02001, 0.03, 0.03999, 0.04};
     for (int j = 0; j < 5; j++)
-        for (int i = 0; i < 7; i++) text_add(&text, "v %.6g %.6g 0\nvt %.6g %.6g\n", x[i], 0.01 * j, 10 * x[i], 0.1 * j);
+        for (int i = 0; i < 7; i++)
+            text_add(&text, "v %.6g %.6g 0\nvt %.6g %.6g\n", x[i], 0.01 * j, 10 * x[i], 0.1 * j);
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 6; i++) {
             int a = 7 * j + i + 1, c = a + 8;
-            text_add(&text, "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a, a + 1, a + 1, c, c, a, a, c, c, a + 7, a + 7);
+            text_add(&text, "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a, a + 1, a + 1, c, c, a, a, c, c, a + 7,
+                     a + 7);
         }
     made = make(&text);
     assert_int_equal(made.report.count[MESH_SHRUNK], 10);
@@ -380,16 +389,17 @@ static void short_sides_shrink(void **state) {
 
 static void attributes_and_ids_follow_their_vertices(void **state) {
     (void)state;
-    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-                              "property float wet\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                              "9 9 9 7\n0 0 0 1\n2 0 0 3\n0 1 0 5\n8 8 8 8\n3 1 2 3\n";
+    static const char ply[] =
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float wet\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "9 9 9 7\n0 0 0 1\n2 0 0 3\n0 1 0 5\n8 8 8 8\n3 1 2 3\n";
     Polygons polygons;
     Made made;
     MeshOptions options = mesh_default_options();
-    assert_int_equal(ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons, &made.error),
-                     SINGE_OK);
-    assert_int_equal(mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report, &made.error),
-                     SINGE_OK);
+    assert_int_equal(ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons,
+                              &made.error), SINGE_OK);
+    assert_int_equal(mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report,
+                               &made.error), SINGE_OK);
     static const int32_t source[] = {1, 2, 3, -1};
     static const float wet[] = {1, 3, 5, 4};
     assert_memory_equal(made.mesh.source, source, sizeof source);
@@ -442,12 +452,14 @@ static void shuffled_meshes_are_put_in_order(void **state) {
 
 static void other_formats_come_by_assimp(void **state) {
     (void)state;
-    static const char stl[] = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
-                              "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
-                              "endfacet\nendsolid a\n";
+    static const char stl[] =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
+        "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid a\n";
     Polygons polygons;
     SingeError error;
-    SingeResult result = polygons_read("a.stl", (const uint8_t *)stl, sizeof stl - 1, (SingeAllocator){0}, &polygons, &error);
+    SingeResult result =
+        polygons_read("a.stl", (const uint8_t *)stl, sizeof stl - 1, (SingeAllocator){0}, &polygons, &error);
     if (!assimp_available()) {
         assert_int_equal(result, SINGE_ERROR_STATE);
         assert_non_null(strstr(error.message, "without assimp"));
@@ -469,8 +481,8 @@ static void other_formats_come_by_assimp(void **state) {
     assert_int_equal(polygons.face_count, 2);
     assert_int_equal(polygons.corner_count, 7); // quads stay quads
     polygons_free(&polygons);
-    assert_int_equal(polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons, &error),
-                     SINGE_ERROR_FORMAT);
+    assert_int_equal(polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons,
+                                   &error), SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "a.glb"));
 }
 

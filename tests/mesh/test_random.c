@@ -44,8 +44,11 @@ static void broken_grid(Text *text) {
         if (below(9) == 0) continue;
         for (int times = below(12) ? 1 : 2; times > 0; times--) {
             if (below(5) == 0) text_add(text, "f %d %d %d %d\n", at[0], at[1], at[2], at[3]);
-            else if (below(9) == 0) text_add(text, "f %d %d %d\nf %d %d %d\n", at[2], at[1], at[0], at[0], at[2], at[3]);
-            else text_add(text, "f %d %d %d\nf %d %d %d\n", at[s], at[s + 1], at[s + 2], at[s], at[s + 2], at[(s + 3) & 3]);
+            else if (below(9) == 0)
+                text_add(text, "f %d %d %d\nf %d %d %d\n", at[2], at[1], at[0], at[0], at[2], at[3]);
+            else
+                text_add(text, "f %d %d %d\nf %d %d %d\n", at[s], at[s + 1], at[s + 2], at[s], at[s + 2],
+                         at[(s + 3) & 3]);
         }
     }
     text_add(text, "f 1 2 %d\n", n + 2);

@@ -278,9 +278,9 @@ static void test_bad_gas(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nothing_burns), cmocka_unit_test(test_flame), cmocka_unit_test(test_flicker),
-        cmocka_unit_test(test_hidden),
-        cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_layer), cmocka_unit_test(test_light), cmocka_unit_test(test_smoke),
-        cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_bad_gas),
+        cmocka_unit_test(test_hidden), cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_light), cmocka_unit_test(test_smoke), cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_bad_gas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -372,7 +372,8 @@ static void test_out_of_memory(void **state) {
     PreviewShape shapes[2] = {{.kind = SINGE_COLLIDER_SPHERE, .radius = 0.01f, .temperature = 293},
                               {.kind = SINGE_COLLIDER_PLANE, .rotation = {0, 0, 0, 1}, .temperature = 293}};
     PreviewDef def = small();
-    def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes, def.shape_count = 2;
+    def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes,
+        def.shape_count = 2;
     Quad q;
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;
@@ -423,8 +424,8 @@ static void test_set_shapes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads), cmocka_unit_test(test_repeatable), cmocka_unit_test(test_empty_surface),
-        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes), cmocka_unit_test(test_solids),
-        cmocka_unit_test(test_hot_ball),
+        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_solids), cmocka_unit_test(test_hot_ball),
         cmocka_unit_test(test_shadow), cmocka_unit_test(test_bad_vertices), cmocka_unit_test(test_bad_surface),
         cmocka_unit_test(test_bad_defs), cmocka_unit_test(test_odd_sizes), cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_set_shapes),

@@ -8,8 +8,8 @@
 
 #include "scene/schema.h"
 
-// An object of every kind, so that every row has a path. Steps: such that all fps are allowed. The front's thickening is
-// given: what it would be for the extremes of one row alone is refused.
+// An object of every kind, so that every row has a path. Steps: such that all fps are allowed. The front's thickening
+// is given: what it would be for the extremes of one row alone is refused.
 static const char base[] =
     "steps: 1000\n"
     "sheets:\n"

@@ -231,7 +231,8 @@ static void test_stated_for_a_grammage(void **state) {
             assert_float_equal(field_at(matter->diffusivity, p), m->diffusivity.value * ratio, 1e-12f);
             assert_float_equal(field_at(matter->layer_exchange, p), m->layer_exchange.value * ratio, 1e-4f);
             assert_float_equal(field_at(matter->mass_rate, p), m->mass_rate.value * ratio, 1e-8f);
-            assert_float_equal(field_at(matter->heating, p), 4e6f / sheet_param(&source, PARAM_SPECIFIC_HEAT, p), 1e-3f);
+            assert_float_equal(field_at(matter->heating, p), 4e6f / sheet_param(&source, PARAM_SPECIFIC_HEAT, p),
+                               1e-3f);
             assert_true(field_at(matter->gas_heat, p) == 12e6f);
         }
         assert_true(matter->mass_rate.mask == (scaled ? UINT32_MAX : 0)); // one value where it does not vary
