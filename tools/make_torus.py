@@ -39,8 +39,8 @@ def lines(n, m):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--around", type=int, default=144, help="quads around the hole, an even number")
-    parser.add_argument("--across", type=int, default=60, help="quads around the tube")
+    parser.add_argument("--around", type=int, default=132, help="quads around the hole, an even number")
+    parser.add_argument("--across", type=int, default=56, help="quads around the tube")
     parser.add_argument("file", nargs="?", type=pathlib.Path, default=FILE)
     options = parser.parse_args()
     options.file.write_text("\n".join(lines(options.around, options.across)) + "\n", encoding="ascii")
