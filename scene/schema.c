@@ -69,7 +69,7 @@ static const Schema schema_solver = {
 static const SchemaRow gas_rows[] = {
     {"enabled", ROW_BOOL, DIM_NONE, AT(SingeGasDef, enabled), .doc = "no: sheets burn as in still air"},
     {"cell_size", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, cell_size), WITHIN(0, 1),
-     .doc = "side of a cell of its grid; 0: 8 mm for a sheet of A4, in proportion to others"},
+     .doc = "side of a cell of its grid; 0: 8.7 mm for a sheet of A4, in proportion to others"},
     {"height", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, height), WITHIN(0.01, 100),
      .doc = "room for it above the sheets as they start"},
     {"conductance", ROW_FLOAT, DIM_CONDUCTANCE, AT(SingeGasDef, conductance), FROM(0),
