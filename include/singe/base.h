@@ -65,7 +65,7 @@ SINGE_API const char *singe_result_name(SingeResult result);
 /// The library's version as it was built, "major.minor.patch".
 SINGE_API const char *singe_version(void);
 
-/// Where and why something failed. Filled only on failure.
+/// Where and why something failed. Filled only on failure; it holds nothing to be freed.
 typedef struct SingeError {
     SingeResult code;
     char stage[24];    ///< "sheet", "heat", "burn", "ablate", "dynamics", "obj", "scene", ...
@@ -95,7 +95,7 @@ typedef void SingeTaskFn(void *task, int begin, int end);
 /// Task hook, for hosts with a scheduler of their own. `enqueue` may split [0, count) into ranges of
 /// at least `grain` items in any order on any thread, and returns a token for `finish`, which returns
 /// when all ranges are done. Results do not depend on how it splits. A zeroed struct means the
-/// simulation's own pool of `thread_count` threads.
+/// simulation's own pool of `thread_count` threads; one hook needs the other.
 typedef struct SingeTasks {
     void *(*enqueue)(void *context, SingeTaskFn *run, void *task, int count, int grain);
     void (*finish)(void *context, void *token);

@@ -59,10 +59,11 @@ SINGE_API SINGE_NODISCARD SingeResult singe_network_create(const SingeNetworkDef
 /// Frees a network; NULL is allowed.
 SINGE_API void singe_network_destroy(SingeNetwork *network);
 
-/// The positions, [3 * particle_count], to be read and written.
+/// The positions, [3 * particle_count] m, to be read and written. The network owns them; valid until it is destroyed.
 SINGE_API double *singe_network_positions(SingeNetwork *network);
 
-/// Springs of a set. In what follows row i of a set is its i-th spring in the order of the Def.
+/// Springs of a set; 0 where there is no such set. In what follows row i of a set is its i-th spring in the order of
+/// the Def.
 SINGE_API uint32_t singe_network_set_size(const SingeNetwork *network, uint32_t set);
 
 /// What a projection took.
@@ -72,13 +73,13 @@ typedef struct SingeNetworkReport {
 } SingeNetworkReport;
 
 /// Projects one set: J M^-1 J^T lambda = W C, x -= M^-1 J^T lambda. Allocates nothing. *report may be NULL.
-/// SINGE_ERROR_DIVERGED: conjugate gradients met a system that is not positive definite, or numbers that are not
-/// finite; nothing was moved.
+/// SINGE_ERROR_ARGUMENT: there is no such set. SINGE_ERROR_DIVERGED: conjugate gradients met a system that is not
+/// positive definite, or numbers that are not finite; nothing was moved.
 SINGE_API SINGE_NODISCARD SingeResult singe_network_project(SingeNetwork *network, uint32_t set,
                                                             SingeNetworkReport *report);
 
-/// C of every spring of a set at the present positions, into [set size]. Returns their Euclidean norm. *errors may be
-/// NULL.
+/// C of every spring of a set at the present positions, in m, into [set size]. Returns their Euclidean norm. `errors`
+/// may be NULL.
 SINGE_API double singe_network_errors(const SingeNetwork *network, uint32_t set, double *errors);
 
 /// J M^-1/2 of a set at the present positions, into [set size][3 * particle_count]: its singular values squared are

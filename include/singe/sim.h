@@ -14,25 +14,31 @@ extern "C" {
 
 typedef struct SingeSim SingeSim;
 
-/// Makes an empty simulation. On failure *sim is NULL and *error (may be NULL) says why.
+/// Makes an empty simulation, to be freed by singe_sim_destroy. On failure *sim is NULL and *error (may be NULL) says
+/// why: SINGE_ERROR_ARGUMENT or SINGE_ERROR_MEMORY.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_create(const SingeSimDef *def, SingeSim **sim, SingeError *error);
 
 /// Frees a simulation; NULL is allowed.
 SINGE_API void singe_sim_destroy(SingeSim *sim);
 
-/// The last failure of a call on this simulation. Valid until the next call; never NULL.
+/// The last failure of a call on this simulation, which owns it. Valid until the next call; never NULL.
 SINGE_API const SingeError *singe_sim_error(const SingeSim *sim);
 
-/// Adds a sheet. Sheets are added before singe_sim_commit. SINGE_ERROR_MESH names the cell or vertex.
+/// Adds a sheet. Sheets are added before singe_sim_commit. SINGE_ERROR_MESH and, for a parameter out of its range,
+/// SINGE_ERROR_ARGUMENT name the cell or vertex. On failure *id is zeroed, here and below.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id);
 
 /// Builds the shell (springs, strands, families) and every buffer a step needs. After it no sheet
-/// can be added. Sources, pins and colliders are added, moved and removed at any time after it.
+/// can be added. Sources, pins and colliders are added, moved and removed at any time after it. SINGE_ERROR_STATE:
+/// there is no sheet, or it is committed already.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_commit(SingeSim *sim);
+
+// Objects. Before the commit adding is SINGE_ERROR_STATE; a Def out of its ranges is SINGE_ERROR_ARGUMENT, a handle
+// that is stale SINGE_ERROR_HANDLE. A call that fails changes nothing.
 
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *def, SingeSourceId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id);
-/// Sets the callback of a callback source, as is needed after a load.
+/// Sets the callback of a callback source, as is needed after a load; NULL gives nothing. `context` must outlive it.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_source_callback(SingeSim *sim, SingeSourceId id,
                                                                     SingeFluxFn *callback, void *context);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *def,
@@ -40,17 +46,20 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_collider(SingeSim *sim, cons
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_collider(SingeSim *sim, SingeColliderId id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *def, SingePinId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id);
-/// Replaces the path of a source, collider or pin. Times are the simulation's own.
+/// Replaces the path of a ball or spot, a collider or a pin. Times are the simulation's own, in s, and increase. What a
+/// pin holds follows the new path from where it is now.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_source(SingeSim *sim, SingeSourceId id, uint32_t path_count,
                                                             const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t path_count,
                                                               const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count,
                                                          const SingePoseKey *path);
+/// Replaces the wind, from the next step on; at any time.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *def);
 
-/// One step of length time_step: heat, burn, ablate, dynamics, gas. Allocates nothing. On failure the
-/// simulation is as it was before the call and the error names stage and element.
+/// One step of length time_step: heat, burn, ablate, dynamics, tears, gas. Allocates nothing. On failure the
+/// simulation is as it was before the call and the error names stage and element: SINGE_ERROR_DIVERGED, or
+/// SINGE_ERROR_STATE before the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
 
 /// Flags of a particle, spring or cell.
@@ -79,15 +88,15 @@ typedef struct SingeView {
     const float *temperature_peak;      ///< [particle_count] K, highest so far
     const float *burn_rate;             ///< [particle_count] 1/s, mass fraction lost per second
     const float *time_ignited;          ///< [particle_count] s, -1 before
-    const float *time_burnt;            ///< [particle_count] s, -1 before
+    const float *time_burnt;            ///< [particle_count] s, when its mass fell below m_loss, -1 before
     const int32_t *piece;               ///< [particle_count] id of its connected piece, -1 if gone
-    const uint8_t *particle_flags;      ///< [particle_count]
-    const uint8_t *cell_flags;          ///< [cell_count]
+    const uint8_t *particle_flags;      ///< [particle_count] SINGE_ALIVE, SINGE_PINNED
+    const uint8_t *cell_flags;          ///< [cell_count] SINGE_ALIVE
     const uint32_t (*cells)[4];         ///< [cell_count] corners
     const uint32_t (*springs[SINGE_COLOUR_COUNT])[2]; ///< [spring_count[c]] ends
     const float *spring_length[SINGE_COLOUR_COUNT];   ///< [spring_count[c]] m, target length, eq 6
     const float *spring_rest[SINGE_COLOUR_COUNT];     ///< [spring_count[c]] m, initial length
-    const uint8_t *spring_flags[SINGE_COLOUR_COUNT];  ///< [spring_count[c]]
+    const uint8_t *spring_flags[SINGE_COLOUR_COUNT];  ///< [spring_count[c]] SINGE_ALIVE
     /// [cell_count] N/m, line force in the sheet by which it tears, in rest coordinates: xx, yy, zz, yz, zx, xy; NULL
     /// where sheets cannot tear
     const float (*line_force)[6];
@@ -110,7 +119,8 @@ typedef struct SingeEvent {
     float position[3]; ///< m
 } SingeEvent;
 
-/// What happened in the last step. Valid until the next step; none after a load or in a clone: events are not saved.
+/// What happened in the last step, *count events. Owned by the simulation and valid until the next step; none after a
+/// load or in a clone: events are not saved.
 SINGE_API const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count);
 
 typedef enum SingeStage {
@@ -127,8 +137,8 @@ typedef struct SingeTimers {
     double seconds[SINGE_STAGE_COUNT];
     uint64_t steps;
     uint64_t heat_iterations;   ///< of the implicit diffusion
-    uint64_t strands_projected;
-    uint64_t contacts;
+    uint64_t strands_projected; ///< strands times projections
+    uint64_t contacts;          ///< of particles with colliders, summed over substeps
     // of the stage dynamics, the projection of springs alone
     double projection_seconds;
     uint64_t springs_projected; ///< springs times projections
@@ -145,13 +155,14 @@ typedef struct SingeTimers {
     uint64_t contact_pairs;     ///< pairs of cells near each other, summed over steps
 } SingeTimers;
 
+/// All 0 before the commit.
 SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);
 
 /// Numbers about the present state, computed when asked for.
 typedef struct SingeStats {
-    double time;
+    double time;                   ///< s
     uint32_t particles, springs, cells; ///< alive
-    uint32_t pieces;
+    uint32_t pieces;               ///< connected ones
     double mass;                   ///< kg, of what is left
     double mass_initial;           ///< kg
     double mass_burnt;             ///< kg, gone as gas, eq 4
@@ -179,8 +190,8 @@ SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
 typedef struct SingeCensus {
     uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
     double mean_strand_length;  ///< springs per strand
-    float cell_size;            ///< m, median edge
-    size_t memory;              ///< bytes held
+    float cell_size;            ///< m, median edge, the mean over the sheets
+    size_t memory;              ///< bytes held, of the allocator
 } SingeCensus;
 
 SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
@@ -194,7 +205,7 @@ typedef struct SingeSurface {
     uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
     float (*position)[3];      ///< m
     float (*normal)[3];        ///< unit, area-weighted
-    float (*uv)[2];
+    float (*uv)[2];            ///< 0 where the sheet has none
     float (*velocity)[3];      ///< m/s
     float (*rest_position)[3]; ///< m
     float *temperature;        ///< K
@@ -207,12 +218,13 @@ typedef struct SingeSurface {
     /// vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
     int32_t *source_vertex;
     int32_t *sheet;            ///< index of the sheet, in the order added
-    uint32_t (*triangles)[3];
+    uint32_t (*triangles)[3];  ///< counter-clockwise seen from the front
     uint32_t vertex_capacity, triangle_capacity; ///< allocated
     SingeAllocator allocator;  ///< that the arrays come from
 } SingeSurface;
 
-/// Draws the present state into *surface, which is zeroed before its first use and grows as needed.
+/// Draws the present state into *surface, which is zeroed but for its allocator before its first use and grows as
+/// needed; a zeroed allocator is libc's. SINGE_ERROR_MEMORY leaves it without vertices and triangles, to be used again.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface);
 
 /// Frees a surface's arrays and zeroes it.
@@ -230,20 +242,24 @@ typedef struct SingeGas {
     const float (*velocity)[3]; ///< m/s
 } SingeGas;
 
-/// The gas now; the arrays stay valid, their contents until the next step.
+/// The gas now. The simulation owns the arrays; they stay valid, their contents until the next step.
 SINGE_API SingeGas singe_sim_gas(const SingeSim *sim);
 
-/// Saves the whole simulation. *bytes comes from the simulation's allocator; free it with
-/// singe_sim_free_bytes. Versioned and checksummed; the byte order is the machine's.
+/// Saves the whole simulation. *bytes comes from the simulation's allocator; free it with singe_sim_free_bytes, before
+/// the simulation is destroyed. Versioned and checksummed; the byte order is the machine's. SINGE_ERROR_STATE before
+/// the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_save(SingeSim *sim, uint8_t **bytes, size_t *size);
 SINGE_API void singe_sim_free_bytes(SingeSim *sim, uint8_t *bytes, size_t size);
 
 /// Makes a simulation from saved bytes; it then steps bitwise as the saved one would have. Hooks and
-/// thread count come from `hooks`, all else from the bytes. Handles keep their values.
+/// thread count come from `hooks`, all else from the bytes, which are not needed any more. Handles keep their values.
+/// On failure *sim is NULL and *error (may be NULL) says why: SINGE_ERROR_VERSION for another version or machine,
+/// SINGE_ERROR_FORMAT for what is damaged, SINGE_ERROR_MEMORY.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_load(const SingeSimDef *hooks, const uint8_t *bytes, size_t size,
                                                      SingeSim **sim, SingeError *error);
 
-/// A second simulation in the same state, with the same hooks.
+/// A second simulation in the same state, with the same hooks and callbacks, to be destroyed by itself. On failure
+/// *copy is NULL and singe_sim_error(sim) says why.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_clone(SingeSim *sim, SingeSim **copy);
 
 #ifdef __cplusplus

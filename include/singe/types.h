@@ -30,8 +30,8 @@ typedef struct SingeNoise {
 
 /// A named value per vertex of a sheet's mesh.
 typedef struct SingeAttribute {
-    const char *name;
-    const float *values; ///< [vertex_count]
+    const char *name;    ///< that a SingeParam refers to
+    const float *values; ///< [vertex_count] any; 0 gives a parameter's `value`, 1 its `to`
 } SingeAttribute;
 
 typedef enum SingeFieldKind {
@@ -46,10 +46,10 @@ typedef enum SingeFieldKind {
 /// Centres of cells take a picture or noise at their own place and the mean of their corners'
 /// attributes.
 typedef struct SingeParam {
-    float value;
-    float to;
+    float value;           ///< in the parameter's unit and range, as `to` and all between
+    float to;              ///< needs a field; finite
     SingeFieldKind field;
-    SingePicture picture;
+    SingePicture picture;  ///< needs the sheet's uv
     const char *attribute; ///< the name of one of the sheet's attributes
     SingeNoise noise;
 } SingeParam;
@@ -59,15 +59,15 @@ SINGE_API SingeParam singe_param(float value);
 
 /// One moment of a key-framed motion; linear in between, held before the first and after the last.
 typedef struct SingePoseKey {
-    float time;        ///< s
+    float time;        ///< s, increasing
     float position[3]; ///< m
     float rotation[4]; ///< unit quaternion x, y, z, w; {0,0,0,1} is none
 } SingePoseKey;
 
-/// One moment of a key-framed number.
+/// One moment of a key-framed number; linear in between, held before the first and after the last.
 typedef struct SingeValueKey {
-    float time; ///< s
-    float value;
+    float time;  ///< s, increasing
+    float value; ///< without a unit: a factor
 } SingeValueKey;
 
 /// The discrete Laplacian of the heat equation.
@@ -164,15 +164,15 @@ typedef struct SingeSheetDef {
     size_t struct_size;
     const char *name;          ///< for messages; NULL is "sheet"
     uint32_t vertex_count;
-    const float *positions;    ///< [3 * vertex_count] m
+    const float *positions;    ///< [3 * vertex_count] m, each within 1e15
     uint32_t cell_count;
     const uint32_t *cells;     ///< [4 * cell_count], vertex indices
     const float *uv;           ///< [2 * vertex_count] or NULL (then pictures are refused)
     uint32_t attribute_count;
-    const SingeAttribute *attributes;
+    const SingeAttribute *attributes; ///< [attribute_count]
     SingeMaterialDef material;
     float velocity[3];         ///< m/s at the start
-    float drop_pieces_below;   ///< m2; loose pieces smaller than this vanish; 0 keeps all
+    float drop_pieces_below;   ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
     /// [8 * cell_count] uv of each cell's corners, or NULL where those of the vertices hold. Vertices where cells
     /// differ lie on a seam: they are drawn once for each uv, at one place. `uv` is still needed, for what is one a
     /// vertex.
@@ -214,16 +214,16 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 typedef struct SingeSourceDef {
     size_t struct_size;
     SingeSourceKind kind;
-    float start, end;          ///< s, when it acts; end may be INFINITY
+    float start, end;          ///< s, when it acts; any, end may be INFINITY
     float temperature;         ///< K, of ball and spot, > 0
     float conductance;         ///< W/(m2 K), of ball and spot, >= 0
     float radius, falloff;     ///< m, of ball and spot, >= 0
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
-    const SingePoseKey *path;  ///< positions only
+    const SingePoseKey *path;  ///< [path_count] positions only
     SingePicture picture;      ///< picture source
-    float flux;                ///< W/m2 into each layer where the picture is white
+    float flux;                ///< W/m2 into each layer where the picture is white; below 0 it cools
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
-    const SingeValueKey *strength;
+    const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;     ///< not saved: set it again after a load
     void *callback_context;
 } SingeSourceDef;
@@ -258,23 +258,23 @@ typedef struct SingeColliderDef {
     float radius;             ///< m, sphere and capsule, > 0
     float half_size[3];       ///< m, box, > 0
     float height;             ///< m, capsule, >= 0
-    float friction;           ///< Coulomb's coefficient, >= 0
-    float offset;             ///< m, distance kept from the surface, >= 0
+    float friction;           ///< Coulomb's coefficient, 0 to 1000
+    float offset;             ///< m, distance kept from the surface, 0 to 1000
     float temperature;        ///< K, > 0; only used when conductance > 0
-    float conductance;        ///< W/(m2 K) in contact, 0 for none
+    float conductance;        ///< W/(m2 K) in contact, >= 0; 0 for none
     float contact_distance;   ///< m, how near counts as contact for heat, >= 0
     uint32_t path_count;      ///< at least 1
-    const SingePoseKey *path;
+    const SingePoseKey *path; ///< [path_count] of its own frame
     SingeContactSides sides;  ///< of a sheet in contact that exchange heat
     /// mesh: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
     /// others; vertices at the very same place are one. One that is inside out is turned
     uint32_t vertex_count;
-    const float *vertices;     ///< [3 * vertex_count] m
+    const float *vertices;     ///< [3 * vertex_count] m, each within 1e4
     uint32_t triangle_count;   ///< at least 4
     const uint32_t *triangles; ///< [3 * triangle_count], vertex indices
     uint32_t columns, rows;    ///< heightfield: nodes along local x and y, 2 to 32768
     float size[2];             ///< m, heightfield: of its rectangle along local x and y, 1e-6 to 1e4
-    const float *heights;      ///< [rows * columns] m, from the least y, each row from the least x
+    const float *heights;      ///< [rows * columns] m, each within 1e4, from the least y, each row from the least x
 } SingeColliderDef;
 
 SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);
@@ -291,12 +291,12 @@ typedef struct SingePinDef {
     size_t struct_size;
     SingeSheetId sheet;
     uint32_t point_count;
-    const float *points;      ///< [3 * point_count] m
+    const float *points;      ///< [3 * point_count] m; points or vertices are needed
     float radius;             ///< m, >= 0; 0 pins the nearest vertex of each point
     uint32_t vertex_count;
-    const uint32_t *vertices; ///< of the sheet's mesh
+    const uint32_t *vertices; ///< [vertex_count] of the sheet's mesh, from 0
     uint32_t path_count;      ///< 0: held still
-    const SingePoseKey *path;
+    const SingePoseKey *path; ///< [path_count]
 } SingePinDef;
 
 SINGE_API void singe_init_pin(SingePinDef *def, size_t struct_size);
@@ -310,8 +310,8 @@ static inline SingePinDef singe_default_pin(void) {
 /// The air's motion: a mean and seeded gusts that vary over time and space.
 typedef struct SingeWindDef {
     size_t struct_size;
-    float velocity[3]; ///< m/s
-    float gust;        ///< m/s, amplitude, >= 0
+    float velocity[3]; ///< m/s, each -1000 to 1000
+    float gust;        ///< m/s, amplitude, 0 to 1000
     float gust_time;   ///< s, how long a gust lasts, > 0
     float gust_size;   ///< m, how far it reaches, > 0
     uint32_t seed;     ///< of the gusts
@@ -341,14 +341,14 @@ typedef struct SingeSolverDef {
     int substeps; ///< per step, 1 to 1000, or 0 for the least with which red springs are as firm as they should be
     int projections;                           ///< of all colours, per substep, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
-    float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; > 0
+    float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; 1e-6 to 1e6
     bool attachments;       ///< keep vertices within their geodesic distance of what is pinned (strand)
     bool early_exit;        ///< stop projecting when the error is below `tolerance` (paper, all-at-once)
     float tolerance;        ///< of the conjugate gradients and the early exit, 1e-12 to 1 (paper, all-at-once)
-    float stiffness;        ///< N/m, of every spring (mass-spring), > 0
+    float stiffness;        ///< N/m, of every spring (mass-spring), 1e-6 to 1e9
     float smoothing;        ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
     float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
-    float height_min;       ///< smallest height of a centre over its corners, in thicknesses; 0 is off
+    float height_min;       ///< smallest height of a centre over its corners, in thicknesses, 0 to 1; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
     bool creases;           ///< bends sharper than the material's crease_radius stay (strand)
     /// sheets tear where the line force in them exceeds the material's `strength` (strand; the others never do); a part
@@ -382,7 +382,7 @@ typedef struct SingeGasDef {
     float cell_size;   ///< m, side of a cell of the grid, >= 0; 0: as the sheets' size asks for
     float height;      ///< m of room above the sheets as they start, > 0
     float conductance; ///< W/(m2 K), of each side of a sheet towards gas that is hotter than it, >= 0
-    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to < 1
+    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to 0.99
     float soot;        ///< kg of smoke per kg burnt, 0 to 1
 } SingeGasDef;
 
@@ -421,10 +421,10 @@ typedef struct SingeSimDef {
     int thread_count;           ///< of the simulation's own pool, 1 to 64
     SingeInstructions instructions; ///< refused where the processor lacks them
     uint64_t seed; ///< of the drawn surface's ragged edges, and for a renderer; noise and wind have their own
-    float time_step;            ///< s, h of the paper, > 0
+    float time_step;            ///< s, h of the paper, 1e-9 to 10
     float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
     float gravity[3];           ///< m/s2
-    float ambient_temperature;  ///< K, > 0
+    float ambient_temperature;  ///< K, 1 to 1e4
     float air_density;          ///< kg/m3, >= 0
     /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     float heat_tolerance;
