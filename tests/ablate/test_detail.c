@@ -341,7 +341,7 @@ static void survives_lack_of_memory(void **unused) {
         failures += result != SINGE_OK;
         if (result) assert_int_equal(surface.vertex_count + surface.triangle_count + surface.vertex_capacity, 0);
         singe_surface_free(&surface);
-        assert_int_equal(allocator.bytes, 0);
+        test_allocator_check(&allocator);
     }
     assert_true(failures > 30);
     drawing_free(d);

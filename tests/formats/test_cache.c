@@ -194,25 +194,25 @@ static void allocation_failure_is_clean(void **state) {
     make_sample(&sample);
     Bytes bytes = written(&sample.surface, 3);
     for (long n = 1;; n++) {
-        Counter counter = {.fail_at = n};
+        TestAllocator counter = {.fail_at = n, .once = true};
         SingeSurface read;
         SingeError error;
-        SingeResult result = ply_read_surface("a.ply", bytes.data, bytes.size, counter_allocator(&counter), &read,
+        SingeResult result = ply_read_surface("a.ply", bytes.data, bytes.size, test_allocator(&counter), &read,
                                               NULL, &error);
         if (result) assert_int_equal(result, SINGE_ERROR_MEMORY);
         singe_surface_free(&read);
-        counter_check(&counter);
+        test_allocator_check(&counter);
         if (result == SINGE_OK) {
             assert_true(n > 14);
             break;
         }
     }
     bytes_free(&bytes);
-    Counter counter = {.fail_at = 1};
+    TestAllocator counter = {.fail_at = 1, .once = true};
     SingeError error;
-    sample.surface.allocator = counter_allocator(&counter);
+    sample.surface.allocator = test_allocator(&counter);
     assert_int_equal(ply_write_surface(path, &sample.surface, 3, &error), SINGE_ERROR_MEMORY);
-    counter_check(&counter);
+    test_allocator_check(&counter);
 }
 
 int main(void) {

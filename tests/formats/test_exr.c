@@ -77,7 +77,7 @@ static void test_read_back(void **state) {
     assert_memory_equal(got_id, id, sizeof id);
 }
 
-static void test_refused(void **state) {
+static void test_bad_layers(void **state) {
     (void)state;
     static float values[COUNT];
     const ExrChannel twice[] = {{"R", EXR_KIND_HALF, values, 1}, {"R", EXR_KIND_HALF, values, 1}};
@@ -96,7 +96,7 @@ static void test_refused(void **state) {
 int main(void) {
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.exr", folder);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_bad_layers)};
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     unlink(path);
     rmdir(folder);

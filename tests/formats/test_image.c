@@ -253,11 +253,11 @@ static void refuses_what_is_no_picture(void **state) {
     assert_message(&error, "neither a PNG nor a JPEG");
     assert_int_equal(read_copy((const uint8_t *)"\xff\xd8\xff", 3, &image, &error), SINGE_ERROR_FORMAT);
     assert_int_equal(read_copy((const uint8_t *)"\x89PNG\r\n\x1a\n", 8, &image, &error), SINGE_ERROR_FORMAT);
-    Counter counter = {0};
+    TestAllocator counter = {0};
     static const uint32_t claims[][2] = {{16384, 16384}, {16385, 1}, {1, 0x7fffffff}, {0, 2}, {100000, 100000}};
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         claim_png(&encoded, claims[i][0], claims[i][1]);
-        assert_int_equal(image_read("a.png", encoded.bytes, encoded.size, counter_allocator(&counter), &image, &error),
+        assert_int_equal(image_read("a.png", encoded.bytes, encoded.size, test_allocator(&counter), &image, &error),
                          SINGE_ERROR_FORMAT);
         assert_true(counter.largest < 100000);
     }
@@ -265,11 +265,11 @@ static void refuses_what_is_no_picture(void **state) {
     encode_jpeg(&encoded, 8, 8, 1, JCS_GRAYSCALE, grey, false);
     for (size_t i = 0; i + 8 < encoded.size; i++)
         if (encoded.bytes[i] == 0xff && encoded.bytes[i + 1] == 0xc0) memset(encoded.bytes + i + 5, 0x3f, 4);
-    assert_int_equal(image_read("a.jpg", encoded.bytes, encoded.size, counter_allocator(&counter), &image, &error),
+    assert_int_equal(image_read("a.jpg", encoded.bytes, encoded.size, test_allocator(&counter), &image, &error),
                      SINGE_ERROR_FORMAT);
     assert_message(&error, "too short for its width");
     assert_true(counter.largest < 100000);
-    counter_check(&counter);
+    test_allocator_check(&counter);
     // damage in the data is found by its checksum
     static const uint8_t rgb[12] = {0};
     encode_png(&encoded, (PngKind){2, 2, 8, PNG_COLOR_TYPE_RGB, 0, 0}, rgb, 6);
@@ -282,18 +282,18 @@ static void luminance_is_exact_at_the_ends(void **state) {
     uint8_t rgb[] = {0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 51, 51};
     Image image = {.width = 3, .height = 2, .rgb = rgb};
     SingePicture picture;
-    Counter counter = {0};
+    TestAllocator counter = {0};
     SingeError error;
-    assert_int_equal(image_luminance(&image, counter_allocator(&counter), &picture, &error), SINGE_OK);
+    assert_int_equal(image_luminance(&image, test_allocator(&counter), &picture, &error), SINGE_OK);
     assert_int_equal(picture.width, 3);
     assert_int_equal(picture.height, 2);
     static const float expected[] = {0, 1, 0.2126f, 0.7152f, 0.0722f, 0.2f};
     for (int i = 0; i < 6; i++) assert_float_equal(picture.values[i], expected[i], 1e-7f);
     assert_true(picture.values[0] == 0 && picture.values[1] == 1);
-    counter_resize(&counter, (void *)picture.values, 6 * sizeof(float), 0);
-    counter_check(&counter);
-    Counter failing = {.fail_at = 1};
-    assert_int_equal(image_luminance(&image, counter_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
+    test_allocator(&counter).resize(&counter, (void *)picture.values, 6 * sizeof(float), 0);
+    test_allocator_check(&counter);
+    TestAllocator failing = {.fail_at = 1, .once = true};
+    assert_int_equal(image_luminance(&image, test_allocator(&failing), &picture, &error), SINGE_ERROR_MEMORY);
 }
 
 static void allocation_failure_is_clean(void **state) {
@@ -304,14 +304,14 @@ static void allocation_failure_is_clean(void **state) {
     encode_jpeg(&encoded[1], 8, 8, 4, JCS_CMYK, ink, false);
     for (int i = 0; i < 2; i++)
         for (long n = 1;; n++) {
-            Counter counter = {.fail_at = n};
+            TestAllocator counter = {.fail_at = n, .once = true};
             Image image;
             SingeError error;
-            SingeResult result = image_read("a", encoded[i].bytes, encoded[i].size, counter_allocator(&counter),
+            SingeResult result = image_read("a", encoded[i].bytes, encoded[i].size, test_allocator(&counter),
                                             &image, &error);
             if (result == SINGE_OK) image_free(&image);
             else assert_int_equal(result, SINGE_ERROR_MEMORY);
-            counter_check(&counter);
+            test_allocator_check(&counter);
             if (result == SINGE_OK) {
                 assert_true(n > 2);
                 break;

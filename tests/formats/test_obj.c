@@ -205,14 +205,14 @@ static void truncated_at_every_byte(void **state) {
 static void allocation_failure_is_clean(void **state) {
     (void)state;
     for (long n = 1;; n++) {
-        Counter counter = {.fail_at = n};
+        TestAllocator counter = {.fail_at = n, .once = true};
         Polygons mesh;
         SingeError error;
-        SingeResult result = obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, counter_allocator(&counter),
+        SingeResult result = obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, test_allocator(&counter),
                                       &mesh, &error);
         if (result == SINGE_OK) polygons_free(&mesh);
         else assert_int_equal(result, SINGE_ERROR_MEMORY);
-        counter_check(&counter);
+        test_allocator_check(&counter);
         if (result == SINGE_OK) {
             assert_true(n > 5);
             break;
@@ -240,11 +240,11 @@ static void grid_is_exact(void **state) {
     assert_int_equal(mesh_grid(1, 1, 0, 1, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_ARGUMENT);
     assert_int_equal(mesh_grid(1, 1, 4294967295u, 4294967295u, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_LIMIT);
     for (long n = 1; n <= 4; n++) {
-        Counter counter = {.fail_at = n};
-        SingeResult result = mesh_grid(1, 1, 3, 3, counter_allocator(&counter), &mesh, &error);
+        TestAllocator counter = {.fail_at = n, .once = true};
+        SingeResult result = mesh_grid(1, 1, 3, 3, test_allocator(&counter), &mesh, &error);
         assert_int_equal(result, n <= 3 ? SINGE_ERROR_MEMORY : SINGE_OK);
         if (!result) mesh_free(&mesh);
-        counter_check(&counter);
+        test_allocator_check(&counter);
     }
 }
 

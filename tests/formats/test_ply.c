@@ -253,14 +253,14 @@ static void large_claims_take_no_memory(void **state) {
         "end_header\n\xff\xff\xff\xff\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01",
     };
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
-        Counter counter = {0};
+        TestAllocator counter = {0};
         Polygons mesh;
         SingeError error;
-        assert_int_equal(ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), counter_allocator(&counter),
+        assert_int_equal(ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), test_allocator(&counter),
                                   &mesh, &error),
                          SINGE_ERROR_FORMAT);
         assert_true(counter.largest < 4096);
-        counter_check(&counter);
+        test_allocator_check(&counter);
     }
 }
 
@@ -300,13 +300,13 @@ static void allocation_failure_is_clean(void **state) {
     (void)state;
     Maker maker = make_binary(false);
     for (long n = 1;; n++) {
-        Counter counter = {.fail_at = n};
+        TestAllocator counter = {.fail_at = n, .once = true};
         Polygons mesh;
         SingeError error;
-        SingeResult result = ply_read("a.ply", maker.bytes, maker.size, counter_allocator(&counter), &mesh, &error);
+        SingeResult result = ply_read("a.ply", maker.bytes, maker.size, test_allocator(&counter), &mesh, &error);
         if (result == SINGE_OK) polygons_free(&mesh);
         else assert_int_equal(result, SINGE_ERROR_MEMORY);
-        counter_check(&counter);
+        test_allocator_check(&counter);
         if (result == SINGE_OK) {
             assert_true(n > 15);
             break;

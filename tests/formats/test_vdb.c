@@ -113,12 +113,12 @@ static void bad_bytes_are_refused(void **state) {
     SingeError error;
     make(12, 9, 20, &gas);
     Bytes bytes = written(&gas, 0.25);
-    Counter counter = {0};
+    TestAllocator counter = {0};
     size_t step = 1;
     for (size_t size = 0; size < bytes.size; size += step, step = size < 3000 ? 1 : 977) {
         uint8_t *cut = malloc(size + 1); // of its own, so that a sanitizer sees what is read behind it
         memcpy(cut, bytes.data, size);
-        SingeResult result = vdb_read_gas("a.vdb", cut, size, counter_allocator(&counter), &read, NULL, &error);
+        SingeResult result = vdb_read_gas("a.vdb", cut, size, test_allocator(&counter), &read, NULL, &error);
         free(cut);
         if (!result) fail_msg("read whole from %zu of %zu bytes", size, bytes.size);
         assert_int_equal(result, SINGE_ERROR_FORMAT);
@@ -129,18 +129,18 @@ static void bad_bytes_are_refused(void **state) {
     uint8_t few = bytes.data[0x39];
     assert_int_equal(few, 3);
     memset(bytes.data + 0x39, 0xff, 4);
-    assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL, &error),
+    assert_int_equal(vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error),
                      SINGE_ERROR_FORMAT);
     assert_message(&error, "metadata");
     memset(bytes.data + 0x39, 0, 4), bytes.data[0x39] = few;
     for (size_t at = 0; at < bytes.size; at += at < 1500 ? 1 : 499) {
         uint8_t before = bytes.data[at];
         bytes.data[at] ^= 0x9d;
-        if (!vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL, &error))
+        if (!vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error))
             gas_free(&read);
         bytes.data[at] = before;
     }
-    counter_check(&counter);
+    test_allocator_check(&counter);
     bytes_free(&bytes), gas_free(&gas);
 }
 
@@ -152,16 +152,16 @@ static void no_memory_is_told(void **state) {
     assert_true(gas_sample_make(&sample, 12, 9, 20));
     Bytes bytes = {0};
     for (long fail_at = 1;; fail_at++) {
-        Counter counter = {.fail_at = fail_at};
-        SingeResult result = gas_copy(&sample.gas, counter_allocator(&counter), &gas, &error);
+        TestAllocator counter = {.fail_at = fail_at, .once = true};
+        SingeResult result = gas_copy(&sample.gas, test_allocator(&counter), &gas, &error);
         if (!result) result = vdb_write_gas(path, &gas, 0, &error);
         if (!result && !bytes.data)
             assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
-        if (!result) result = vdb_read_gas("a.vdb", bytes.data, bytes.size, counter_allocator(&counter), &read, NULL,
+        if (!result) result = vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL,
                                            &error);
         if (!result) gas_free(&read);
         gas_free(&gas);
-        counter_check(&counter);
+        test_allocator_check(&counter);
         if (!result) break;
         assert_int_equal(result, SINGE_ERROR_MEMORY);
         assert_in_range(fail_at, 1, 20);

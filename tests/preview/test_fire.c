@@ -272,7 +272,7 @@ static void test_bad_gas(void **state) {
     }
     assert_in_range(needed, 1, 5);
     preview_destroy(preview);
-    assert_int_equal(allocator.bytes, 0);
+    test_allocator_check(&allocator);
 }
 
 int main(void) {

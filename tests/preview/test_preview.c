@@ -390,8 +390,7 @@ static void test_out_of_memory(void **state) {
             assert_int_equal(preview_draw(preview, &q.surface, 0, rgb, &error), SINGE_OK);
         }
         preview_destroy(preview);
-        assert_int_equal(allocator.bytes, 0);
-        assert_int_equal(allocator.faults, 0);
+        test_allocator_check(&allocator);
     }
     assert_true(succeeded);
 }

@@ -24,6 +24,7 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
         return NULL;
     }
     allocator->calls++;
+    if (new_size > allocator->largest) allocator->largest = new_size;
     if (allocator->fail_at &&
         (allocator->once ? allocator->calls == allocator->fail_at : allocator->calls >= allocator->fail_at))
         return NULL;
@@ -46,3 +47,8 @@ static void *allocator_resize(void *context, void *block, size_t old_size, size_
 }
 
 SingeAllocator test_allocator(TestAllocator *allocator) { return (SingeAllocator){allocator_resize, allocator}; }
+
+void test_allocator_check(const TestAllocator *allocator) {
+    assert_int_equal(allocator->bytes, 0);
+    assert_int_equal(allocator->faults, 0);
+}

@@ -84,9 +84,13 @@ typedef struct TestAllocator {
     bool once;       ///< fail at that call only
     long blocks;     ///< now held
     size_t bytes, peak;
+    size_t largest;  ///< block asked for so far
     long faults;     ///< wrong old sizes, and frees of what is not a block
 } TestAllocator;
 
 SingeAllocator test_allocator(TestAllocator *allocator);
+
+/// Fails the test unless every block came back, with its true size.
+void test_allocator_check(const TestAllocator *allocator);
 
 #endif
