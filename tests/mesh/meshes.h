@@ -1,4 +1,4 @@
-// OBJ texts of meshes, for tests.
+// OBJ texts of meshes, what mesh_make makes of them, and looks at that.
 #ifndef TESTS_MESH_MESHES_H
 #define TESTS_MESH_MESHES_H
 
@@ -72,6 +72,27 @@ static inline Made make(const Text *text) {
     Made made = make_with(text, mesh_default_options());
     if (made.result) fail_msg("%s", made.error.message);
     return made;
+}
+
+static inline uint32_t vertex_at(const Mesh *mesh, float x, float y, float z) {
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * v;
+        if (fabsf(p[0] - x) + fabsf(p[1] - y) + fabsf(p[2] - z) < 1e-6f) return v;
+    }
+    return UINT32_MAX;
+}
+
+/// Every cell is a square of the grid, front upwards.
+static inline void assert_squares(const Mesh *mesh, float side) {
+    for (uint32_t c = 0; c < mesh->cell_count; c++)
+        for (int k = 0; k < 4; k++) {
+            const float *p = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)k];
+            const float *q = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)(k + 1) % 4];
+            const float *r = mesh->positions + 3 * mesh->cells[4 * c + (uint32_t)(k + 2) % 4];
+            float ax = q[0] - p[0], ay = q[1] - p[1], bx = r[0] - q[0], by = r[1] - q[1];
+            assert_float_equal(hypotf(ax, ay), side, 1e-6f);
+            assert_float_equal(ax * by - ay * bx, side * side, 1e-7f);
+        }
 }
 
 #endif

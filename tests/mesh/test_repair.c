@@ -1,0 +1,254 @@
+// What is welded, repaired, shrunk or refused.
+#include "meshes.h"
+
+static Text text;
+
+static void soup_is_welded(void **state) {
+    (void)state;
+    text.size = 0;
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 6; i++) {
+            float x = 0.01f * (float)i, y = 0.01f * (float)j, noise = (i * 7 + j * 3) % 5 * 1e-8f, s = 0.01f;
+            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x + noise, y, x + s, y + noise, x + s,
+                     y + s);
+            text_add(&text, "v %.9g %.9g 0\nv %.9g %.9g 0\nv %.9g %.9g 0\n", x, y, x + s, y + s, x, y + s + noise);
+            text_add(&text, "f -6 -5 -4\nf -3 -2 -1\n");
+        }
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 42);
+    assert_int_equal(made.mesh.cell_count, 30);
+    assert_int_equal(made.report.count[MESH_WELDED], 180 - 42);
+    assert_int_equal(made.report.components, 1);
+    mesh_free(&made.mesh);
+}
+
+// Layers that touch inside stay two; a seam farther apart than the tolerance stays open until that is raised.
+static void weld_keeps_layers_apart(void **state) {
+    (void)state;
+    text.size = 0;
+    for (int layer = 0; layer < 2; layer++)
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++) {
+                bool middle = i == 1 && j == 1;
+                text_add(&text, "v %d %d %g\n", i, j, layer && !middle ? 0.3 : 0);
+            }
+    for (int layer = 0; layer < 2; layer++)
+        for (int c = 0; c < 4; c++) {
+            int a = 9 * layer + c / 2 * 3 + c % 2 + 1;
+            text_add(&text, "f %d %d %d %d\n", a, a + 1, a + 4, a + 3);
+        }
+    Made made = make(&text);
+    assert_int_equal(made.mesh.vertex_count, 18);
+    assert_int_equal(made.report.components, 2);
+    mesh_free(&made.mesh);
+    text.size = 0;
+    text_add(&text,
+             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.001 0 0\nv 2 0 0\nv 2 1 0\nv 1.001 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
+    made = make(&text);
+    assert_int_equal(made.report.components, 2);
+    mesh_free(&made.mesh);
+    MeshOptions options = mesh_default_options();
+    options.weld = 0.002f;
+    made = make_with(&text, options);
+    assert_int_equal(made.report.components, 1);
+    assert_int_equal(made.mesh.vertex_count, 6);
+    mesh_free(&made.mesh);
+}
+
+static void t_junctions_are_closed(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 .5 0\nv 2 0 0\nv 2 .5 0\nv 2 1 0\n"
+                    "f 1 2 3 4\nf 2 6 7 5\nf 5 7 8 3\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_JUNCTION], 1);
+    assert_int_equal(made.report.first[MESH_JUNCTION], 9);
+    assert_int_equal(made.report.components, 1);
+    // a vertex that lies on a side but belongs to what hangs on a point there is no junction
+    mesh_free(&made.mesh);
+}
+
+static void faults_are_repaired_and_said(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 3, 3); // lines 1 to 16
+    text_add(&text, "v 9 9 9\n");
+    text_cells(&text, 3, 3, WHOLE);                  // lines 18 to 26
+    text_add(&text, "f 1 5 6 2\nf 1 2 3\nf 4 4 8\n"); // there already, the other way round; flat; two corners
+    Made made = make(&text);
+    assert_int_equal(made.mesh.cell_count, 9);
+    assert_int_equal(made.mesh.vertex_count, 16);
+    assert_int_equal(made.report.count[MESH_UNUSED], 1);
+    assert_int_equal(made.report.first[MESH_UNUSED], 16);
+    assert_int_equal(made.report.count[MESH_DUPLICATE], 1);
+    assert_int_equal(made.report.first[MESH_DUPLICATE], 27);
+    assert_int_equal(made.report.count[MESH_DEGENERATE], 2);
+    char line[200];
+    bool said = false;
+    for (int i = 0; mesh_report_line(&made.report, i, line, sizeof line); i++)
+        said = said || strstr(line, "2 faces without area left out (line 28)");
+    assert_true(said);
+    mesh_free(&made.mesh);
+}
+
+static void faces_are_turned_one_way(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 3, 1);
+    text_add(&text, "f 1 2 6 5\nf 2 6 7 3\nf 3 4 8 7\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_TURNED], 1);
+    assert_int_equal(made.report.first[MESH_TURNED], 10);
+    assert_squares(&made.mesh, 0.01f);
+    mesh_free(&made.mesh);
+}
+
+static void add_cube(float x, bool inside_out, int base) {
+    static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
+    for (int i = 0; i < 8; i++)
+        text_add(&text, "v %g %d %d\n", (double)x + ((i & 3) == 1 || (i & 3) == 2), (i & 3) >= 2, i >= 4);
+    for (int f = 0; f < 6; f++) {
+        text_add(&text, "f");
+        for (int k = 0; k < 4; k++) text_add(&text, " %d", base + faces[f][inside_out ? 3 - k : k]);
+        text_add(&text, "\n");
+    }
+}
+
+static double volume(const Mesh *mesh) {
+    double sum = 0;
+    for (uint32_t c = 0; c < mesh->cell_count; c++)
+        for (uint32_t k = 1; k < 3; k++) {
+            const float *a = mesh->positions + 3 * mesh->cells[4 * c];
+            const float *b = mesh->positions + 3 * mesh->cells[4 * c + k];
+            const float *d = mesh->positions + 3 * mesh->cells[4 * c + k + 1];
+            sum += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) +
+                    a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+        }
+    return sum;
+}
+
+static void closed_surfaces_have_their_front_outside(void **state) {
+    (void)state;
+    for (int inside_out = 0; inside_out < 2; inside_out++) {
+        text.size = 0;
+        add_cube(0, inside_out, 0);
+        Made made = make(&text);
+        assert_int_equal(made.report.count[MESH_INSIDE_OUT], inside_out);
+        assert_float_equal(volume(&made.mesh), 1, 1e-6);
+        mesh_free(&made.mesh);
+    }
+}
+
+// Two cubes that share an edge come apart; so does a fin from the sheet that it stands on, which stays whole.
+static void edges_of_many_faces_are_cut(void **state) {
+    (void)state;
+    text.size = 0;
+    add_cube(0, false, 0);
+    for (int i = 0; i < 8; i++)
+        text_add(&text, "v %d %d %d\n", 1 + ((i & 3) == 1 || (i & 3) == 2), 1 + ((i & 3) >= 2), i >= 4);
+    static const int faces[6][4] = {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}};
+    for (int f = 0; f < 6; f++) { // corners 1 and 5 of the second are 3 and 7 of the first
+        text_add(&text, "f");
+        for (int k = 0; k < 4; k++) {
+            int v = faces[f][k];
+            text_add(&text, " %d", v == 1 ? 3 : v == 5 ? 7 : 8 + v);
+        }
+        text_add(&text, "\n");
+    }
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_CUT], 1);
+    assert_int_equal(made.report.components, 2);
+    assert_int_equal(made.mesh.vertex_count, 16);
+    mesh_free(&made.mesh);
+    text.size = 0;
+    text_grid(&text, 2, 2);
+    text_add(&text, "v .01 0 .01\nv .01 .01 .01\nv .01 .02 .01\n");
+    text_cells(&text, 2, 2, WHOLE);
+    text_add(&text, "f 2 5 11 10\nf 5 8 12 11\n");
+    made = make(&text);
+    assert_int_equal(made.report.count[MESH_CUT], 2);
+    assert_int_equal(made.report.components, 2);
+    assert_int_equal(made.mesh.vertex_count, 12 + 3);
+    int copies = 0;
+    for (uint32_t v = 0; v < made.mesh.vertex_count; v++) copies += made.mesh.source[v] == 4;
+    assert_int_equal(copies, 2); // both are the file's vertex
+    for (uint32_t v = 9; v < 15; v++) // and the fin does not begin on the sheet
+        assert_true(made.mesh.positions[3 * v + 2] > 1e-4f && made.mesh.positions[3 * v + 2] < 0.02f);
+    mesh_free(&made.mesh);
+}
+
+static void bow_ties_are_parted(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3 4\nf 3 5 6 7\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_BOW_TIE], 1);
+    assert_int_equal(made.mesh.vertex_count, 8);
+    assert_int_equal(made.mesh.source[7], 2);
+    mesh_free(&made.mesh);
+}
+
+static void what_cannot_be_repaired_is_refused(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
+                    "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
+    Made made = make_with(&text, mesh_default_options());
+    assert_int_equal(made.result, SINGE_ERROR_MESH);
+    assert_non_null(strstr(made.error.message, "a.obj:"));
+    assert_non_null(strstr(made.error.message, "Moebius"));
+    assert_null(made.mesh.positions);
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    made = make_with(&text, mesh_default_options());
+    assert_int_equal(made.result, SINGE_ERROR_MESH);
+    assert_non_null(strstr(made.error.message, "no face has an area"));
+}
+
+// Sides below a fiftieth of the median go: a tiny face with its point, a column too narrow, whose border stays.
+static void short_sides_shrink(void **state) {
+    (void)state;
+    text.size = 0;
+    text_grid(&text, 4, 4);
+    text_cells(&text, 4, 4, REGULAR);
+    text_add(&text, "v .02 .05 0\nv .020001 .05 0\nv .02 .050001 0\nf -3 -2 -1\n");
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_SHRUNK], 2);
+    assert_int_equal(made.mesh.cell_count, 16);
+    mesh_free(&made.mesh);
+    text.size = 0;
+    const double x[] = {0, 0.01, 0.02, 0.02001, 0.03, 0.03999, 0.04};
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 7; i++)
+            text_add(&text, "v %.6g %.6g 0\nvt %.6g %.6g\n", x[i], 0.01 * j, 10 * x[i], 0.1 * j);
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 6; i++) {
+            int a = 7 * j + i + 1, c = a + 8;
+            text_add(&text, "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a, a + 1, a + 1, c, c, a, a, c, c, a + 7,
+                     a + 7);
+        }
+    made = make(&text);
+    assert_int_equal(made.report.count[MESH_SHRUNK], 10);
+    assert_int_equal(made.mesh.cell_count, 16);
+    assert_int_equal(made.mesh.vertex_count, 25);
+    assert_int_equal(made.report.seam_vertices, 0);
+    assert_int_not_equal(vertex_at(&made.mesh, 0.04f, 0.02f, 0), UINT32_MAX);
+    assert_int_equal(vertex_at(&made.mesh, 0.03999f, 0.02f, 0), UINT32_MAX);
+    mesh_free(&made.mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(soup_is_welded),
+        cmocka_unit_test(weld_keeps_layers_apart),
+        cmocka_unit_test(t_junctions_are_closed),
+        cmocka_unit_test(faults_are_repaired_and_said),
+        cmocka_unit_test(faces_are_turned_one_way),
+        cmocka_unit_test(closed_surfaces_have_their_front_outside),
+        cmocka_unit_test(edges_of_many_faces_are_cut),
+        cmocka_unit_test(bow_ties_are_parted),
+        cmocka_unit_test(what_cannot_be_repaired_is_refused),
+        cmocka_unit_test(short_sides_shrink),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
