@@ -99,19 +99,24 @@ float touch_cells_apart(const TouchCell *a, const TouchCell *b) {
 typedef struct Search {
     TouchNear *near;
     int count;
-    float square, far; ///< of the nearest; that are looked for
+    float far;            ///< m, that is looked
+    Quad square;          ///< least so far of each of the four
+    Quad listed, beside;  ///< squares of what a TouchFar tells; beside is -1 for edges
 } Search;
 
 /// Notes those of four that are near enough; `meet` are those that count.
 static void note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
-    meet &= quad_bits(four->square < search->far * search->far);
+    const QuadMask bits = {1, 2, 4, 8};
+    QuadMask counts = (bits & (int32_t)meet) != 0;
+    search->square = quad_select(counts, quad_min(four->square, search->square), search->square);
+    meet &= quad_bits((four->square <= search->listed) &
+                      (four->faces | (four->square <= (kind == TOUCH_EDGES ? quad_all(-1) : search->beside))));
     for (; meet; meet &= meet - 1) {
         int k = __builtin_ctz(meet);
-        search->square = four->square[k] < search->square ? four->square[k] : search->square;
         search->near[search->count++] = (TouchNear){
             .apart = sign * (Quad){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
             .distance = sqrtf(four->square[k]), .u = four->u[k], .v = four->v[k], .kind = (uint8_t)kind,
-            .first = (uint8_t)first, .second = (uint8_t)(second + k), .faces = four->faces[k] != 0};
+            .first = (uint8_t)first, .second = (uint8_t)(second + k)};
     }
 }
 
@@ -149,17 +154,18 @@ static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, c
     }
 }
 
-int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, bool edges,
+int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, const TouchFar *far,
                    TouchNear *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
     touch_same(p, q, of_b);
     touch_same(q, p, of_a);
-    Search search = {.near = near, .square = far * far, .far = far};
+    Search search = {.near = near, .far = far->measured, .square = quad_all(far->measured * far->measured),
+                     .listed = quad_all(far->listed * far->listed), .beside = quad_all(far->beside * far->beside)};
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, TOUCH_NODE_OF_A);
     find_nodes(&search, b, a, of_a, TOUCH_NODE_OF_B);
-    if (edges) find_edges(&search, a, b, of_b);
-    *nearest = sqrtf(search.square);
+    if (far->edges) find_edges(&search, a, b, of_b);
+    *nearest = sqrtf(quad_least(search.square));
     return search.count;
 }

@@ -19,7 +19,6 @@ typedef struct TouchNear {
     float distance;     ///< m
     float u, v;         ///< weights of the triangle's second and third node, or shares of the edges of a and b
     uint8_t kind, first, second; ///< as in a TouchPair
-    bool faces;         ///< a node over the triangle, not beside it; edges that cross each other, not near their ends
 } TouchNear;
 
 /// Room for all of two cells.
@@ -31,9 +30,17 @@ void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, 
 /// How far apart two cells are at least, by the slabs that they lie in; negative where slabs do not tell.
 float touch_cells_apart(const TouchCell *a, const TouchCell *b);
 
-/// Finds nodes and triangles, and edges if they count, that share no node and are nearer than `far`; each is counted by
-/// the cell that owns it. *nearest is their least distance, or `far`.
-int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, float far, bool edges,
+/// How far features are looked for.
+typedef struct TouchFar {
+    float measured; ///< m, to tell the least distance
+    float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other
+    float beside;   ///< m, at most as far: of a node beside a triangle
+    bool edges;     ///< they count
+} TouchFar;
+
+/// Lists nodes and triangles, and edges, that share no node and are near; each is counted by the cell that owns it.
+/// *nearest is the least distance of all, or far->measured. Returns how many are listed, TOUCH_NEAR at most.
+int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, const TouchFar *far,
                    TouchNear *near, float *nearest);
 
 #endif

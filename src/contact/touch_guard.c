@@ -54,8 +54,8 @@ static void measure_cell(const Guard *guard, uint32_t c) {
     }
     FourVectors astray = four_of(stray);
     touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-    plan->way[c] = touch_way(plan, corner, x);
-    plan->normal[c] = touch_normals(node);
+    plan->motion[c].way = touch_way(plan, corner, x);
+    plan->motion[c].normal = touch_normals(node);
     plan->strayed[c] = quad_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
 }
 
@@ -238,11 +238,11 @@ static void sweep_pair(const Guard *guard, TouchPair *pair) {
 /// Cells that hang together, by their normals: touch_near.c has the proof.
 static bool normals_part(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
-    Quad a = plan->normal[pair->a], b = plan->normal[pair->b];
+    Quad a = plan->motion[pair->a].normal, b = plan->motion[pair->b].normal;
     if (pair->a == pair->b) return touch_is_open(a);
     if (pair->bridge == SHELL_NONE || !is_alive(guard, pair->bridge)) return false;
     if (pair->bridge == pair->a) return touch_is_within(a, b, TOUCH_CONE_SIDE);
-    Quad between = plan->normal[pair->bridge];
+    Quad between = plan->motion[pair->bridge].normal;
     return touch_is_within(a, between, TOUCH_CONE_CORNER) && touch_is_within(b, between, TOUCH_CONE_CORNER);
 }
 
@@ -269,7 +269,7 @@ static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
     const TouchPlan *plan = guard->plan;
     // so far apart that the sweep, which stops a little before the gap, would not stop either
     if (pair->distance > 2 * plan->gap &&
-        touch_differ(plan->way[pair->a], plan->way[pair->b]) + plan->noise < 0.9f * (pair->distance - plan->gap))
+        touch_differ(plan->motion[pair->a].way, plan->motion[pair->b].way) + plan->noise < 0.9f * (pair->distance - plan->gap))
         return true;
     return normals_part(guard, pair) || plane_parts(guard, pair);
 }

@@ -21,21 +21,33 @@ typedef struct Opening {
     const Shell *shell;
     const DynamicsState *dynamics;
     const uint8_t *cell_flags;
+    bool searched; ///< just now
 } Opening;
 
 // ---- how cells move
 
-static void way_range(void *task, int begin, int end) {
+/// Whether a cell is as the last step's guard has left, and measured, it.
+static bool is_as_left(const TouchPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
+    QuadMask moved = {0};
+    for (int i = 0; i < 4; i++) moved |= quad_load(x[corner[i]]) != quad_load(plan->end[corner[i]]);
+    return !(quad_bits(moved) & 7); // the fourths are inverse masses
+}
+
+static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
+    TouchPlan *plan = job->plan;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
+        TouchMotion *motion = &plan->motion[c];
         Quad speed[4], node[5];
         for (int i = 0; i < 4; i++) speed[i] = quad_load(job->dynamics->velocity[corner[i]]);
+        motion->velocity = touch_mean(speed);
+        bool known = plan->closed && is_as_left(plan, corner, x);
+        if (!known || job->searched) motion->way = touch_way(plan, corner, x);
+        if (known) continue;
         touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-        job->plan->way[c] = touch_way(job->plan, corner, x);
-        job->plan->velocity[c] = touch_mean(speed);
-        job->plan->normal[c] = touch_normals(node);
+        motion->normal = touch_normals(node);
     }
 }
 
@@ -131,10 +143,7 @@ static bool near_at_rest(const Opening *job, const TouchPair *pair, const TouchN
 static float target(const Opening *job, const TouchPair *pair, const Look *look, const TouchNear *near) {
     const TouchPlan *plan = job->plan;
     float thickness = least(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
-    if (near->kind == TOUCH_EDGES && !near->faces) return 0;
-    // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
-    if (!near->faces && distance > thickness) return 0;
-    if (!(distance > 0) || distance > look->due) return 0;
+    if (!(distance > 0)) return 0;
     float toward = -quad_dot(point_speed(look, near), near->apart) / distance;
     if (distance > due(plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
@@ -163,13 +172,14 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     float apart = touch_cells_apart(&look.a, &look.b) - plan->noise;
     pair->distance = apart > pair->distance ? apart : pair->distance;
     if (pair->distance > look.due) return;
-    // looking a little farther, not every step has to look again
+    // measuring a little farther, not every step has to look again; beside a triangle a node may be over the next one:
+    // a normal that stays would make a ridge of the edge between
+    TouchFar far = {look.due + 0.25f * plan->thickness, look.due, least(plan->thin[pair->a], plan->thin[pair->b]),
+                    apart < TOUCH_PARTED * plan->thickness};
     TouchNear near[TOUCH_NEAR];
     float nearest;
-    bool edges = apart < TOUCH_PARTED * plan->thickness;
-    int count = touch_features(job->shell, pair, &look.a, &look.b, look.due + 0.25f * plan->thickness, edges, near,
-                               &nearest);
-    if (edges) pair->distance = nearest > pair->distance ? nearest : pair->distance;
+    int count = touch_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
+    if (far.edges) pair->distance = nearest > pair->distance ? nearest : pair->distance;
     if (count == 0) return;
     place_speeds(job, pair->a, look.speed_a);
     place_speeds(job, pair->b, look.speed_b);
@@ -185,14 +195,15 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
 static void look_at_pair(const Opening *job, uint32_t k, TouchWriter *writer) {
     const TouchPlan *plan = job->plan;
     TouchPair *pair = &plan->pairs[k];
+    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
     if (pair->a == pair->b) return;
-    if (pair->bridge != SHELL_NONE && touch_is_within(plan->normal[pair->a], plan->normal[pair->b], TOUCH_CONE)) {
+    if (pair->bridge != SHELL_NONE && touch_is_within(a->normal, b->normal, TOUCH_CONE)) {
         pair->distance = 0;
         return;
     }
-    float due_distance = due(plan, touch_differ(plan->velocity[pair->a], plan->velocity[pair->b]));
+    float due_distance = due(plan, touch_differ(a->velocity, b->velocity));
     if (pair->distance > 0) {
-        float left = pair->distance - touch_differ(plan->way[pair->a], plan->way[pair->b]) - plan->noise;
+        float left = pair->distance - touch_differ(a->way, b->way) - plan->noise;
         pair->distance = left > 0 ? left : 0;
         if (left > due_distance) return;
     }
@@ -250,16 +261,16 @@ static void open_pushes(Opening *job, Pool *pool) {
 
 void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics) {
     double start = clock_seconds();
-    plan->closed = false;
-    Opening job = {plan, shell, dynamics, state->ablate.cell_flags};
     bool search = !plan->searched || plan->restless || state->step < plan->step ||
                   state->step - plan->step >= plan->steps;
+    Opening job = {plan, shell, dynamics, state->ablate.cell_flags, search};
     if (search) {
         note_search(plan, state, dynamics);
         touch_search(plan, shell, pool);
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
-    pool_for(pool, (int)plan->cell_count, 512, way_range, &job);
+    pool_for(pool, (int)plan->cell_count, 512, measure_range, &job);
+    plan->closed = false;
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     open_pushes(&job, pool);
     plan->counters.pairs += plan->listed_count;
@@ -271,6 +282,7 @@ void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *p
 void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
     const float(*x)[4] = (const float(*)[4])state->dynamics.position;
     float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
+    TouchFar far = {bulges, bulges, bulges, true};
     TouchNear found[TOUCH_NEAR];
     TouchCell p, q;
     for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
@@ -284,7 +296,7 @@ void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *sta
         if (pair->bridge != SHELL_NONE && touch_is_within(touch_normals(p.node), touch_normals(q.node), TOUCH_CONE))
             continue;
         float nearest;
-        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, bulges, true, found, &nearest))
+        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, &far, found, &nearest))
             continue;
         for (int i = 0; i < 4; i++) near[a[i]] = near[b[i]] = 1;
     }

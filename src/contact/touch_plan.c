@@ -37,7 +37,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 36 };
+enum { ARRAYS = 34 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
@@ -48,8 +48,8 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
         ARRAY(boxes, cells), ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(owned, cells), ARRAY(owner, vertices),
         ARRAY(entries, plan->entry_capacity), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
-        ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(way, cells), ARRAY(velocity, cells),
-        ARRAY(normal, cells), ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
+        ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(motion, cells),
+        ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
         ARRAY(stopped, vertices), ARRAY(changed, cells), ARRAY(changed_list, cells),
         ARRAY(active, plan->pair_capacity), ARRAY(around_first, cells + 2),
         ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(strayed, cells), ARRAY(stray, cells),
@@ -135,6 +135,7 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return;
     plan->counters.tangled = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;
+    plan->closed = false;
     uint32_t restless = plan->restless;
     touch_search(plan, shell, NULL);
     plan->restless = restless;
@@ -143,6 +144,6 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
 }
 
 // a search from a later step than the present one counts as none
-void touch_plan_forget(TouchPlan *plan) { plan->step = UINT64_MAX; }
+void touch_plan_forget(TouchPlan *plan) { plan->step = UINT64_MAX, plan->closed = false; }
 
 TouchCounters touch_counters(const TouchPlan *plan) { return plan->counters; }

@@ -79,6 +79,13 @@ typedef struct TouchChain {
     uint32_t next;       ///< of the same bucket, or SHELL_NONE
 } TouchChain;
 
+/// How a cell moves, by its corners.
+typedef struct TouchMotion {
+    Quad way;      ///< m, mean of the corners' since plan->start; fourth: the largest deviation
+    Quad velocity; ///< m/s as the step opened, the same
+    Quad normal;   ///< of touch_normals
+} TouchMotion;
+
 struct TouchPlan {
     SingeContactDef def;
     uint32_t cell_count, vertex_count;
@@ -125,9 +132,7 @@ struct TouchPlan {
     bool closed;
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
-    Quad *way;               ///< [cells] m, mean of the corners' since plan->start; fourth: the largest deviation
-    Quad *velocity;          ///< [cells] m/s as the step opened, the same of the corners
-    Quad *normal;            ///< [cells] of touch_normals
+    TouchMotion *motion;     ///< [cells]
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
     float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
     Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass

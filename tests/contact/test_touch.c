@@ -333,7 +333,8 @@ static void features_are_measured(void **unused) {
         touch_cell_place(plan, &s->shell, pair->b, x, origin, &b);
         float nearest, least = cell_distance(s, pair->a, pair->b, true);
         assert_true(touch_cells_apart(&a, &b) <= least + 1e-6f);
-        int count = touch_features(&s->shell, pair, &a, &b, plan->reach, true, near, &nearest);
+        TouchFar far = {plan->reach, plan->reach, plan->reach, true};
+        int count = touch_features(&s->shell, pair, &a, &b, &far, near, &nearest);
         assert_true(fabsf(nearest - fminf(least, plan->reach)) < 1e-6f);
         for (int i = 0; i < count; i++) {
             const TouchNear *n = &near[i];
