@@ -27,11 +27,12 @@ static inline uint32_t touch_key(Cube cube) {
 }
 enum { TOUCH_KEY = (1 << 29) - 1 };
 
+/// Cubes in a row along x have buckets in a row: what is near each other lies together.
 static inline uint32_t touch_bucket(const TouchPlan *plan, uint32_t key) {
-    uint32_t h = key;
+    uint32_t h = key >> 10;
     h = (h ^ h >> 16) * 0x7feb352du;
     h = (h ^ h >> 15) * 0x846ca68bu;
-    return (h ^ h >> 16) & (plan->bucket_count - 1);
+    return ((h ^ h >> 16) + (key & 1023)) & (plan->bucket_count - 1);
 }
 
 static inline bool quads_meet(Quad low_a, Quad high_a, Quad low_b, Quad high_b) {

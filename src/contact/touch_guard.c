@@ -24,7 +24,7 @@
 
 #include <string.h>
 
-enum { IMPACT_ROUNDS = 64, ZONE_PATIENCE = 4, ZONE_ROUNDS = 128 };
+enum { IMPACT_ROUNDS = 64, IMPACT_PART = 3, ZONE_PATIENCE = 4, ZONE_ROUNDS = 128 };
 
 /// The part of all cells that may be outside their boxes before all are searched again; and that from which on the next
 /// step begins with a search.
@@ -54,8 +54,8 @@ static void measure_cell(const Guard *guard, uint32_t c) {
     }
     FourVectors astray = four_of(stray);
     touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-    plan->motion[c].way = touch_way(plan, corner, x);
-    plan->motion[c].normal = touch_normals(node);
+    plan->motion[c][TOUCH_WAY] = touch_way(plan, corner, x);
+    plan->motion[c][TOUCH_NORMAL] = touch_normals(node);
     plan->strayed[c] = quad_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
 }
 
@@ -235,18 +235,30 @@ static void sweep_pair(const Guard *guard, TouchPair *pair) {
     sweep_all_edges(guard, pair, &p, &q, of_b);
 }
 
-/// Cells that hang together, by their normals: touch_near.c has the proof.
-static bool normals_part(const Guard *guard, const TouchPair *pair) {
+/// Of four pairs, those that are free by how far apart they are, or, as they hang together, by their normals, of which
+/// touch_near.c has the proof: bits.
+static unsigned four_are_free(const Guard *guard, const uint32_t number[4]) {
     const TouchPlan *plan = guard->plan;
-    Quad a = plan->motion[pair->a].normal, b = plan->motion[pair->b].normal;
-    if (pair->a == pair->b) return touch_is_open(a);
-    if (pair->bridge == SHELL_NONE || !is_alive(guard, pair->bridge)) return false;
-    if (pair->bridge == pair->a) return touch_is_within(a, b, TOUCH_CONE_SIDE);
-    Quad between = plan->motion[pair->bridge].normal;
-    return touch_is_within(a, between, TOUCH_CONE_CORNER) && touch_is_within(b, between, TOUCH_CONE_CORNER);
+    TouchFourPairs four = touch_four_pairs(plan, number);
+    // so far apart that the sweep, which stops a little before the gap, would not stop either
+    QuadMask apart = (four.distance > 2 * plan->gap) &
+                     (touch_four_differ(&four, TOUCH_WAY) + plan->noise < 0.9f * (four.distance - plan->gap));
+    unsigned free = quad_bits(apart), bridged = four.bridged & ~free;
+    if (!bridged) return free;
+    QuadMask sides = touch_four_within(&four, four.a, four.b, TOUCH_CONE_SIDE);
+    QuadMask corners = touch_four_within(&four, four.a, four.bridge, TOUCH_CONE_CORNER) &
+                       touch_four_within(&four, four.b, four.bridge, TOUCH_CONE_CORNER);
+    for (unsigned i = 0; i < 4; i++) {
+        if (!(bridged >> i & 1) || !is_alive(guard, four.bridge[i])) continue;
+        bool part = four.a[i] == four.b[i]        ? touch_is_open(plan->motion[four.a[i]][TOUCH_NORMAL])
+                    : four.bridge[i] == four.a[i] ? sides[i] != 0
+                                                  : corners[i] != 0;
+        free |= (unsigned)part << i;
+    }
+    return free;
 }
 
-/// The same by a plane that parts them at both ends of the step, and has not been turned over: then they have not
+/// Cells that hang together, by a plane that parts them at both ends of the step, and has not been turned over: then they have not
 /// passed through each other about what they share.
 static bool plane_parts(const Guard *guard, const TouchPair *pair) {
     const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
@@ -265,34 +277,44 @@ static bool plane_parts(const Guard *guard, const TouchPair *pair) {
     return quad_dot(normal[0], normal[1]) > 0;
 }
 
-static bool pair_is_free(const Guard *guard, const TouchPair *pair) {
-    const TouchPlan *plan = guard->plan;
-    // so far apart that the sweep, which stops a little before the gap, would not stop either
-    if (pair->distance > 2 * plan->gap &&
-        touch_differ(plan->motion[pair->a].way, plan->motion[pair->b].way) + plan->noise < 0.9f * (pair->distance - plan->gap))
-        return true;
-    return normals_part(guard, pair) || plane_parts(guard, pair);
-}
-
 /// Returns whether a pair meets.
 static bool look_at_pair(const Guard *guard, TouchPair *pair) {
-    if (pair->hit < 2) pair->hit = 2;
     if (!(is_alive(guard, pair->a) && is_alive(guard, pair->b)) || touch_is_tangled(guard->plan, pair)) return false;
-    if (!pair_is_free(guard, pair)) sweep_pair(guard, pair);
+    if (!plane_parts(guard, pair)) sweep_pair(guard, pair);
     return pair->hit < 2;
 }
 
-static double sweep_range(void *task, int begin, int end) {
-    const Guard *guard = task;
-    double hits = 0;
-    for (int k = begin; k < end; k++) hits += look_at_pair(guard, &guard->plan->pairs[guard->first + (uint32_t)k]);
+/// Looks at the pairs whose numbers are given, four at a time. Returns how many meet.
+static uint32_t look_at_four(const Guard *guard, const uint32_t number[4], uint32_t count) {
+    TouchPlan *plan = guard->plan;
+    uint32_t hits = 0;
+    for (uint32_t i = 0; i < count; i++) plan->pairs[number[i]].hit = 2;
+    for (unsigned look = ((1u << count) - 1) & ~four_are_free(guard, number); look; look &= look - 1)
+        hits += look_at_pair(guard, &plan->pairs[number[__builtin_ctz(look)]]);
     return hits;
 }
 
+/// Pairs from guard->first on.
+static double sweep_range(void *task, int begin, int end) {
+    const Guard *guard = task;
+    double hits = 0;
+    for (int k = begin; k < end; k += 4) {
+        uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
+        for (uint32_t i = 0; i < 4; i++) number[i] = guard->first + (uint32_t)k + (i < count ? i : 0);
+        hits += look_at_four(guard, number, count);
+    }
+    return hits;
+}
+
+/// Pairs of plan->active.
 static double sweep_active(void *task, int begin, int end) {
     const Guard *guard = task;
     double hits = 0;
-    for (int k = begin; k < end; k++) hits += look_at_pair(guard, &guard->plan->pairs[guard->plan->active[k]]);
+    for (int k = begin; k < end; k += 4) {
+        uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;
+        for (uint32_t i = 0; i < 4; i++) number[i] = guard->plan->active[(uint32_t)k + (i < count ? i : 0)];
+        hits += look_at_four(guard, number, count);
+    }
     return hits;
 }
 
@@ -365,7 +387,8 @@ static Quad impact_slip(const Guard *guard, const TouchPair *pair, const float w
     return sum;
 }
 
-/// An impact without bounce, and with friction: the points part at the end as far as when they met.
+/// An impact without bounce, and with friction: the points part at the end as far as when they met, and a little
+/// farther, so that what others push back does not meet again at once: else the rounds are eight times as many.
 static void impact(const Guard *guard, const TouchPair *pair) {
     Swept p, q;
     float wa[4] = {0}, wb[4] = {0};
@@ -377,7 +400,7 @@ static void impact(const Guard *guard, const TouchPair *pair) {
     Quad end = impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->dynamics->position);
     Quad slip = end - impact_slip(guard, pair, wa, wb, (const float(*)[4])guard->plan->start);
     // where impacts before this one have changed the ways, these are farther apart by now than where they met
-    float push = fminf(distance, 2 * guard->plan->gap) + guard->plan->gap - quad_dot(end, normal);
+    float push = fminf(distance, 2 * guard->plan->gap) + IMPACT_PART * guard->plan->gap - quad_dot(end, normal);
     if (push <= 0) return;
     slip -= quad_dot(slip, normal) * normal;
     float length = sqrtf(quad_dot(slip, slip)), most = guard->plan->def.friction * push;

@@ -39,15 +39,15 @@ static void measure_range(void *task, int begin, int end) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
-        TouchMotion *motion = &plan->motion[c];
+        Quad *motion = plan->motion[c];
         Quad speed[4], node[5];
         for (int i = 0; i < 4; i++) speed[i] = quad_load(job->dynamics->velocity[corner[i]]);
-        motion->velocity = touch_mean(speed);
+        motion[TOUCH_VELOCITY] = touch_mean(speed);
         bool known = plan->closed && is_as_left(plan, corner, x);
-        if (!known || job->searched) motion->way = touch_way(plan, corner, x);
+        if (!known || job->searched) motion[TOUCH_WAY] = touch_way(plan, corner, x);
         if (known) continue;
         touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-        motion->normal = touch_normals(node);
+        motion[TOUCH_NORMAL] = touch_normals(node);
     }
 }
 
@@ -78,9 +78,9 @@ typedef struct Look {
 
 static inline float least(float a, float b) { return a < b ? a : b; }
 
-/// Distance at which features that near each other by `approach` m/s may touch.
-static inline float due(const TouchPlan *plan, float approach) {
-    return 1.25f * plan->thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
+/// Distance at which features of two cells that near each other by `approach` m/s may touch.
+static inline float due(float thickness, const TouchPlan *plan, float approach) {
+    return 1.25f * thickness + 1.5f * plan->time_step * (approach > 0 ? approach : 0);
 }
 
 static Quad point_speed(const Look *look, const TouchNear *near) {
@@ -145,10 +145,10 @@ static float target(const Opening *job, const TouchPair *pair, const Look *look,
     float thickness = least(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (!(distance > 0)) return 0;
     float toward = -quad_dot(point_speed(look, near), near->apart) / distance;
-    if (distance > due(plan, toward)) return 0;
+    if (distance > due(plan->thickness, plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
         thickness = least(thickness, 4 * plan->gap);
-        if (distance > 1.25f * thickness + 1.5f * plan->time_step * (toward > 0 ? toward : 0)) return 0;
+        if (distance > due(thickness, plan, toward)) return 0;
     }
     float parted = distance + TOUCH_PART * plan->time_step;
     return parted < thickness ? parted : thickness;
@@ -192,23 +192,25 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     }
 }
 
-static void look_at_pair(const Opening *job, uint32_t k, TouchWriter *writer) {
-    const TouchPlan *plan = job->plan;
-    TouchPair *pair = &plan->pairs[k];
-    const TouchMotion *a = &plan->motion[pair->a], *b = &plan->motion[pair->b];
-    if (pair->a == pair->b) return;
-    if (pair->bridge != SHELL_NONE && touch_is_within(a->normal, b->normal, TOUCH_CONE)) {
-        pair->distance = 0;
-        return;
+/// Looks at four pairs, from `first` on, of which `count` are left.
+static void look_at_four(const Opening *job, uint32_t first, uint32_t count, TouchWriter *writer) {
+    TouchPlan *plan = job->plan;
+    uint32_t number[4];
+    for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
+    TouchFourPairs four = touch_four_pairs(plan, number);
+    unsigned joined = four.bridged;
+    if (joined) joined &= quad_bits(touch_four_within(&four, four.a, four.b, TOUCH_CONE));
+    Quad due = 1.25f * plan->thickness + 1.5f * plan->time_step * touch_four_differ(&four, TOUCH_VELOCITY);
+    Quad left = quad_max(four.distance - touch_four_differ(&four, TOUCH_WAY) - plan->noise, quad_all(0));
+    unsigned near = quad_bits(left <= due) & ~joined;
+    for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
+    for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
+        int i = __builtin_ctz(near);
+        const TouchPair *pair = &plan->pairs[first + (uint32_t)i];
+        bool alive = job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE;
+        if (alive && pair->a != pair->b && !touch_is_tangled(plan, pair))
+            measure_pair(job, first + (uint32_t)i, due[i], writer);
     }
-    float due_distance = due(plan, touch_differ(a->velocity, b->velocity));
-    if (pair->distance > 0) {
-        float left = pair->distance - touch_differ(a->way, b->way) - plan->noise;
-        pair->distance = left > 0 ? left : 0;
-        if (left > due_distance) return;
-    }
-    if (!(job->cell_flags[pair->a] & job->cell_flags[pair->b] & SINGE_ALIVE) || touch_is_tangled(plan, pair)) return;
-    measure_pair(job, k, due_distance, writer);
 }
 
 static void look_block(void *context, TouchList *list, int block) {
@@ -216,7 +218,7 @@ static void look_block(void *context, TouchList *list, int block) {
     TouchWriter writer = touch_list_begin(list);
     uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK;
     if (last > job->plan->listed_count) last = job->plan->listed_count;
-    for (uint32_t k = first; k < last; k++) look_at_pair(job, k, &writer);
+    for (uint32_t k = first; k < last; k += 4) look_at_four(job, k, last - k, &writer);
     touch_list_end(&writer, block);
 }
 

@@ -79,12 +79,9 @@ typedef struct TouchChain {
     uint32_t next;       ///< of the same bucket, or SHELL_NONE
 } TouchChain;
 
-/// How a cell moves, by its corners.
-typedef struct TouchMotion {
-    Quad way;      ///< m, mean of the corners' since plan->start; fourth: the largest deviation
-    Quad velocity; ///< m/s as the step opened, the same
-    Quad normal;   ///< of touch_normals
-} TouchMotion;
+/// How a cell moves: mean of its corners' ways since plan->start in m, and of their velocities as the step opened in
+/// m/s, with the largest deviation of one as fourth; and its normals, as of touch_normals.
+enum { TOUCH_WAY, TOUCH_VELOCITY, TOUCH_NORMAL, TOUCH_MOTIONS };
 
 struct TouchPlan {
     SingeContactDef def;
@@ -132,7 +129,7 @@ struct TouchPlan {
     bool closed;
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
-    TouchMotion *motion;     ///< [cells]
+    Quad (*motion)[TOUCH_MOTIONS]; ///< [cells]
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
     float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
     Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
@@ -190,10 +187,54 @@ static inline Quad touch_way(const TouchPlan *plan, const uint32_t corner[4], co
     return touch_mean(way);
 }
 
-/// The most that any points of two cells differ in, given their means with deviations.
-static inline float touch_differ(Quad a, Quad b) {
-    Quad off = a - b;
-    return sqrtf(quad_dot(off, off)) + a[3] + b[3];
+/// Four pairs of the list, and what two cells of each differ in.
+typedef struct TouchFourPairs {
+    const Quad (*motion)[TOUCH_MOTIONS];
+    uint32_t a[4], b[4], bridge[4]; ///< where there is none, bridge is a
+    unsigned bridged; ///< bits
+    Quad distance;    ///< m
+} TouchFourPairs;
+
+static inline TouchFourPairs touch_four_pairs(const TouchPlan *plan, const uint32_t number[4]) {
+    TouchFourPairs four = {.motion = (const Quad(*)[TOUCH_MOTIONS])plan->motion};
+    float distance[4];
+    for (int i = 0; i < 4; i++) {
+        const TouchPair *pair = &plan->pairs[number[i]];
+        bool bridged = pair->bridge != SHELL_NONE;
+        four.a[i] = pair->a, four.b[i] = pair->b, four.bridge[i] = bridged ? pair->bridge : pair->a;
+        four.bridged |= (unsigned)bridged << i;
+        distance[i] = pair->distance;
+    }
+    four.distance = (Quad){distance[0], distance[1], distance[2], distance[3]};
+    return four;
+}
+
+/// Difference of a motion of cells a and b; *deviations: the sums of the fourths.
+static inline FourVectors touch_four_off(const TouchFourPairs *four, const uint32_t a[4], const uint32_t b[4],
+                                         int motion, Quad *deviations) {
+    const Quad sign = {0, 0, 0, -0.0f};
+    Quad off[4];
+    for (int i = 0; i < 4; i++)
+        off[i] = four->motion[a[i]][motion] - (Quad)((QuadMask)four->motion[b[i]][motion] ^ (QuadMask)sign);
+    quad_transpose(off);
+    *deviations = off[3];
+    return (FourVectors){off[0], off[1], off[2]};
+}
+
+/// The most that any points of the cells differ in.
+static inline Quad touch_four_differ(const TouchFourPairs *four, int motion) {
+    Quad deviations;
+    FourVectors off = touch_four_off(four, four->a, four->b, motion, &deviations);
+    return quad_sqrt(four_dot(off, off)) + deviations;
+}
+
+/// Whether all normals of two cells in shape lie within a cone.
+static inline QuadMask touch_four_within(const TouchFourPairs *four, const uint32_t a[4], const uint32_t b[4],
+                                         float cone) {
+    Quad deviations;
+    FourVectors off = touch_four_off(four, a, b, TOUCH_NORMAL, &deviations);
+    Quad left = cone - deviations;
+    return (left > 0) & (four_dot(off, off) < left * left);
 }
 
 /// A cell's nodes about an origin: corners, then the virtual centre. Fourth numbers are 0.

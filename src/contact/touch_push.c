@@ -38,13 +38,12 @@ void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsS
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->push_count; k++) {
         const TouchPush *push = &plan->pushes[k];
-        float height = -push->target, weight = 0;
-        for (uint32_t i = 0; i < push->count; i++) {
-            const float *at = x[push->node[i]];
-            height += push->weight[i] * quad_dot(quad_load(at), push->normal);
-            weight += push->weight[i] * push->weight[i] * at[3];
-        }
-        if (height >= 0 || weight <= 0) continue;
+        Quad apart = {0};
+        for (uint32_t i = 0; i < push->count; i++) apart += push->weight[i] * quad_load(x[push->node[i]]);
+        float height = quad_dot(apart, push->normal) - push->target, weight = 0;
+        if (height >= 0) continue;
+        for (uint32_t i = 0; i < push->count; i++) weight += push->weight[i] * push->weight[i] * x[push->node[i]][3];
+        if (weight <= 0) continue;
         Quad away = -height / weight * push->normal;
         for (uint32_t i = 0; i < push->count; i++) {
             Quad place = quad_load(x[push->node[i]]);
