@@ -107,7 +107,7 @@ static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) 
     memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
     QuadMask same = (p == q) + (p == QUAD_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == QUAD_SHUFFLE(q, q, 2, 3, 0, 1)) +
                     (p == QUAD_SHUFFLE(q, q, 3, 0, 1, 2));
-    return (uint32_t)__builtin_popcount(quad_bits(same < 0)); // one of a cell is one of the other's at most
+    return 0x4332322132212110u >> 4 * quad_bits(same < 0) & 7; // number of bits set; no two of a are one of b
 }
 
 uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
