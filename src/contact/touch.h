@@ -50,7 +50,7 @@ typedef struct TouchCounters {
     uint64_t stops;      ///< pairs of cells whose way was cut short
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs for which there was no room
-    uint32_t tangled;    ///< cells that crossed others as the simulation started and have not parted since
+    uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
     double seconds;
 } TouchCounters;
 

@@ -125,8 +125,8 @@ static unsigned four_are_free(const Guard *guard, const uint32_t number[4]) {
     return free;
 }
 
-/// Cells that hang together, by a plane that parts them at both ends of the step, and has not been turned over: then they have not
-/// passed through each other about what they share.
+/// Cells that hang together, by a plane that parts them at both ends of the step, and has not been turned over: then
+/// they have not passed through each other about what they share.
 static bool plane_parts(const Guard *guard, const TouchPair *pair) {
     const uint32_t *a = guard->shell->cells[pair->a], *b = guard->shell->cells[pair->b];
     const float(*places[2])[4] = {(const float(*)[4])guard->plan->start, (const float(*)[4])guard->dynamics->position};
@@ -146,7 +146,8 @@ static bool plane_parts(const Guard *guard, const TouchPair *pair) {
 
 /// Returns whether a pair meets.
 static bool look_at_pair(const Guard *guard, TouchPair *pair) {
-    if (!(guard_is_alive(guard, pair->a) && guard_is_alive(guard, pair->b)) || touch_is_tangled(guard->plan, pair)) return false;
+    if (!guard_is_alive(guard, pair->a) || !guard_is_alive(guard, pair->b)) return false;
+    if (touch_is_tangled(guard->plan, pair)) return false;
     if (!plane_parts(guard, pair)) sweep_pair(guard, pair);
     return pair->hit < 2;
 }

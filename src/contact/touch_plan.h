@@ -101,7 +101,7 @@ struct TouchPlan {
     float (*place)[4];       ///< [vertices] m
     float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
-    uint8_t *tangled;        ///< [cells] crossed another at the start, and has not parted since
+    uint8_t *tangled;        ///< [cells] crossed another, or lay in its place, at the start, and has not parted since
 
     // what was found
     uint32_t steps;          ///< that the search is for

@@ -93,8 +93,8 @@ void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
     if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
         sim->tangle_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: %u cells have crossings with others as the simulation starts; they are left alone until they "
-                "have parted",
+                "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts; "
+                "they are left alone until they have parted",
                 touches->tangled);
     }
     if (touches->unresolved && !sim->crossing_warned) {

@@ -183,6 +183,22 @@ static void crossing_input_is_left_alone(void **unused) {
     singe_sim_destroy(sim);
 }
 
+static void sheets_in_one_place_are_left_alone(void **unused) {
+    (void)unused;
+    SingeSim *sim = new_sim(1, true);
+    for (int sheet = 0; sheet < 3; sheet++)
+        add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    // and one that lies next to them
+    add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    steps(sim, 1);
+    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    steps(sim, 20);
+    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
+    singe_sim_destroy(sim);
+}
+
 static void any_number_of_threads(void **unused) {
     (void)unused;
     SingeSim *one = heap(1, true), *three = heap(3, true), *again;
@@ -435,7 +451,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
         cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
-        cmocka_unit_test(crossing_input_is_left_alone), cmocka_unit_test(any_number_of_threads),
+        cmocka_unit_test(crossing_input_is_left_alone), cmocka_unit_test(sheets_in_one_place_are_left_alone),
+        cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
         cmocka_unit_test(strays_are_found),            cmocka_unit_test(the_search_is_linear),
         cmocka_unit_test(bad_values_are_refused),
