@@ -9,11 +9,14 @@
 
 #include <string.h>
 
-/// Blocks of what sums go over: particles, or the springs of a colour.
+/// Blocks of what sums go over: particles, or the springs of two colours.
 static int plan_partials(const Shell *shell) {
-    uint32_t most = shell->particle_count;
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) most = most > shell->springs[i].count ? most : shell->springs[i].count;
-    return pool_blocks((int)most);
+    int particles = pool_blocks((int)shell->particle_count), springs = 0;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+        int blocks = pool_blocks((int)shell->springs[i].count);
+        springs = springs > blocks ? springs : blocks;
+    }
+    return particles > 2 * springs ? particles : 2 * springs;
 }
 
 static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory) {
@@ -170,7 +173,7 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
 /// Limits and the guard in turn: what the guard has stopped may be too far from what it has not.
 static void dynamics_close(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                            DynamicsState *dynamics) {
-    enum { TURNS = 3 };
+    enum { TURNS = 8 };
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = dynamics_limit(plan, shell, state, pool, dynamics);
         if (!plan->touch || (turn > 0 && !limited)) return;

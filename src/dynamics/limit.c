@@ -1,13 +1,20 @@
-// No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a substep:
-// what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads of char that
-// something heavy hangs on, may be left several times as long. So after the substeps sides and diagonals longer than
-// LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one by one:
+// No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a
+// substep: what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads
+// of char that something heavy hangs on, may be left several times as long. So after the substeps sides and diagonals
+// (blue and yellow springs) longer than LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one
+// by one:
 //
 //   C = |d| - s l > 0,   u = d/|d|,   lambda = C/(w_a + w_b),   x_a += w_a lambda u,   x_b -= w_b lambda u
 //
 // and what still draws them out is taken from the velocities, without bounce: v_a += w_a mu u, v_b -= w_b mu u with
-// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. Rounds go over the blocks of cells in
-// which a count has found some; nearly all steps end with that count.
+// mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. A count says which blocks of
+// springs have some; sweeps go over those, and then it is counted again. Nearly all steps end with the first count.
+//
+// That is done in every step. The guard against crossing, which comes after, takes ways back towards where the step
+// began: what was too long then would be so again.
+//
+// Where a spring has burnt, what hangs on its cell may pull it open: held there, it would stretch what is whole beside
+// it.
 #include "base/quad.h"
 #include "dynamics/plan.h"
 
@@ -16,77 +23,81 @@
 /// Times the target length. A square cell of inextensible sides that collapses has a diagonal of 1.41.
 #define LIMIT_SIDE 1.25f
 #define LIMIT_DIAGONAL 1.45f
-/// Rounds, every so many steps: frames end with one of these.
-enum { LIMIT_ROUNDS = 12, LIMIT_PERIOD = 4 };
+/// Counts at most, and sweeps over what each has found at most.
+enum { LIMIT_ROUNDS = 16, LIMIT_SWEEPS = 4 };
 
 typedef struct Limit {
     const Shell *shell;
     const State *state;
     DynamicsState *dynamics;
     const AttachSpread *spread;
+    uint32_t sides, first_diagonal, end; ///< springs numbered: sides from 0 on, diagonals from a block's begin on
 } Limit;
 
-static uint32_t limit_corner(int i) { return i < 4 ? (uint32_t)i : (uint32_t)i - 4; }
+/// Springs of one colour.
+typedef struct LimitRange {
+    SingeColour colour;
+    uint32_t first, end;
+} LimitRange;
 
-/// How long side 0 to 3 or diagonal 4 to 5 of a cell may be, and its ends. Where a spring has burnt, what hangs on the cell
-/// may pull it open: held there, it would stretch what is whole beside it.
-static float limit_of(const Limit *job, uint32_t c, int i, uint32_t ends[2]) {
-    const uint32_t *corner = job->shell->cells[c];
-    const CellSprings *springs = &job->shell->cell_springs[c];
-    float *const *length = job->state->burn.spring_length;
-    ends[0] = corner[limit_corner(i)], ends[1] = corner[i < 4 ? (i + 1) & 3 : i - 2];
-    if (i < 4 && !(job->state->ablate.spring_flags[SINGE_BLUE][springs->blue[i]] & SINGE_ALIVE)) return INFINITY;
-    return i < 4 ? LIMIT_SIDE * length[SINGE_BLUE][springs->blue[i]]
-                 : LIMIT_DIAGONAL * length[SINGE_YELLOW][springs->yellow[i - 4]];
+static Quad limit_way(const Limit *job, SingeColour colour, uint32_t spring) {
+    const uint32_t *ends = job->shell->springs[colour].ends[spring];
+    return quad_load(job->dynamics->position[ends[1]]) - quad_load(job->dynamics->position[ends[0]]);
 }
 
-/// Whether two vertices are farther apart than `most`, and may be brought together.
-static bool limit_is_over(const Limit *job, const uint32_t ends[2], float most) {
+static float limit_factor(SingeColour colour) { return colour == SINGE_BLUE ? LIMIT_SIDE : LIMIT_DIAGONAL; }
+
+/// Bit k: whether spring first + k, of four, is too long, by more than rounding.
+static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t first) {
+    Quad most = limit_factor(colour) * quad_load(job->state->burn.spring_length[colour] + first), way[4];
+    for (uint32_t k = 0; k < 4; k++) way[k] = limit_way(job, colour, first + k);
+    quad_transpose(way);
+    return quad_bits(way[0] * way[0] + way[1] * way[1] + way[2] * way[2] > most * most * 1.0001f);
+}
+
+/// Whether a spring that is too long may be shortened: it is left, no part of a mesh that may stretch, its ends are not
+/// both held, and the sheet is not held farther apart than it reaches.
+static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
+    const uint32_t *ends = job->shell->springs[colour].ends[spring];
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const Field compliance = job->shell->matter.compliance[SINGE_BLUE];
-    Quad way = quad_load(x[ends[1]]) - quad_load(x[ends[0]]);
-    return quad_dot(way, way) > most * most * 1.0001f && x[ends[0]][3] + x[ends[1]][3] > 0 &&
-           field_at(compliance, ends[0]) + field_at(compliance, ends[1]) == 0;
+    return job->state->ablate.spring_flags[colour][spring] & SINGE_ALIVE && x[ends[0]][3] + x[ends[1]][3] > 0 &&
+           field_at(compliance, ends[0]) + field_at(compliance, ends[1]) == 0 &&
+           !job->spread[job->shell->matter.sheet[ends[0]]].tight;
 }
 
-/// Whether any of a cell's sides or diagonals is too long: all at once, for nearly none is.
-static inline bool limit_cell_is_over(const Limit *job, uint32_t c) {
-    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
-    const uint32_t *corner = job->shell->cells[c];
-    const CellSprings *springs = &job->shell->cell_springs[c];
-    const float *blue = job->state->burn.spring_length[SINGE_BLUE], *yellow = job->state->burn.spring_length[SINGE_YELLOW];
-    Quad p[4] = {quad_load(x[corner[0]]), quad_load(x[corner[1]]), quad_load(x[corner[2]]), quad_load(x[corner[3]])};
-    Quad across[2] = {p[2] - p[0], p[3] - p[1]}, side[4] = {p[1] - p[0], p[2] - p[1], p[3] - p[2], p[0] - p[3]};
-    quad_transpose(side);
-    Quad length = {blue[springs->blue[0]], blue[springs->blue[1]], blue[springs->blue[2]], blue[springs->blue[3]]};
-    length *= LIMIT_SIDE;
-    QuadMask over = side[0] * side[0] + side[1] * side[1] + side[2] * side[2] > length * length;
-    float first = LIMIT_DIAGONAL * yellow[springs->yellow[0]], second = LIMIT_DIAGONAL * yellow[springs->yellow[1]];
-    return ((over[0] | over[1]) | (over[2] | over[3])) || quad_dot(across[0], across[0]) > first * first ||
-           quad_dot(across[1], across[1]) > second * second;
+static bool limit_is_over(const Limit *job, SingeColour colour, uint32_t spring) {
+    Quad way = limit_way(job, colour, spring);
+    float most = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
+    return quad_dot(way, way) > most * most * 1.0001f && limit_holds(job, colour, spring);
 }
 
-/// Cells of sheets that are not left to their springs.
+/// The springs of a colour with numbers from begin on, in one block of POOL_BLOCK.
+static LimitRange limit_range(const Limit *job, uint32_t begin, uint32_t end) {
+    if (begin >= job->first_diagonal)
+        return (LimitRange){SINGE_YELLOW, begin - job->first_diagonal, end - job->first_diagonal};
+    return (LimitRange){SINGE_BLUE, begin, end < job->sides ? end : job->sides};
+}
+
+/// How many of a block of springs are to be shortened.
 static double limit_count(void *task, int begin, int end) {
     const Limit *job = task;
+    const LimitRange range = limit_range(job, (uint32_t)begin, (uint32_t)end);
     double over = 0;
-    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
-        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
-        if (job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]].tight) continue;
-        for (int i = 0; i < 6; i++) {
-            uint32_t ends[2];
-            float most = limit_of(job, c, i, ends);
-            over += limit_is_over(job, ends, most);
-        }
-    }
+    uint32_t s = range.first;
+    for (; s + 4 <= range.end; s += 4)
+        for (unsigned some = limit_four(job, range.colour, s); some; some &= some - 1)
+            over += limit_holds(job, range.colour, s + (uint32_t)__builtin_ctz(some));
+    for (; s < range.end; s++) over += limit_is_over(job, range.colour, s);
     return over;
 }
 
-static void limit_shorten(const Limit *job, const uint32_t ends[2], float most) {
+static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring) {
     float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
-    const uint32_t a = ends[0], b = ends[1];
+    const uint32_t *ends = job->shell->springs[colour].ends[spring], a = ends[0], b = ends[1];
+    const float most = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
     float wa = x[a][3], wb = x[b][3];
-    Quad way = quad_load(x[b]) - quad_load(x[a]), relative = quad_load(v[b]) - quad_load(v[a]);
+    Quad way = limit_way(job, colour, spring), relative = quad_load(v[b]) - quad_load(v[a]);
     way[3] = 0;
     float length = sqrtf(quad_dot(way, way)), opens = quad_dot(relative, way) / length;
     Quad unit = way / length, shift = (length - most) / (wa + wb) * unit;
@@ -97,29 +108,31 @@ static void limit_shorten(const Limit *job, const uint32_t ends[2], float most) 
     quad_store(v[b], quad_load(v[b]) - wb * slow);
 }
 
-/// The blocks of cells with a count above 0, one after another.
-static void limit_blocks(const Limit *job, const double *over) {
-    for (uint32_t c = 0; c < job->shell->cell_count; c++) {
-        if (c % POOL_BLOCK == 0 && over[c / POOL_BLOCK] == 0) {
-            c += POOL_BLOCK - 1;
-            continue;
-        }
-        if (!(job->state->ablate.cell_flags[c] & SINGE_ALIVE) || !limit_cell_is_over(job, c)) continue;
-        if (job->spread[job->shell->matter.sheet[shell_centre(job->shell, c)]].tight) continue;
-        for (int i = 0; i < 6; i++) {
-            uint32_t ends[2];
-            float most = limit_of(job, c, i, ends);
-            if (limit_is_over(job, ends, most)) limit_shorten(job, ends, most);
+/// Shortens what is too long in blocks with a count above 0, one after another. Whether there was any.
+static bool limit_sweep(const Limit *job, const double *over) {
+    bool some = false;
+    for (uint32_t block = 0; block < job->end; block += POOL_BLOCK) {
+        if (over[block / POOL_BLOCK] == 0) continue;
+        uint32_t end = job->end - block < POOL_BLOCK ? job->end : block + POOL_BLOCK;
+        const LimitRange range = limit_range(job, block, end);
+        for (uint32_t s = range.first; s < range.end; s++) {
+            if (!limit_is_over(job, range.colour, s)) continue;
+            limit_shorten(job, range.colour, s);
+            some = true;
         }
     }
+    return some;
 }
 
 bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
-    Limit job = {shell, state, dynamics, plan->attachments.spread};
-    if (plan->paper || (state->step + 1) % LIMIT_PERIOD) return false;
+    Limit job = {.shell = shell, .state = state, .dynamics = dynamics, .spread = plan->attachments.spread};
+    if (plan->paper) return false;
+    job.sides = shell->springs[SINGE_BLUE].count - shell->edge_spare_count + shell->edge_spare_used;
+    job.first_diagonal = (uint32_t)pool_blocks((int)job.sides) * POOL_BLOCK;
+    job.end = job.first_diagonal + shell->springs[SINGE_YELLOW].count;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
-        if (pool_sum(pool, (int)shell->cell_count, limit_count, &job, plan->partial) == 0) return round > 0;
-        limit_blocks(&job, plan->partial);
+        if (pool_sum(pool, (int)job.end, limit_count, &job, plan->partial) == 0) return round > 0;
+        for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {}
     }
     return true;
 }

@@ -142,7 +142,7 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics);
 
-/// Shortens sides and diagonals that a step has left far too long, every few steps (limit.c). Whether it has found any.
+/// Shortens sides and diagonals that a step has left far too long (limit.c). Whether it has found any.
 bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics);
 
 /// Puts centres that have gone through their corners back over them: the last pass of a step (order.c).

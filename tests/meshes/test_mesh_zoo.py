@@ -70,11 +70,6 @@ BROKEN = {
 
 # What does not hold yet. It is run all the same, and what has come to hold is told, so that it can be taken out.
 PENDING = set()
-#   faults that are counted but not held against the mesh: drawn in cells of which a fire has left a part, whose other
-#   corners hang on by a diagonal
-PENDING_FAULTS = {
-    "tiny-cells": {"stretched_edges"},
-}
 
 # a mesh that begins crossed may stay so
 FORGIVEN = {"crossed": {"crossings"}}
@@ -127,7 +122,7 @@ class MeshZoo(Case):
             return f"what was repaired is not told as {repair!r}"
         if name not in BROKEN and ("warning" in told or self.lost(name)):
             return self.lost(name) or told
-        bad = {k: v for k, v in faults.items() if k not in PENDING_FAULTS.get(name, set()) | FORGIVEN.get(name, set())}
+        bad = {k: v for k, v in faults.items() if k not in FORGIVEN.get(name, set())}
         return f"verify: {bad}" if bad else None
 
     def lost(self, name):
@@ -163,12 +158,9 @@ class MeshZoo(Case):
                 code, err, faults = self.run_mesh(name)
                 wrong = self.judge(name, code, err, faults)
                 later = name in PENDING
-                idle = PENDING_FAULTS.get(name, set()) - set(faults) if code == 0 else ()
-                state = "faults pending" if faults else "good"
+                state = "faults forgiven" if faults else "good"
                 if later:
                     state = f"pending ({wrong[-90:]})" if wrong else "holds, is no longer pending"
-                if idle and not later:
-                    state += f", of no {', '.join(sorted(idle))} any more"
                 kinds = ", ".join(f"{v} {k}" for k, v in faults.items())
                 lines.append(f"{name:22}{'runs' if code == 0 else 'refused':9}{state}{kinds and ': ' + kinds}")
                 if wrong and not later:
