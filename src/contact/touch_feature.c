@@ -78,7 +78,17 @@ static void cell_boxes(TouchCell *cell) {
     touch_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
 }
 
-/// The same for the planes through a's diagonals only.
+float touch_boxes_apart(const TouchCell *a, const TouchCell *b) {
+    const Quad *p = a->node, *q = b->node; // the middles lie between
+    Quad low_a = quad_min(quad_min(p[0], p[1]), quad_min(p[2], p[3]));
+    Quad high_a = quad_max(quad_max(p[0], p[1]), quad_max(p[2], p[3]));
+    Quad low_b = quad_min(quad_min(q[0], q[1]), quad_min(q[2], q[3]));
+    Quad high_b = quad_max(quad_max(q[0], q[1]), quad_max(q[2], q[3]));
+    Quad gap = quad_max(quad_max(low_b - high_a, low_a - high_b), quad_all(0));
+    return sqrtf(quad_dot(gap, gap));
+}
+
+/// As touch_cells_apart, for the planes through a's diagonals only.
 static float apart_along(const TouchCell *a, const TouchCell *b) {
     Quad normal = quad_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
     float square = quad_dot(normal, normal);

@@ -27,7 +27,10 @@ enum { TOUCH_NEAR = 104 };
 void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin,
                       TouchCell *out);
 
-/// How far apart two cells are at least, by the slabs that they lie in; negative where slabs do not tell.
+/// How far apart two cells are at least, by the boxes around them.
+float touch_boxes_apart(const TouchCell *a, const TouchCell *b);
+
+/// The same by the slabs that they lie in; negative where slabs do not tell.
 float touch_cells_apart(const TouchCell *a, const TouchCell *b);
 
 /// How far features are looked for.

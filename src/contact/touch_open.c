@@ -169,13 +169,17 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     look.due = due_distance;
     touch_cell_place(plan, job->shell, pair->a, x, origin, &look.a);
     touch_cell_place(plan, job->shell, pair->b, x, origin, &look.b);
-    float apart = touch_cells_apart(&look.a, &look.b) - plan->noise;
+    float apart = touch_boxes_apart(&look.a, &look.b) - plan->noise;
     pair->distance = apart > pair->distance ? apart : pair->distance;
     if (pair->distance > look.due) return;
-    // measuring a little farther, not every step has to look again; beside a triangle a node may be over the next one:
-    // a normal that stays would make a ridge of the edge between
-    TouchFar far = {look.due + 0.25f * plan->thickness, look.due, least(plan->thin[pair->a], plan->thin[pair->b]),
+    apart = touch_cells_apart(&look.a, &look.b) - plan->noise;
+    pair->distance = apart > pair->distance ? apart : pair->distance;
+    if (pair->distance > look.due) return;
+    // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
+    TouchFar far = {look.due, look.due, least(plan->thin[pair->a], plan->thin[pair->b]),
                     apart < TOUCH_PARTED * plan->thickness};
+    // measuring a little farther, not every step has to look again
+    if (far.edges) far.measured += 0.25f * plan->thickness;
     TouchNear near[TOUCH_NEAR];
     float nearest;
     int count = touch_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
