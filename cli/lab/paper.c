@@ -47,7 +47,7 @@ static const PageItem items[] = {
      "all springs in one system diverges.", paper_all_at_once},
     {"table2", "Table 2: time of a step",
      "Time in proportion to the number of springs, with conjugate gradients on an ELLPACK matrix, on a quad-core "
-     "machine of 2011.", paper_table2},
+     "machine with 4 GB.", paper_table2},
     {"adaptive", "Section 8.2: adaptivity",
      "\"It is not straightforward to apply our method to adaptive BCS, BCC or irregular meshes.\"", paper_adaptive},
     {"readings", "Ambiguities and misprints",

@@ -137,7 +137,7 @@ SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, co
     HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = pool, .h = h,
                      .dt = h * plan->settings.pace};
     double made = 0;
-    heat_plan_follow(plan, shell);
+    heat_plan_follow(plan, shell, state);
     heat_matrix_follow(plan, shell, &state->ablate, pass.dt);
 
     // eq 1: sources, combustion, losses

@@ -4,10 +4,11 @@
 
 #include "heat/plan.h"
 
-/// Counts the entries of every row in `length`, or fills them in where `fill` is set: where a tear has given a vertex
+/// Counts the entries of every row in `length`, or fills them in where `fill` is set: where tears have given a vertex
 /// more springs than its row has room for, the last ones conduct nothing.
 static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length, bool fill) {
     HeatMatrix *matrix = &plan->matrix;
+    matrix->full = false;
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
             float conductance = plan->conductance[plan->spring_first[c] + k];
@@ -15,6 +16,7 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
             const uint32_t *ends = shell->springs[c].ends[k];
             bool full = fill && (length[ends[0]] >= heat_row_width(matrix, ends[0]) ||
                                  length[ends[1]] >= heat_row_width(matrix, ends[1]));
+            matrix->full |= full;
             if (full) continue;
             for (int end = 0; end < 2; end++) {
                 uint32_t row = shell->springs[c].ends[k][end], entry = length[row]++;
@@ -84,7 +86,7 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
             const uint32_t *ends = shell->springs[c].ends[k];
             uint32_t spring = plan->spring_first[c] + k;
             uint32_t own = plan->conductance[spring] != 0;
-            if (matrix_count(&plan->matrix, ends[0], ends[1]) == own) continue;
+            if (ends[0] == ends[1] || matrix_count(&plan->matrix, ends[0], ends[1]) == own) continue;
             if (twins) twins[count] = (HeatTwin){spring, plan->conductance[spring]};
             count++;
         }
@@ -138,6 +140,79 @@ void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length) {
     else matrix_twins(plan, shell, matrix->twins);
 }
 
+/// Inserts a number into a list in ascending order, unless it is there.
+static uint32_t matrix_insert(uint32_t *list, uint32_t count, uint32_t number) {
+    uint32_t k = count;
+    while (k > 0 && list[k - 1] > number) k--;
+    if (k > 0 && list[k - 1] == number) return count;
+    memmove(list + k + 1, list + k, (count - k) * sizeof *list);
+    list[k] = number;
+    return count + 1;
+}
+
+/// Lists the springs of a particle, in the numbering of all colours, in order. Returns how many.
+static uint32_t matrix_springs(const HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
+    const uint32_t *first = plan->spring_first;
+    uint32_t count = 0;
+    if (row >= shell->vertex_count) {
+        const CellSprings *springs = &shell->cell_springs[row - shell->vertex_count];
+        for (int k = 0; k < 4; k++) {
+            count = matrix_insert(list, count, first[SINGE_RED] + springs->red[k]);
+            if (springs->green[k] != SHELL_NONE)
+                count = matrix_insert(list, count, first[SINGE_GREEN] + springs->green[k]);
+        }
+        return count;
+    }
+    for (uint32_t f = shell->fan_first[row]; f < shell->fan_first[row + 1]; f++) {
+        const CellSprings *springs = &shell->cell_springs[shell->fan[f]];
+        int i = 0;
+        while (shell->cells[shell->fan[f]][i] != row) i++;
+        count = matrix_insert(list, count, first[SINGE_RED] + springs->red[i]);
+        count = matrix_insert(list, count, first[SINGE_YELLOW] + springs->yellow[i & 1]);
+        count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[i]);
+        count = matrix_insert(list, count, first[SINGE_BLUE] + springs->blue[(i + 3) & 3]);
+    }
+    return count;
+}
+
+static const uint32_t *matrix_ends(const HeatPlan *plan, const Shell *shell, uint32_t spring) {
+    int colour = 0;
+    while (spring >= plan->spring_first[colour + 1]) colour++;
+    return shell->springs[colour].ends[spring - plan->spring_first[colour]];
+}
+
+/// Whether a particle is not alive, or has lost a spring: then nothing negative is left to it (matrix_cut_unsafe).
+static bool matrix_is_unsafe(const HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
+    uint32_t count = matrix_springs(plan, shell, row, list);
+    bool unsafe = !plan->alive[row];
+    for (uint32_t k = 0; k < count; k++) unsafe |= !plan->spring_alive[list[k]];
+    return unsafe;
+}
+
+bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
+    HeatMatrix *matrix = &plan->matrix;
+    uint32_t count = matrix_springs(plan, shell, row, list), width = heat_row_width(matrix, row), filled = 0;
+    uint32_t *other_list = list + count;
+    bool unsafe = matrix_is_unsafe(plan, shell, row, other_list);
+    for (uint32_t k = 0; k < count; k++) {
+        float conductance = plan->conductance[list[k]];
+        if (conductance == 0) continue;
+        if (filled == width) return false;
+        const uint32_t *ends = matrix_ends(plan, shell, list[k]);
+        uint32_t other = ends[ends[0] == row], entry = heat_entry(matrix, row, filled++);
+        bool conducts = plan->spring_alive[list[k]] && plan->alive[row] && plan->alive[other];
+        if (conducts && conductance < 0) conducts = !unsafe && !matrix_is_unsafe(plan, shell, other, other_list);
+        matrix->column[entry] = other;
+        matrix->value[entry] = conducts ? conductance : 0;
+    }
+    for (; filled < width; filled++) {
+        uint32_t entry = heat_entry(matrix, row, filled);
+        matrix->column[entry] = row, matrix->value[entry] = 0;
+    }
+    matrix_invert(plan, row);
+    return true;
+}
+
 void heat_matrix_free(Memory *memory, HeatPlan *plan) {
     HeatMatrix *matrix = &plan->matrix;
     FREE(memory, matrix->first, (size_t)matrix->slices + 1);
@@ -189,6 +264,7 @@ static void matrix_cut_unsafe(HeatPlan *plan, uint32_t row) {
 
 static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t spring) {
     plan->spring_alive[spring] = 0;
+    if (ends[0] == ends[1]) return; // a spare one
     for (int end = 0; end < 2; end++) matrix_cut(&plan->matrix, ends[end], ends[!end], spring);
     for (int end = 0; end < 2; end++) matrix_cut_unsafe(plan, ends[end]);
 }

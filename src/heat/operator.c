@@ -102,6 +102,14 @@ static void operator_corners(const Shell *shell, uint32_t cell, Vec x[4]) {
     for (int k = 0; k < 4; k++) x[k] = vec_load(shell->rest_position[shell->cells[cell][k]]);
 }
 
+/// What a cell whose side has the weight gives to the spring along it.
+static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side, double weight) {
+    uint32_t centre = shell_centre(shell, cell);
+    double lean = (double)operator_rate(plan, shell, centre, centre) / 32, area = (double)shell->matter.area[centre];
+    float diffusivity = operator_spring(plan, shell, SINGE_BLUE, shell->cell_springs[cell].blue[side]);
+    return (float)operator_less(weight, lean * area, diffusivity);
+}
+
 /// The geometry of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     const CellSprings *springs = &shell->cell_springs[cell];
@@ -111,12 +119,10 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     operator_corners(shell, cell, x);
     double side[4] = {0}, diagonal[2] = {0}, largest = 0;
     uint32_t centre = shell_centre(shell, cell);
-    double lean = (double)operator_rate(plan, shell, centre, centre) / 32;
     double area = (double)shell->matter.area[centre];
     operator_cotangents(x, side, diagonal);
     for (int k = 0; k < 4; k++) {
-        float diffusivity = operator_spring(plan, shell, SINGE_BLUE, springs->blue[k]);
-        conductance[first[SINGE_BLUE] + springs->blue[k]] += (float)operator_less(side[k], lean * area, diffusivity);
+        conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, side[k]);
         largest = fmax(largest, fabs(side[k]));
     }
     // what rounding leaves of a right angle needs no entry in the matrix
@@ -199,4 +205,28 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
         }
     }
     operator_diffusivity(plan, shell);
+}
+
+/// A cell's part of the conductance along a side, without diffusivity and F.
+static float operator_part(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side) {
+    double weight[4] = {0}, diagonal[2] = {0};
+    Vec x[4];
+    operator_corners(shell, cell, x);
+    operator_cotangents(x, weight, diagonal);
+    return operator_side(plan, shell, cell, side, weight[side]);
+}
+
+void heat_operator_torn(HeatPlan *plan, const Shell *shell, uint32_t cell, int corner) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    uint32_t vertex = shell->cells[cell][corner];
+    plan->measure[vertex] = shell->matter.area[vertex] * field_at(shell->matter.capacity_ratio, vertex);
+    for (int turn = 0; turn < 2; turn++) {
+        int side = turn ? (corner + 3) & 3 : corner;
+        uint32_t spring = springs->blue[side], other = shell_neighbour(shell, cell, side);
+        float sum = operator_part(plan, shell, cell, side);
+        for (int k = 0; other != SHELL_NONE && k < 4; k++)
+            if (shell->cell_springs[other].blue[k] == spring) sum += operator_part(plan, shell, other, k);
+        plan->conductance[plan->spring_first[SINGE_BLUE] + spring] =
+            sum * operator_spring(plan, shell, SINGE_BLUE, spring);
+    }
 }

@@ -90,14 +90,73 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 }
 
 /// Scratch of the step, which has not begun, is room for what the rebuilding counts.
-void heat_plan_follow(HeatPlan *plan, const Shell *shell) {
-    if (plan->split_count == shell->split_count) return;
-    plan->split_count = shell->split_count;
+static void plan_rebuild(HeatPlan *plan, const Shell *shell) {
     for (uint32_t k = 0; k < plan->springs; k++) plan->conductance[k] = 0;
     for (uint32_t i = 0; i < plan->particles; i++) plan->measure[i] = 0;
     heat_operator(plan, shell);
     heat_matrix_rebuild(plan, shell, plan->scratch);
     heat_rest_rebuild(plan, plan->scratch);
+}
+
+/// Around a vertex that was split, or is new: what conducts along the sides there.
+static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    uint32_t ordinary = shell->springs[SINGE_BLUE].count - shell->edge_spare_count;
+    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
+        uint32_t cell = shell->fan[f];
+        int corner = 0;
+        while (shell->cells[cell][corner] != vertex) corner++;
+        heat_operator_torn(plan, shell, cell, corner);
+        // what was spare till now, and counted as gone, lives; if it does not, heat_matrix_follow will find out
+        for (int k = 0; k < 4; k++)
+            if (shell->cell_springs[cell].blue[k] >= ordinary)
+                plan->spring_alive[plan->spring_first[SINGE_BLUE] + shell->cell_springs[cell].blue[k]] = 1;
+    }
+}
+
+/// The rows of all particles around it. False where one has no room.
+static bool follow_rows(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
+        for (int k = 0; k < 4; k++)
+            if (!heat_matrix_row(plan, shell, shell->cells[shell->fan[f]][k], plan->scratch)) return false;
+        if (!heat_matrix_row(plan, shell, shell_centre(shell, shell->fan[f]), plan->scratch)) return false;
+    }
+    return true;
+}
+
+static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
+        for (int k = 0; k < 4; k++)
+            heat_rest_update(plan, shell->cells[shell->fan[f]][k] / HEAT_GROUP, plan->scratch);
+        heat_rest_update(plan, shell_centre(shell, shell->fan[f]) / HEAT_GROUP, plan->scratch);
+    }
+}
+
+/// Follows a few splits by what is around them: what building all anew would give, to the bit (heat_torn). False where
+/// that cannot be.
+static bool follow_splits(HeatPlan *plan, const Shell *shell, const State *state, uint32_t first) {
+    const ShellSplit *splits = state->tear.splits;
+    uint32_t last = shell->split_count;
+    if (plan->matrix.full || plan->matrix.twin_capacity > 0 || last - first > shell->cell_count / 64 + 1) return false;
+    for (uint32_t s = 0; s < shell->sheet_count; s++)
+        if (shell->sheets[s].material.heat_operator == SINGE_HEAT_UMBRELLA) return false;
+    for (uint32_t k = first; k < last; k++) {
+        follow_operator(plan, shell, splits[k].vertex);
+        follow_operator(plan, shell, splits[k].spare);
+        plan->alive[splits[k].spare] = plan->measure[splits[k].spare] > 0;
+    }
+    for (uint32_t k = first; k < last; k++)
+        if (!follow_rows(plan, shell, splits[k].vertex) || !follow_rows(plan, shell, splits[k].spare)) return false;
+    for (uint32_t k = first; k < last; k++) {
+        follow_rest(plan, shell, splits[k].vertex);
+        follow_rest(plan, shell, splits[k].spare);
+    }
+    return true;
+}
+
+void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state) {
+    uint32_t first = plan->split_count;
+    plan->split_count = shell->split_count;
+    if (first < shell->split_count && !follow_splits(plan, shell, state, first)) plan_rebuild(plan, shell);
 }
 
 void heat_plan_free(Memory *memory, HeatPlan *plan) {

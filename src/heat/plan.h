@@ -6,6 +6,8 @@
 
 /// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
+/// Groups near one that can be listed.
+enum { HEAT_NEAR = 48 };
 
 /// A spring that shares both its ends with another one that conducts.
 typedef struct HeatTwin {
@@ -29,6 +31,7 @@ typedef struct HeatMatrix {
     uint32_t slices, entries;
     HeatTwin *twins;  ///< hardly ever any
     uint32_t twin_count, twin_capacity;
+    bool full; ///< a row has no room for all springs that tears have given it
 } HeatMatrix;
 
 /// Entries of every row in the slice of row i, and where entry k of row i lies.
@@ -42,9 +45,8 @@ static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t
 /// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
 typedef struct HeatRest {
     uint32_t groups;
-    uint32_t *first;   ///< [groups + 1] the groups that conduct with group g are near[first[g]] up to
-    uint32_t *near;    ///< near[first[g + 1]], less itself; all where there would be too many to list
-    uint32_t near_count; ///< room for
+    uint32_t (*near)[HEAT_NEAR]; ///< [groups] those that conduct with it, less itself
+    uint8_t *near_count; ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
     uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
     uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
 } HeatRest;
@@ -96,23 +98,29 @@ typedef struct HeatPass {
 } HeatPass;
 
 /// Makes operator and matrix follow a shell that has torn since the last call (plan.c).
-void heat_plan_follow(HeatPlan *plan, const Shell *shell);
+void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state);
 
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);
+/// The same of the sides of a cell at a corner that a tear has split, and of that vertex; not for the umbrella.
+void heat_operator_torn(HeatPlan *plan, const Shell *shell, uint32_t cell, int corner);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
 /// Writes it anew for a shell that has torn; `length` and `fill`, [particles], are scratch.
 void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
+/// Writes a row anew, for springs that tears have changed; `list` is scratch for the springs of it and of another one.
+/// False where it has no room for all.
+bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
 /// Makes the matrix follow what ablation removed since the last call, and the time step.
 void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
-/// The same anew, in the room that there is; `seen`, [groups], is scratch.
+/// The same anew, of all or of one group; `seen`, [groups], is scratch.
 void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
+void heat_rest_update(HeatPlan *plan, uint32_t group, uint32_t *seen);
 void heat_rest_free(Memory *memory, HeatPlan *plan);
 /// Whether the group or one near it is in `set`.
 bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
