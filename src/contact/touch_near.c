@@ -157,13 +157,3 @@ float touch_sweep(const TouchSweep *sweep, float gap, float noise) {
     }
     return time;
 }
-
-bool touch_pierces(Quad p, Quad q, Quad a, Quad b, Quad c) {
-    Quad normal = quad_cross(b - a, c - a);
-    float above = quad_dot(p - a, normal), below = quad_dot(q - a, normal);
-    if ((above > 0) == (below > 0) || above == below) return false;
-    Quad x = p + above / (above - below) * (q - p);
-    float ab = quad_dot(quad_cross(b - a, x - a), normal), bc = quad_dot(quad_cross(c - b, x - b), normal);
-    float ca = quad_dot(quad_cross(a - c, x - c), normal);
-    return ab >= 0 && bc >= 0 && ca >= 0;
-}

@@ -49,7 +49,4 @@ bool touch_is_open(Quad normals);
 /// The fourth numbers must be 0.
 bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2], float margin, Quad *normal);
 
-/// Whether segment p-q passes through triangle a, b, c.
-bool touch_pierces(Quad p, Quad q, Quad a, Quad b, Quad c);
-
 #endif

@@ -254,11 +254,6 @@ static inline void touch_same(const uint32_t first[4], const uint32_t second[4],
     for (int i = 0; i < 4; i++) same[i] = quad_bits(other == (int32_t)first[i]);
 }
 
-/// Number of a node, the same in all cells that have it.
-static inline uint32_t touch_id(const Shell *shell, uint32_t cell, int node) {
-    return node < 4 ? shell->cells[cell][node] : shell_centre(shell, cell);
-}
-
 /// Whether a cell counts node or edge i as its own: what several share is looked at once.
 static inline bool touch_owns_node(const TouchPlan *plan, uint32_t cell, int i) {
     return i == 4 || (plan->owned[cell] >> i & 1);

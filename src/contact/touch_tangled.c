@@ -2,31 +2,9 @@
 // have no side to be kept on.
 #include "contact/touch_feature.h"
 #include "contact/touch_grid.h"
-#include "contact/touch_near.h"
+#include "shell/cross.h"
 
 #include <string.h>
-
-/// Whether two cells' triangles pass through each other, other than where they hang together.
-static bool cells_cross(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
-    const float(*x)[4] = (const float(*)[4])plan->place;
-    Quad origin = quad_load(x[shell->cells[a][0]]), p[5], q[5];
-    touch_nodes(shell->cells[a], x, origin, p);
-    touch_nodes(shell->cells[b], x, origin, q);
-    for (int e = 0; e < 8; e++) {
-        const uint8_t *k = touch_edge[e];
-        uint32_t first = touch_id(shell, a, k[0]), second = touch_id(shell, a, k[1]);
-        for (int t = 0; t < 4; t++) {
-            const uint8_t *l = touch_triangle[t];
-            bool joined = false;
-            for (int i = 0; i < 3; i++) {
-                uint32_t node = touch_id(shell, b, l[i]);
-                joined |= node == first || node == second;
-            }
-            if (!joined && touch_pierces(p[k[0]], p[k[1]], q[l[0]], q[l[1]], q[l[2]])) return true;
-        }
-    }
-    return false;
-}
 
 /// Whether two cells that do not hang together are as near as rounding can tell.
 static bool cells_coincide(const TouchPlan *plan, const Shell *shell, const TouchPair *pair) {
@@ -53,8 +31,7 @@ void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first) {
         if (!(plan->tangled[pair->a] && plan->tangled[pair->b])) continue;
         const TouchBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
         if (!quads_meet(p->low, p->high, q->low, q->high)) continue;
-        if (cells_cross(plan, shell, pair->a, pair->b) || cells_cross(plan, shell, pair->b, pair->a) ||
-            cells_coincide(plan, shell, pair))
+        if (cross_cells(shell, (const float(*)[4])plan->place, pair->a, pair->b) || cells_coincide(plan, shell, pair))
             plan->tangled[pair->a] |= IS, plan->tangled[pair->b] |= IS;
     }
     plan->counters.tangled = 0;

@@ -1,4 +1,5 @@
 // What a split does to the State: the new particle is what the old one was, and the lips of the tear part a little.
+#include "shell/cross.h"
 #include "tear/plan.h"
 
 #include <string.h>
@@ -54,16 +55,41 @@ static void tear_edge_state(const Shell *shell, State *state, const TornEdge *to
     for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
 }
 
-/// Moves a lip towards the mean of its cells' corners.
-static void open_lip(const Shell *shell, State *state, uint32_t vertex) {
+/// From a lip to the mean of its cells' corners.
+static Vec lip_way(const Shell *shell, const State *state, uint32_t vertex) {
     Vec sum = {0, 0, 0};
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
     for (uint32_t k = first; k < last; k++)
         for (int i = 0; i < 4; i++)
             sum = vec_add(sum, vec_load(state->dynamics.position[shell->cells[shell->fan[k]][i]]));
-    Vec place = vec_load(state->dynamics.position[vertex]);
-    Vec way = vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
-    vec_store(state->dynamics.position[vertex], vec_mad(place, way, LIP_GAP));
+    return vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), vec_load(state->dynamics.position[vertex]));
+}
+
+static bool lips_cross(const Shell *shell, const State *state, uint32_t one, uint32_t two) {
+    const uint32_t *first = shell->fan_first, *fan = shell->fan;
+    const uint8_t *flags = state->ablate.cell_flags;
+    for (uint32_t k = first[one]; k < first[one + 1]; k++)
+        for (uint32_t l = first[two]; l < first[two + 1]; l++)
+            if ((flags[fan[k]] & flags[fan[l]] & SINGE_ALIVE) &&
+                cross_cells(shell, (const float(*)[4])state->dynamics.position, fan[k], fan[l]))
+                return true;
+    return false;
+}
+
+/// Parts two lips that are in one place, each towards its cells. Where the sheet is crumpled there, these may lie across
+/// the other lip: then along the first of 26 directions in which they do not cross.
+static void open_lips(const Shell *shell, State *state, uint32_t one, uint32_t two) {
+    enum { DIRECTIONS = 27 };
+    float *x = state->dynamics.position[one], *y = state->dynamics.position[two];
+    Vec place = vec_load(x), ways[2] = {lip_way(shell, state, one), lip_way(shell, state, two)};
+    float length = LIP_GAP * 0.5f * (vec_length(ways[0]) + vec_length(ways[1]));
+    vec_store(x, vec_mad(place, ways[0], LIP_GAP));
+    vec_store(y, vec_mad(place, ways[1], LIP_GAP));
+    for (int k = 0; k < DIRECTIONS && lips_cross(shell, state, one, two); k++) {
+        Vec way = vec_unit(vec((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
+        vec_store(x, vec_mad(place, way, length));
+        vec_store(y, vec_mad(place, way, -length));
+    }
 }
 
 void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result) {
@@ -74,6 +100,5 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     for (int k = 0; k < result->torn_count; k++) count_degree(shell, state, result->torn[k].far);
     count_degree(shell, state, split->vertex);
     count_degree(shell, state, result->spare);
-    open_lip(shell, state, split->vertex);
-    open_lip(shell, state, result->spare);
+    open_lips(shell, state, split->vertex, result->spare);
 }

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "contact/touch_near.h"
+#include "shell/cross.h"
 
 static uint32_t seed = 1;
 
@@ -108,7 +109,7 @@ static bool cells_pierce(const Quad a[5], const Quad b[5], const unsigned shared
                 for (int i = 0; i < 3; i++)
                     joined |= (shared[0] >> edge[e][k] & 1) && (shared[1] >> corner[i] & 1) &&
                               length(a[edge[e][k]] - b[corner[i]]) == 0;
-            if (!joined && touch_pierces(a[edge[e][0]], a[edge[e][1]], b[corner[0]], b[corner[1]], b[corner[2]]))
+            if (!joined && cross_pierces(a[edge[e][0]], a[edge[e][1]], b[corner[0]], b[corner[1]], b[corner[2]]))
                 return true;
         }
     return false;

@@ -1,0 +1,15 @@
+// Whether drawn cells pass through each other.
+#ifndef SHELL_CROSS_H
+#define SHELL_CROSS_H
+
+#include "base/quad.h"
+#include "shell/shell.h"
+
+/// Whether segment p-q passes through triangle a, b, c. The fourth numbers must be 0.
+bool cross_pierces(Quad p, Quad q, Quad a, Quad b, Quad c);
+
+/// Whether the triangles of two cells around their virtual centres pass through each other, other than at nodes that
+/// they share. `x` is [vertices] m.
+bool cross_cells(const Shell *shell, const float (*x)[4], uint32_t a, uint32_t b);
+
+#endif
