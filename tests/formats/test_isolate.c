@@ -1,0 +1,377 @@
+// A function in a child: its answer, its errors, its crashes, and what it may take of memory and time.
+#include "formats/isolate.h"
+#include "support.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static const IsolateLimits few = {64 << 20, 1};
+
+static SingeResult run(IsolateWork *work, void *context, Bytes *answer, SingeError *error) {
+    SingeResult result = isolate_run("a.mesh", work, context, few, (SingeAllocator){0}, answer, error);
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); // none is left behind
+    assert_int_equal(errno, ECHILD);
+    if (result) {
+        assert_null(answer->data);
+        assert_int_equal(error->code, result);
+        assert_message(error, "a.mesh");
+    }
+    return result;
+}
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// ---- answers
+
+enum { MANY = 3000017 };
+
+static SingeResult put_many(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)error;
+    const uint8_t *bytes = context;
+    isolate_put(answer, bytes, 11);
+    isolate_put(answer, bytes + 11, MANY - 11);
+    return SINGE_OK;
+}
+
+static SingeResult put_nothing(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)context, (void)answer, (void)error;
+    return SINGE_OK;
+}
+
+static uint8_t *many(void) {
+    uint8_t *bytes = malloc(MANY);
+    for (uint32_t i = 0; i < MANY; i++) bytes[i] = (uint8_t)(i * 2654435761u >> 13);
+    return bytes;
+}
+
+static void answers_come_whole(void **state) {
+    (void)state;
+    uint8_t *bytes = many();
+    Bytes answer;
+    SingeError error;
+    if (run(put_many, bytes, &answer, &error)) fail_msg("%s", error.message);
+    assert_int_equal(answer.size, MANY);
+    assert_memory_equal(answer.data, bytes, MANY);
+    assert_int_equal(answer.data[MANY], 0);
+    bytes_free(&answer);
+    if (run(put_nothing, NULL, &answer, &error)) fail_msg("%s", error.message);
+    assert_int_equal(answer.size, 0);
+    bytes_free(&answer);
+    free(bytes);
+}
+
+static SingeResult refuse_work(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)context;
+    isolate_put(answer, "some of it", 10);
+    error->element = 17;
+    strcpy(error->stage, "mesh");
+    strcpy(error->message, "a.mesh:17: no good");
+    return SINGE_ERROR_MESH;
+}
+
+static void errors_come_as_they_were(void **state) {
+    (void)state;
+    Bytes answer;
+    SingeError error;
+    assert_int_equal(run(refuse_work, NULL, &answer, &error), SINGE_ERROR_MESH);
+    assert_string_equal(error.message, "a.mesh:17: no good");
+    assert_string_equal(error.stage, "mesh");
+    assert_int_equal(error.element, 17);
+    assert_int_equal(isolate_run("a.mesh", refuse_work, NULL, few, (SingeAllocator){0}, &answer, NULL),
+                     SINGE_ERROR_MESH);
+}
+
+static void failing_memory_of_the_parent_is_reported(void **state) {
+    (void)state;
+    uint8_t *bytes = many();
+    for (long at = 1;; at++) {
+        TestAllocator counts = {.fail_at = at};
+        Bytes answer;
+        SingeError error;
+        SingeResult result = isolate_run("a.mesh", put_many, bytes, few, test_allocator(&counts), &answer, &error);
+        if (!result) bytes_free(&answer);
+        else assert_int_equal(result, SINGE_ERROR_MEMORY);
+        test_allocator_check(&counts);
+        if (!result) break;
+    }
+    free(bytes);
+}
+
+// ---- crashes
+
+static SingeResult crash(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)error;
+    isolate_put(answer, "some of it", 10);
+    raise(*(int *)context);
+    return SINGE_OK;
+}
+
+static SingeResult stop(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)answer, (void)error;
+    exit(*(int *)context);
+}
+
+static void crashes_are_reported(void **state) {
+    (void)state;
+    static const int signals[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGKILL};
+    Bytes answer;
+    SingeError error;
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        char number[24];
+        snprintf(number, sizeof number, "signal %d", signals[i]);
+        assert_int_equal(run(crash, (void *)(uintptr_t)&signals[i], &answer, &error), SINGE_ERROR_FORMAT);
+        assert_message(&error, number);
+    }
+    // a library that ends the process gives no answer, whatever code it has
+    for (int code = 0; code < 3; code++) {
+        assert_int_equal(run(stop, &code, &answer, &error), SINGE_ERROR_FORMAT);
+        assert_message(&error, "stopped");
+    }
+}
+
+static volatile sig_atomic_t noted;
+static void note(int number) { noted = number; }
+
+static void interrupts_stop_the_child(void **state) {
+    (void)state;
+    struct sigaction before, own = {.sa_handler = note};
+    int number = SIGINT;
+    Bytes answer;
+    SingeError error;
+    sigaction(SIGINT, &own, &before); // is not the child's
+    assert_int_equal(run(crash, &number, &answer, &error), SINGE_ERROR_STATE);
+    assert_message(&error, "interrupted");
+    sigaction(SIGINT, &before, NULL);
+    assert_int_equal(noted, 0);
+}
+
+// ---- limits
+
+static SingeResult spin(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)context, (void)answer, (void)error;
+    for (volatile unsigned i = 0;; i++) {}
+    return SINGE_OK;
+}
+
+static SingeResult wait_long(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)context, (void)answer, (void)error;
+    for (;;) pause();
+    return SINGE_OK;
+}
+
+static void time_is_limited(void **state) {
+    (void)state;
+    Bytes answer;
+    SingeError error;
+    double start = seconds();
+    assert_int_equal(run(spin, NULL, &answer, &error), SINGE_ERROR_LIMIT);
+    assert_message(&error, "more than 1 s");
+    IsolateLimits short_time = {64 << 20, 0.1};
+    assert_int_equal(isolate_run("a.mesh", wait_long, NULL, short_time, (SingeAllocator){0}, &answer, &error),
+                     SINGE_ERROR_LIMIT);
+    assert_message(&error, "more than 0.1 s");
+    assert_true(seconds() - start < 8);
+}
+
+static SingeResult take_slowly(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)context, (void)answer, (void)error;
+    for (;;) {
+        char *block = malloc(1 << 20);
+        memset(block, 1, 1 << 20); // crashes without memory
+        nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    }
+    return SINGE_OK;
+}
+
+static SingeResult take_at_once(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)answer;
+    void *block = malloc(*(size_t *)context);
+    if (block) return SINGE_OK;
+    strcpy(error->message, "cannot be read"); // for another reason, says the library
+    return SINGE_ERROR_FORMAT;
+}
+
+static SingeResult answer_too_much(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)error;
+    for (;;) isolate_put(answer, context, 1 << 16);
+    return SINGE_OK;
+}
+
+static void memory_is_limited(void **state) {
+    (void)state;
+    Bytes answer;
+    SingeError error;
+    IsolateLimits slow = {64 << 20, 20};
+    assert_int_equal(isolate_run("a.mesh", take_slowly, NULL, slow, (SingeAllocator){0}, &answer, &error),
+                     SINGE_ERROR_LIMIT);
+    assert_message(&error, "more than 67 MB of memory");
+    static char block[1 << 16];
+    assert_int_equal(run(answer_too_much, block, &answer, &error), SINGE_ERROR_LIMIT);
+    assert_message(&error, "more than 67 MB of memory");
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    size_t size = (size_t)1 << 33;
+    assert_int_equal(run(take_at_once, &size, &answer, &error), SINGE_ERROR_LIMIT);
+    assert_message(&error, "more than 67 MB of memory");
+#endif
+    size_t little = 1 << 20;
+    assert_int_equal(run(take_at_once, &little, &answer, &error), SINGE_OK);
+    bytes_free(&answer);
+}
+
+// ---- what is the parent's
+
+static SingeResult print(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)answer, (void)error;
+    fputs("from the child", stderr);
+    fputs("twice", context);
+    return SINGE_OK;
+}
+
+static void files_of_the_parent_stay_as_they_are(void **state) {
+    (void)state;
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    fputs("once", file); // still in the buffer, of which the child has a copy
+    Bytes answer;
+    SingeError error;
+    assert_int_equal(run(print, file, &answer, &error), SINGE_OK);
+    bytes_free(&answer);
+    fflush(file);
+    assert_int_equal(ftell(file), 4);
+    assert_int_equal(lseek(fileno(file), 0, SEEK_END), 4);
+    fclose(file);
+}
+
+// In a child of the test's own, whose code tells what happened.
+static int without_descriptors(void) {
+    for (int i = 0; i < 3; i++) close(i);
+    uint8_t *bytes = many();
+    Bytes answer;
+    SingeResult result = isolate_run("a.mesh", put_many, bytes, few, (SingeAllocator){0}, &answer, NULL);
+    return result == SINGE_OK && answer.size == MANY ? 0 : 1;
+}
+
+static void closed_descriptors_do_no_harm(void **state) {
+    (void)state;
+    int status;
+    pid_t child = fork();
+    if (child == 0) _exit(without_descriptors());
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+}
+
+static void signals_do_not_cut_the_wait(void **state) {
+    (void)state;
+    struct sigaction before, own = {.sa_handler = note}; // without SA_RESTART
+    struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
+    uint8_t *bytes = many();
+    Bytes answer;
+    SingeError error;
+    sigaction(SIGALRM, &own, &before);
+    setitimer(ITIMER_REAL, &often, NULL);
+    SingeResult result = run(put_many, bytes, &answer, &error);
+    setitimer(ITIMER_REAL, &never, NULL);
+    sigaction(SIGALRM, &before, NULL);
+    if (result) fail_msg("%s", error.message);
+    assert_int_equal(noted, SIGALRM);
+    noted = 0;
+    assert_memory_equal(answer.data, bytes, MANY);
+    bytes_free(&answer);
+    free(bytes);
+}
+
+static void a_parent_that_ignores_its_children_gets_answers(void **state) {
+    (void)state;
+    uint8_t *bytes = many();
+    Bytes answer;
+    SingeError error;
+    signal(SIGCHLD, SIG_IGN);
+    SingeResult result = run(put_many, bytes, &answer, &error);
+    signal(SIGCHLD, SIG_DFL);
+    if (result) fail_msg("%s", error.message);
+    assert_int_equal(answer.size, MANY);
+    bytes_free(&answer);
+    free(bytes);
+}
+
+#ifdef __linux__
+static SingeResult say_and_wait(void *context, IsolateAnswer *answer, SingeError *error) {
+    (void)write(*(int *)context, "x", 1);
+    return wait_long(context, answer, error);
+}
+
+// The pipe tells: its end is held by the child of the child alone.
+static void the_child_ends_with_its_parent(void **state) {
+    (void)state;
+    int ends[2];
+    char byte;
+    assert_int_equal(pipe(ends), 0);
+    pid_t parent = fork();
+    if (parent == 0) {
+        Bytes answer;
+        IsolateLimits limits = {64 << 20, 1000};
+        (void)!isolate_run("a.mesh", say_and_wait, &ends[1], limits, (SingeAllocator){0}, &answer, NULL);
+        _exit(0);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    kill(parent, SIGKILL);
+    assert_int_equal(waitpid(parent, NULL, 0), parent);
+    assert_int_equal(read(ends[0], &byte, 1), 0); // and does not wait for ever
+    close(ends[0]);
+}
+
+static void *sleep_on(void *context) {
+    char byte;
+    (void)!read(*(int *)context, &byte, 1);
+    return NULL;
+}
+
+static void other_threads_are_refused(void **state) {
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip(); // they have threads of their own
+#endif
+    int ends[2];
+    pthread_t thread;
+    Bytes answer;
+    SingeError error;
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(pthread_create(&thread, NULL, sleep_on, &ends[0]), 0);
+    assert_int_equal(run(put_nothing, NULL, &answer, &error), SINGE_ERROR_STATE);
+    assert_message(&error, "threads");
+    close(ends[1]);
+    pthread_join(thread, NULL);
+    close(ends[0]);
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_come_whole),
+        cmocka_unit_test(errors_come_as_they_were),
+        cmocka_unit_test(failing_memory_of_the_parent_is_reported),
+        cmocka_unit_test(crashes_are_reported),
+        cmocka_unit_test(interrupts_stop_the_child),
+        cmocka_unit_test(time_is_limited),
+        cmocka_unit_test(memory_is_limited),
+        cmocka_unit_test(files_of_the_parent_stay_as_they_are),
+        cmocka_unit_test(closed_descriptors_do_no_harm),
+        cmocka_unit_test(signals_do_not_cut_the_wait),
+        cmocka_unit_test(a_parent_that_ignores_its_children_gets_answers),
+#ifdef __linux__
+        cmocka_unit_test(the_child_ends_with_its_parent),
+        cmocka_unit_test(other_threads_are_refused),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
