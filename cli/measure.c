@@ -19,6 +19,7 @@
 #include "cli/folder.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
+#include "cli/rim.h"
 #include "cli/text.h"
 #include "cli/wrinkles.h"
 #include "formats/formats.h"
@@ -36,7 +37,9 @@ static const ArgCommand measure_command = {
     OPT_COUNT, "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summed up.
-typedef enum Number { BIAS, BEND, BURNT, UNBURNT, RATIO, JITTER, EMBER, NUMBERS } Number;
+typedef enum Number {
+    BIAS, BEND, BURNT, UNBURNT, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS
+} Number;
 
 static const struct {
     const char *key, *title, *format;
@@ -46,7 +49,9 @@ static const struct {
     [BEND] = {"crease_bend_per_m", "bend of creases, 1/m", "%.2f", true},
     [BURNT] = {"burnt_angle_deg", "normal at 3-15 mm where burnt, rms degrees", "%.3f", false},
     [UNBURNT] = {"unburnt_angle_deg", "normal at 3-15 mm where not, rms degrees", "%.3f", true},
-    [RATIO] = {"burnt_over_unburnt_power", "power of the two, burnt over unburnt", "%.3g", false},
+    [CURL] = {"curl_p50_deg", "curl of the rim over 10 mm, median degrees", "%.1f", false},
+    [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
+    [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
     [JITTER] = {"jitter_mm_per_s", "jitter of the unburnt, mm/s rms", "%.3f", true},
     [EMBER] = {"ember_width_mm", "width of the ember line, mm, of some frames", "%.2f", true},
 };
@@ -66,7 +71,9 @@ typedef struct Measure {
     int first, last;          ///< frames; first 0: all
     double (*rows)[NUMBERS];  ///< of every frame
     double *times;
+    Rim *rims;                ///< of every frame
     Wrinkles all;
+    Rim all_rim;
     Moment moments[3];        ///< this frame's at index frame mod 3
     Job job;
     Pictures *pictures;       ///< NULL where the program draws none
@@ -139,15 +146,17 @@ static void sum_up(const Wrinkles *frame, Wrinkles *all) {
 
 static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
 
-/// The numbers of a frame's wrinkles; `area` is what creases were looked for on.
-static void fill_row(const Wrinkles *frame, double area, double *row) {
+/// The numbers of a frame's wrinkles and rim; `area` is what creases were looked for on.
+static void fill_row(const Wrinkles *frame, const Rim *rim, double area, double *row) {
     double bend = 0;
     for (int b = 0; b < WRINKLE_BINS; b++) bend += frame->crease[b];
     row[BIAS] = wrinkles_bias(frame);
     row[BEND] = area > 0 ? bend / area : (double)NAN;
     row[BURNT] = degrees(wrinkles_burnt(frame));
     row[UNBURNT] = degrees(wrinkles_unburnt(frame));
-    row[RATIO] = wrinkles_burnt(frame) / wrinkles_unburnt(frame);
+    row[CURL] = rim_percentile(rim->curl, 0.5);
+    row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
+    row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
     row[JITTER] = row[EMBER] = (double)NAN;
 }
 
@@ -184,12 +193,14 @@ static SingeResult measure_frame(Measure *measure, int frame, SingeError *error)
     const int index = frame - measure->first;
     SingeResult result = read_frame(measure, frame, &surface, &measure->times[index], error);
     if (result) return result;
-    if (!wrinkles_add(&surface, &wrinkles) ||
+    Rim *rim = &measure->rims[index];
+    if (!wrinkles_add(&surface, &wrinkles) || !rim_add(&surface, rim) ||
         !moment_take(&surface, measure->times[index], &measure->moments[index % 3]))
         result = out_of_memory(error);
     if (!result) {
-        fill_row(&wrinkles, rest_area(&surface), measure->rows[index]);
+        fill_row(&wrinkles, rim, rest_area(&surface), measure->rows[index]);
         sum_up(&wrinkles, &measure->all);
+        rim_sum(rim, &measure->all_rim);
         const Moment *m = measure->moments;
         if (index >= 2)
             measure->rows[index - 1][JITTER] = 1e3 * jitter(&m[(index + 1) % 3], &m[(index + 2) % 3], &m[index % 3]);
@@ -231,8 +242,45 @@ static void print_number(const char *format, double number) {
 /// Of all frames together, each with its area, or NaN where that says nothing.
 static double of_all(const Measure *measure, Number number) {
     double row[NUMBERS];
-    fill_row(&measure->all, 0, row);
+    fill_row(&measure->all, &measure->all_rim, 0, row);
     return row[number];
+}
+
+/// A value of a band of the rim.
+typedef enum RimNumber { RIM_AREA, RIM_MASS, RIM_SLOPE, RIM_SLOPE_STRONG, RIM_HEIGHT, RIM_NUMBERS } RimNumber;
+
+static const struct {
+    const char *key, *title, *format;
+} rim_numbers[RIM_NUMBERS] = {
+    [RIM_AREA] = {"area", "area/rest", "%.3f"},
+    [RIM_MASS] = {"mass", "mass", "%.3f"},
+    [RIM_SLOPE] = {"slope_p50_deg", "slope p50", "%.1f"},
+    [RIM_SLOPE_STRONG] = {"slope_p90_deg", "slope p90", "%.1f"},
+    [RIM_HEIGHT] = {"height_mm", "height mm", "%.2f"},
+};
+
+/// NaN where the band has no area.
+static void fill_band(const RimBand *band, double *values) {
+    const double area = band->rest_area > 0 ? band->rest_area : (double)NAN;
+    values[RIM_AREA] = band->area / area;
+    values[RIM_MASS] = band->mass / area;
+    values[RIM_SLOPE] = rim_percentile(band->slope, 0.5);
+    values[RIM_SLOPE_STRONG] = rim_percentile(band->slope, 0.9);
+    values[RIM_HEIGHT] = 1e3 * band->height / area;
+}
+
+static void print_rim(const Rim *rim) {
+    printf("\nrim of the largest piece, by distance from its burnt edge at rest\n%-14s", "mm");
+    for (int n = 0; n < RIM_NUMBERS; n++) printf("%10s", rim_numbers[n].title);
+    for (int b = 0; b < RIM_BANDS; b++) {
+        double values[RIM_NUMBERS];
+        fill_band(&rim->band[b], values);
+        printf("\n%4.0f - %-7.0f", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1]);
+        for (int n = 0; n < RIM_NUMBERS; n++)
+            if (isnan(values[n])) printf("%10s", "-");
+            else print_number(rim_numbers[n].format, values[n]);
+    }
+    printf("\n");
 }
 
 static void print_summary(const Measure *measure) {
@@ -251,6 +299,7 @@ static void print_summary(const Measure *measure) {
         print_number(numbers[n].format, worst);
         printf("%7d\n", frame);
     }
+    print_rim(&measure->all_rim);
     printf("\ncreases by direction, degrees from that of growing u: share of all bend\n");
     double total = 0;
     for (int b = 0; b < WRINKLE_BINS; b++) total += measure->all.crease[b];
@@ -259,20 +308,38 @@ static void print_summary(const Measure *measure) {
                total > 0 ? measure->all.crease[b] / total : 0, b % 6 == 5 ? "\n" : "");
 }
 
+static void write_values(FILE *file, const double *values, int count) {
+    for (int n = 0; n < count; n++)
+        if (isfinite(values[n])) fprintf(file, ",%.6g", values[n]);
+        else fputc(',', file);
+}
+
+static void write_header(FILE *file) {
+    fputs("frame,time", file);
+    for (int n = 0; n < NUMBERS; n++) fprintf(file, ",%s", numbers[n].key);
+    for (int b = 0; b < RIM_BANDS; b++)
+        for (int n = 0; n < RIM_NUMBERS; n++)
+            fprintf(file, ",rim_%.0f_%.0f_%s", 1e3 * rim_band_limits[b], 1e3 * rim_band_limits[b + 1],
+                    rim_numbers[n].key);
+    fputc('\n', file);
+}
+
+static void write_row(FILE *file, const Measure *measure, int index) {
+    fprintf(file, "%d,%.9g", measure->first + index, measure->times[index]);
+    write_values(file, measure->rows[index], NUMBERS);
+    for (int b = 0; b < RIM_BANDS; b++) {
+        double values[RIM_NUMBERS];
+        fill_band(&measure->rims[index].band[b], values);
+        write_values(file, values, RIM_NUMBERS);
+    }
+    fputc('\n', file);
+}
+
 static ExitCode write_csv(Measure *measure) {
     FILE *file = fopen(measure->csv, "w");
     if (file) {
-        fputs("frame,time", file);
-        for (int n = 0; n < NUMBERS; n++) fprintf(file, ",%s", numbers[n].key);
-        for (int frame = measure->first; frame <= measure->last; frame++) {
-            fprintf(file, "\n%d,%.9g", frame, measure->times[frame - measure->first]);
-            for (int n = 0; n < NUMBERS; n++) {
-                double value = measure->rows[frame - measure->first][n];
-                if (isfinite(value)) fprintf(file, ",%.6g", value);
-                else fputc(',', file);
-            }
-        }
-        fputc('\n', file);
+        write_header(file);
+        for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);
     }
     bool failed = !file || ferror(file);
     if (file && fclose(file)) failed = true;
@@ -285,7 +352,8 @@ static ExitCode measure_all(Measure *measure) {
     SingeError error = {0};
     measure->rows = calloc(frames, sizeof *measure->rows);
     measure->times = calloc(frames, sizeof *measure->times);
-    SingeResult result = measure->rows && measure->times ? SINGE_OK : out_of_memory(&error);
+    measure->rims = calloc(frames, sizeof *measure->rims);
+    SingeResult result = measure->rows && measure->times && measure->rims ? SINGE_OK : out_of_memory(&error);
     for (int frame = measure->first; frame <= measure->last && !result; frame++)
         result = measure_frame(measure, frame, &error);
     ExitCode code = EXIT_GOOD;
@@ -299,6 +367,7 @@ static ExitCode measure_all(Measure *measure) {
     for (int k = 0; k < 3; k++) moment_free(&measure->moments[k]);
     free(measure->rows);
     free(measure->times);
+    free(measure->rims);
     return code;
 }
 

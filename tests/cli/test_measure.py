@@ -50,6 +50,21 @@ class Measure(Case):
         self.assertEqual(len(shares), 24)
         self.assertAlmostEqual(sum(shares), 1, delta=0.01)
 
+    def test_rim(self):
+        """A table of bands, and a column for each of their numbers."""
+        self.run_scene("o", "--quiet", "--frames", "30")
+        out, rows = self.rows()
+        self.assertIn("rim of the largest piece", out)
+        bands = [line.split() for line in out.splitlines() if " - " in line and line.split()[1] == "-"]
+        self.assertEqual([band[0] for band in bands], ["0", "1", "2", "4", "7", "11", "20"])
+        last = {name: float(value) for name, value in rows[-1].items() if name.startswith("rim_") and value}
+        self.assertTrue(0.2 < last["rim_0_1_area"] < 1)
+        self.assertLess(last["rim_0_1_mass"], last["rim_7_11_mass"])
+        self.assertLess(abs(last["rim_20_40_mass"] - 1), 0.2)
+        self.assertGreater(float(rows[-1]["curl_p90_deg"]), float(rows[-1]["curl_p50_deg"]))
+        self.assertEqual(rows[0]["curl_p50_deg"], "")  # nothing has burnt yet
+        self.assertEqual(rows[0]["rim_0_1_area"], "")
+
     def test_jitter_by_another_way(self):
         _, rows = self.rows()
         frames = [read_ply(self.path("o", "ply", "tiny.%04d.ply" % i)) for i in range(1, 7)]
