@@ -38,9 +38,10 @@ static const char introduction[] =
     "## Quantities\n"
     "\n"
     "A number may carry a unit: `80 g/m2`, `240 C`, `1.5 mm`, `5 %`. A bare number is in the first unit of its\n"
-    "row: SI, kelvin and, for angles, degrees. Blanks between number and unit do not matter; `m\u00b2` is `m2`. In "
-    "JSON\n"
-    "a quantity with a unit is a string: `\"240 C\"`.\n"
+    "row: SI, kelvin and, for angles, degrees. Blanks between number and unit do not matter; within a unit they\n"
+    "do, so that `3 m m` is a mistake. `m\u00b2` and `m^2` are `m2`, `\u00b5m` is `um`, `\u00b0C` is `C`, `kg\u00b7K` "
+    "is `kg K`. In\n"
+    "JSON a quantity with a unit is a string: `\"240 C\"`.\n"
     "\n"
     "| dimension | units |\n"
     "|---|---|\n";

@@ -73,51 +73,54 @@ static size_t number_length(const char *text) {
     return (size_t)(c - text);
 }
 
-// A unit as it is compared: without blanks, dots and degree signs, powers as digits.
-static void unit_normalise(const char *text, char *unit, size_t size) {
-    static const struct { const char *from, *to;
-    } same[] = {
-        {" ", ""}, {"\u00b0", ""},  {"\u00b7", ""},  {"*", ""},
-        {"^", ""}, {"\u00b2", "2"}, {"\u00b3", "3"}, {"\u00b5", "u"},
-    };
-    size_t used = 0;
-    while (*text && used + 1 < size) {
-        size_t i = 0, count = sizeof same / sizeof *same;
-        while (i < count && strncmp(text, same[i].from, strlen(same[i].from)) != 0)
-            i++;
-        if (i == count) {
-            unit[used++] = *text++;
-        } else {
-            if (*same[i].to)
-                unit[used++] = *same[i].to;
-            text += strlen(same[i].from);
+// How a piece of a unit's name may also be written. Longer spellings come first.
+static const struct Spelling {
+    const char *piece, *text;
+} spellings[] = {
+    {"deg", "\u00b0"}, {"C", "\u00b0C"}, {"F", "\u00b0F"}, {"u", "\u00b5"}, {"u", "\u03bc"}, {"2", "\u00b2"},
+    {"2", "^2"},       {"3", "\u00b3"},  {"3", "^3"},       {" ", "\u00b7"}, {" ", "*"},      {" ", " "},
+    {" ", ""},
+};
+
+static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
+
+// Whether all of `text` spells the unit. Blanks count: "m m" is no "mm".
+static bool unit_spelt(const char *text, const char *name) {
+    while (*name) {
+        if (*text == *name) {
+            text++, name++;
+            continue;
         }
+        size_t i = 0, count = sizeof spellings / sizeof *spellings;
+        while (i < count && !(begins(name, spellings[i].piece) && begins(text, spellings[i].text)))
+            i++;
+        if (i == count)
+            return false;
+        name += strlen(spellings[i].piece);
+        text += strlen(spellings[i].text);
     }
-    unit[used] = 0;
+    return !*text;
+}
+
+// The unit of that spelling; the first where there is none; NULL for one that the dimension has not.
+static const Unit *unit_find(const DimensionRow *row, const char *text) {
+    for (int i = 0; i < UNIT_MOST && row->units[i].name && *text; i++)
+        if (unit_spelt(text, row->units[i].name))
+            return &row->units[i];
+    return *text ? NULL : &row->units[0];
 }
 
 NumberFault quantity_read(const char *text, Dimension dimension, double *value) {
     const DimensionRow *row = &dimensions[dimension];
     size_t length = number_length(text);
     const uint8_t *at = (const uint8_t *)text, *end = at + length;
-    char unit[32];
     double bare = 0;
     if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end)
         return NUMBER_NOT_ONE;
-    unit_normalise(text + length, unit, sizeof unit);
-    const Unit *found = &row->units[0];
-    if (unit[0]) {
-        found = NULL;
-        for (int i = 0; i < UNIT_MOST && row->units[i].name; i++) {
-            char name[32];
-            unit_normalise(row->units[i].name, name, sizeof name);
-            if (strcmp(name, unit) == 0)
-                found = &row->units[i];
-        }
-        if (!found)
-            return NUMBER_BAD_UNIT;
-    }
-    *value = found->factor * (bare + found->offset);
+    const Unit *unit = unit_find(row, text + length + strspn(text + length, " "));
+    if (!unit)
+        return NUMBER_BAD_UNIT;
+    *value = unit->factor * (bare + unit->offset);
     return NUMBER_GOOD;
 }
 
