@@ -180,25 +180,16 @@ static void put_section(FILE *file, const Schema *schema, const void *object) {
 }
 
 // An object of a schema with its defaults, found by way of the objects that hold it.
-static const void *default_object(SceneArena *arena, const Schema *wanted, const Schema *schema, const void *object) {
+static const void *default_object(SceneArena *arena, const Schema *wanted, const Schema *schema, void *object) {
     if (wanted == schema)
         return object;
-    for (int i = 0; i < schema->row_count; i++) {
+    for (int i = 0; i < schema->row_count && object; i++) {
         const SchemaRow *row = &schema->rows[i];
-        const void *inner = NULL;
-        if (row->type == ROW_PARAM && wanted == &schema_noise) {
-            void *made = arena_new(arena, 1, schema_noise.size);
-            return made && default_noise(arena, made) ? made : NULL;
-        }
-        if (row->type == ROW_MAP)
-            inner = (const char *)object + row->offset;
-        else if (row->type == ROW_LIST && row->sub->defaults) {
-            void *made = arena_new(arena, 1, row->sub->size);
-            inner = made && row->sub->defaults(arena, made) ? made : NULL;
-        } else if (row->sub == wanted) {
-            return arena_new(arena, 1, wanted->size);
-        }
-        const void *found = inner ? default_object(arena, wanted, row->sub, inner) : NULL;
+        SchemaRow noise = {.type = ROW_LIST, .sub = &schema_noise}; // what a ROW_PARAM may hold
+        if (row->type == ROW_PARAM)
+            row = &noise;
+        void *begun = row->sub ? row_begin(arena, row, object) : NULL;
+        const void *found = begun ? default_object(arena, wanted, row->sub, begun) : NULL;
         if (found)
             return found;
     }

@@ -183,15 +183,21 @@ static void read_choice(Reader *reader, const Schema *schema, const Node *node, 
         schema->chosen(object);
 }
 
+void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
+    void *begun = row->type == ROW_MAP ? at(object, row->offset) : arena_new(arena, 1, row->sub->size);
+    return begun && (!row->sub->defaults || row->sub->defaults(arena, begun)) ? begun : NULL;
+}
+
 static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    if (row->extra && row->sub->defaults) // nothing of what it was before
-        row->sub->defaults(reader->arena, at(object, row->offset));
+    void *inner = row_begin(reader->arena, row, object); // nothing of what it was before, where it has own defaults
+    if (!inner)
+        return;
     if (row->extra)
         *(bool *)at(object, row->extra) = true;
     if (node->kind == NODE_MAP)
-        schema_read(reader, row->sub, node, at(object, row->offset));
+        schema_read(reader, row->sub, node, inner);
     else if (row->sub->choice && node->kind == NODE_VALUE)
-        read_choice(reader, row->sub, node, at(object, row->offset));
+        read_choice(reader, row->sub, node, inner);
     else
         value_wrong(reader, node, row);
 }

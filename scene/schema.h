@@ -113,6 +113,10 @@ static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);
 
+/// What a row with a `sub` has before a key of it is read: the map in the object, or a new entry of a list, with its
+/// defaults. The reader and docs/scene.md begin by it. NULL when out of memory.
+void *row_begin(SceneArena *arena, const SchemaRow *row, void *object);
+
 /// Makes maps of bare words in a map's stead, so that --set reaches into them.
 void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map);
 
