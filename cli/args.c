@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "formats/printable.h"
+
 ArgReader args_begin(const ArgCommand *command, int argc, char **argv) {
     return (ArgReader){.command = command, .argc = argc, .argv = argv};
 }
@@ -14,9 +16,12 @@ ArgReader args_begin(const ArgCommand *command, int argc, char **argv) {
 int args_complain(const ArgReader *reader, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    fprintf(stderr, "singe %s: error: ", reader->command->name);
-    vfprintf(stderr, format, list);
+    char text[4096];
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    printable_trim(text);
+    fprintf(stderr, "singe %s: error: ", reader->command->name);
+    printable_write(text, stderr);
     fprintf(stderr, "\nsee: singe %s --help\n", reader->command->name);
     return ARG_ERROR;
 }
@@ -59,8 +64,8 @@ const char *args_nearest(const char *word, const void *first, int count, unsigne
 static int unknown_option(const ArgReader *reader, const char *argument, const char *name) {
     const ArgCommand *command = reader->command;
     const char *near = args_nearest(name, command->options, command->option_count, sizeof *command->options);
-    if (near) return args_complain(reader, "unknown option '%s'; did you mean '--%s'?", argument, near);
-    return args_complain(reader, "unknown option '%s'", argument);
+    if (near) return args_complain(reader, "unknown option '%s'; did you mean '--%s'?", shown(argument).text, near);
+    return args_complain(reader, "unknown option '%s'", shown(argument).text);
 }
 
 static int take_long(ArgReader *reader, const char *argument, const char **value) {
@@ -133,7 +138,7 @@ int args_next(ArgReader *reader, const char **value) {
         return take_letter(reader, value);
     }
     if (!command->operand || (++reader->operand_count > 1 && !strstr(command->operand, "...")))
-        return args_complain(reader, "one argument too many: '%s'", argument);
+        return args_complain(reader, "one argument too many: '%s'", shown(argument).text);
     reader->index++;
     *value = argument;
     return ARG_OPERAND;
@@ -164,7 +169,7 @@ bool args_int(const ArgReader *reader, int option, const char *text, int low, in
         return true;
     }
     args_complain(reader, "--%s: expected a whole number from %d to %d, got '%s'",
-                  reader->command->options[option].name, low, high, text);
+                  reader->command->options[option].name, low, high, shown(text).text);
     return false;
 }
 
@@ -182,6 +187,7 @@ bool args_span(const ArgReader *reader, int option, const char *text, int *first
         *first = (int)a, *last = (int)b;
         return true;
     }
-    args_complain(reader, "--%s: expected A-B with 1 <= A <= B, got '%s'", reader->command->options[option].name, text);
+    args_complain(reader, "--%s: expected A-B with 1 <= A <= B, got '%s'", reader->command->options[option].name,
+                  shown(text).text);
     return false;
 }

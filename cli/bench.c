@@ -11,6 +11,7 @@
 #include "cli/bench_preview.h"
 #include "cli/cli.h"
 #include "cli/console.h"
+#include "formats/printable.h"
 
 #define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
 #define SOLVER (BENCH_BIT(SOLVER) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(SUBSTEPS))
@@ -118,7 +119,7 @@ static int find(const char *word) {
     for (int i = 0; i < MEASUREMENTS; i++)
         if (strcmp(measurements[i].name, word) == 0) return i;
     const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
-    fprintf(stderr, "singe bench: error: unknown measurement '%s'", word);
+    fprintf(stderr, "singe bench: error: unknown measurement '%s'", shown(word).text);
     if (near) fprintf(stderr, "; did you mean '%s'?", near);
     fputs("\nsee: singe bench --help\n", stderr);
     return -1;

@@ -1,4 +1,5 @@
 #include "cli/bench_args.h"
+#include "formats/printable.h"
 
 #include <errno.h>
 #include <math.h>
@@ -37,7 +38,8 @@ typedef struct Parser {
 } Parser;
 
 static bool refuse(const Parser *parser, const char *expected, const char *text) {
-    args_complain(&parser->reader, "--%s: expected %s, got '%s'", parser->options[parser->option].name, expected, text);
+    args_complain(&parser->reader, "--%s: expected %s, got '%s'", parser->options[parser->option].name, expected,
+                  shown(text).text);
     return false;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/bench_materials.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
+#include "formats/printable.h"
 
 enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
 
@@ -69,7 +70,7 @@ static void report_meshes(const Job *job) {
         char text[200];
         for (int line = 0; mesh_report_line(&job->assets.reports[i], line, text, sizeof text); line++) {
             if (line) printf("              %s\n", text);
-            else printf("mesh          %s: %s\n", job->scene->sheets[i].mesh.name, text);
+            else printf("mesh          %s: %s\n", shown_path(job->scene->sheets[i].mesh.name).text, text);
         }
     }
 }
@@ -123,7 +124,7 @@ static void report_materials(const Scene *scene, float thickening) {
         while (memcmp(&scene->sheets[j].material, material, sizeof *material) != 0) j++;
         if (j < i) continue;
         BenchMaterial bench = bench_material(material);
-        printf("material      %s, %.4g g/m2", material->name ? material->name : "its own", 1e3 * (double)grammage);
+        printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own", 1e3 * (double)grammage);
         report_front(scene, &bench, thickening);
         printf("\n");
         told++;
@@ -161,7 +162,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
             code = EXIT_FAILED;
         } else {
             report_times(&job, &times, thickening);
-            printf("%s: good\n", path); // now that it has made its first steps
+            printf("%s: good\n", shown_path(path).text); // now that it has made its first steps
         }
     }
     singe_sim_destroy(sim);

@@ -7,6 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "formats/printable.h"
+
 Console console_make(bool quiet) {
     const char *kind = getenv("TERM"), *plain = getenv("NO_COLOR");
     bool terminal = isatty(STDERR_FILENO) && kind && strcmp(kind, "dumb") != 0;
@@ -28,7 +30,10 @@ static void say(Console *console, const char *kind, const char *colour, const ch
     console_clear(console);
     fputs("singe: ", stderr);
     if (*kind) fprintf(stderr, "%s%s:%s ", console->colour ? colour : "", kind, console->colour ? "\033[0m" : "");
-    vfprintf(stderr, format, list);
+    char text[16384];
+    vsnprintf(text, sizeof text, format, list);
+    printable_trim(text);
+    printable_write(text, stderr);
     fputc('\n', stderr);
 }
 

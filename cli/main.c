@@ -4,6 +4,7 @@
 
 #include "cli/args.h"
 #include "cli/cli.h"
+#include "formats/printable.h"
 #include "singe/singe.h"
 
 static const struct {
@@ -60,7 +61,7 @@ int main(int argc, char **argv) {
         return finish(EXIT_GOOD);
     }
     const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
-    fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", word);
+    fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", shown(word).text);
     if (near) fprintf(stderr, "; did you mean '%s'?", near);
     fputs("\nsee: singe --help\n", stderr);
     return EXIT_INPUT;

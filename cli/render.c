@@ -14,6 +14,7 @@
 #include "cli/pictures.h"
 #include "cli/text.h"
 #include "cli/video.h"
+#include "formats/printable.h"
 
 enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THREADS, OPT_QUIET, OPT_COUNT };
 
@@ -78,16 +79,17 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
         case OPT_SET:
             good = strncmp(value, "preview.", 8) == 0;
             if (good) set_add(&o->sets, value);
-            else args_complain(&reader, "--set: only preview.* can be set here, got '%s'", value);
+            else args_complain(&reader, "--set: only preview.* can be set here, got '%s'", shown(value).text);
             break;
         case OPT_FRAMES:
             good = pair(value, '-', true, &o->first, &o->last) && o->first <= o->last;
-            if (!good) args_complain(&reader, "--frames: expected A-B with 1 <= A <= B, got '%s'", value);
+            if (!good) args_complain(&reader, "--frames: expected A-B with 1 <= A <= B, got '%s'", shown(value).text);
             break;
         case OPT_SHEET:
             good = pair(value, 'x', false, &o->columns, &o->rows) && o->columns <= 64 && o->rows <= 64;
             if (!good)
-                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'", value);
+                args_complain(&reader, "--sheet: expected COLUMNSxROWS such as 4x2, at most 64, got '%s'",
+                              shown(value).text);
             break;
         case OPT_ONLY_SHEET: o->only_sheet = true; break;
         case OPT_EXR: o->exr = true; break;

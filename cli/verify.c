@@ -13,6 +13,7 @@
 #include "cli/interrupt.h"
 #include "cli/stats_table.h"
 #include "cli/text.h"
+#include "formats/printable.h"
 
 enum { OPT_FRAMES, OPT_STRETCH, OPT_CSV, OPT_COUNT };
 
@@ -238,7 +239,7 @@ static bool read_stretch(const ArgReader *reader, const char *text, double *stre
     char *end;
     *stretch = strtod(text, &end);
     if (end != text && *end == 0 && *stretch >= 1 && isfinite(*stretch)) return true;
-    args_complain(reader, "--stretch: expected a number of 1 or more, got '%s'", text);
+    args_complain(reader, "--stretch: expected a number of 1 or more, got '%s'", shown(text).text);
     return false;
 }
 

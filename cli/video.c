@@ -48,8 +48,8 @@ static void tell_command(Console *console, const char *what, VideoResult result,
         free(line);
         line = longer;
     }
-    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later:\n  %s", what, why, line);
-    else console_error(console, "no %s: %s; to make it later:\n  %s", what, why, line);
+    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later: %s", what, why, line);
+    else console_error(console, "no %s: %s; to make it later: %s", what, why, line);
     free(line);
 }
 

@@ -48,14 +48,16 @@ static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeErr
     return SINGE_OK;
 }
 
-static SingeResult read_open(int file, const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+static SingeResult read_open(int file, const char *path, size_t most, SingeAllocator allocator, Bytes *bytes,
+                             SingeError *error) {
     struct stat about;
     if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
     if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
     if (!S_ISREG(about.st_mode))
         return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
-    if (about.st_size > FILE_LIMIT)
-        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than 2 GiB", short_name(path));
+    if (about.st_size > (off_t)most)
+        return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path),
+                      (most + 1) >> 20);
     bytes->size = (size_t)about.st_size;
     bytes->allocator = allocator;
     bytes->data = store_new(allocator, bytes->size + 1, 1);
@@ -64,11 +66,15 @@ static SingeResult read_open(int file, const char *path, SingeAllocator allocato
 }
 
 SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+    return file_read_most(path, FILE_LIMIT, allocator, bytes, error);
+}
+
+SingeResult file_read_most(const char *path, size_t most, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
     memset(bytes, 0, sizeof *bytes);
     // without O_NONBLOCK a named pipe would wait here for its writer
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return refuse_system(error, "read", path, errno);
-    SingeResult result = read_open(file, path, allocator, bytes, error);
+    SingeResult result = read_open(file, path, most, allocator, bytes, error);
     close(file);
     if (result) bytes_free(bytes);
     return result;

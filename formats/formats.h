@@ -16,6 +16,9 @@ typedef struct Bytes {
 /// Reads a whole regular file. Errors: SINGE_ERROR_FILE with the path and the system's reason (missing,
 /// directory, unreadable), SINGE_ERROR_LIMIT above 2 GiB.
 SINGE_NODISCARD SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error);
+/// The same of a file that has at most so many bytes; SINGE_ERROR_LIMIT where it is larger, before it is read.
+SINGE_NODISCARD SingeResult file_read_most(const char *path, size_t most, SingeAllocator allocator, Bytes *bytes,
+                                           SingeError *error);
 void bytes_free(Bytes *bytes);
 
 /// Writes path whole or leaves it as it was: a temporary name beside it, flushed, renamed. Errors name

@@ -16,6 +16,7 @@ typedef struct ObjFace {
 
 typedef struct Obj {
     Text text;
+    const uint8_t *begin; ///< of the file
     const char *name;
     SingeAllocator allocator;
     SingeError *error;
@@ -35,10 +36,10 @@ static SingeResult obj_refuse(const Obj *obj, SingeResult code, const char *what
     return obj_refuse_at(obj, code, obj->text.line, what);
 }
 
+/// The word at the cursor is told by its place alone: the file may not be one that whoever sees the message may read.
 static SingeResult obj_refuse_word(const Obj *obj, const char *what) {
-    Excerpt word = excerpt(obj->text.at, text_word_end(&obj->text));
-    return refuse(obj->error, SINGE_ERROR_FORMAT, "obj", obj->text.line, "%s:%lld: \"%s\" %s", short_name(obj->name),
-                  (long long)obj->text.line, word.text, what);
+    return refuse(obj->error, SINGE_ERROR_FORMAT, "obj", obj->text.line, "%s:%lld:%lld: this %s", short_name(obj->name),
+                  (long long)obj->text.line, (long long)text_column(&obj->text, obj->begin), what);
 }
 
 // A backslash at the end of a line joins the next one to it.
@@ -120,9 +121,9 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     if (status == NUMBER_OK && value == 0) return obj_refuse_word(obj, "has index 0; OBJ counts from 1");
     if (status == NUMBER_RANGE || value > MESH_COUNT_LIMIT || value < -(int64_t)so_far)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", obj->text.line,
-                      "%s:%lld: %s index %s is out of range (%llu so far)",
-                      short_name(obj->name), (long long)obj->text.line, what,
-                      excerpt(word, text_word_end(&obj->text)).text, (unsigned long long)so_far);
+                      "%s:%lld:%lld: this %s index is out of range (%llu so far)",
+                      short_name(obj->name), (long long)obj->text.line,
+                      (long long)text_column(&obj->text, obj->begin), what, (unsigned long long)so_far);
     *index = (int32_t)(value > 0 ? value - 1 : value + (int64_t)so_far);
     (void)number_integer(&obj->text.at, obj->text.end, &value);
     return SINGE_OK;
@@ -279,7 +280,7 @@ SingeResult obj_read(const char *name, const uint8_t *bytes, size_t size, SingeA
                      SingeError *error) {
     memset(polygons, 0, sizeof *polygons);
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "obj", 1, "%s: is empty", short_name(name));
-    Obj obj = {.text = {bytes, bytes + size, 1}, .name = name, .allocator = allocator, .error = error};
+    Obj obj = {.text = {bytes, bytes + size, 1}, .begin = bytes, .name = name, .allocator = allocator, .error = error};
     SingeResult result = obj_parse(&obj);
     if (!result) result = obj_finish(&obj, polygons);
     store_free(allocator, obj.positions, obj.position_capacity, sizeof *obj.positions);

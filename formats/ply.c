@@ -58,12 +58,13 @@ static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
         if (status == NUMBER_OK && (*value < least[type] || *value > most[type])) status = NUMBER_RANGE;
     }
     if (status == NUMBER_OK && text->at == end) return SINGE_OK;
-    Excerpt shown = excerpt(word, end);
-    if (status == NUMBER_NOT_FINITE)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not a finite number", shown.text);
-    if (status == NUMBER_RANGE) return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is out of range", shown.text);
-    return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not %s", shown.text,
-                      type < PLY_FLOAT32 ? "an integer" : "a number");
+    text->at = word;
+    return ply_refuse(ply, SINGE_ERROR_FORMAT, "the value in column %lld is %s",
+                      (long long)text_column(text, ply->begin),
+                      status == NUMBER_NOT_FINITE ? "not a finite number"
+                      : status == NUMBER_RANGE    ? "out of range"
+                      : type < PLY_FLOAT32        ? "not an integer"
+                                                  : "not a number");
 }
 
 static SingeResult ply_value(Ply *ply, PlyType type, double *value) {

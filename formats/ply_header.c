@@ -74,7 +74,7 @@ static SingeResult ply_header_type(Ply *ply, Word word, PlyType *type) {
             *type = (PlyType)i;
             return SINGE_OK;
         }
-    return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not a PLY type", excerpt(word.begin, word.end).text);
+    return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has no PLY type where one is due");
 }
 
 static SingeResult ply_header_element(Ply *ply) {
@@ -83,16 +83,15 @@ static SingeResult ply_header_element(Ply *ply) {
     TRY(ply_header_name(ply, &name));
     for (size_t i = 0; i < header->element_count; i++)
         if (word_same(name, header->elements[i].name, header->elements[i].name_end))
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "element \"%s\" is declared twice",
-                              excerpt(name.begin, name.end).text);
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "an element is declared twice");
     Word number = ply_word(ply);
     const uint8_t *at = number.begin;
     int64_t count;
     NumberStatus status = number_integer(&at, number.end, &count);
     if (status == NUMBER_JUNK || (status == NUMBER_OK && (at != number.end || count < 0)))
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not a count", excerpt(number.begin, number.end).text);
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "the line has no count of elements");
     if (status == NUMBER_RANGE || count > MESH_COUNT_LIMIT)
-        return ply_refuse(ply, SINGE_ERROR_LIMIT, "%s elements are too many", excerpt(number.begin, number.end).text);
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "too many elements");
     if (!store_grow(ply->allocator, &header->elements, &header->element_capacity, header->element_count + 1,
                     sizeof(PlyElement)))
         return refuse_memory(ply->error, "ply", ply->name);
@@ -119,8 +118,7 @@ static SingeResult ply_header_property(Ply *ply) {
     if (element->property_count >= 1000) return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than 1000 properties");
     for (size_t i = element->first_property; i < header->property_count; i++)
         if (word_same(name, header->properties[i].name, header->properties[i].name_end))
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "property \"%s\" is declared twice",
-                              excerpt(name.begin, name.end).text);
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property is declared twice");
     property.name = name.begin, property.name_end = name.end;
     if (!store_grow(ply->allocator, &header->properties, &header->property_capacity, header->property_count + 1,
                     sizeof property))
@@ -137,7 +135,7 @@ static SingeResult ply_header_format(Ply *ply, bool *known) {
     for (int i = 0; i < 3; i++)
         if (word_is(word, formats[i])) ply->header.format = (PlyFormat)i, *known = true;
     if (!*known)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not a PLY format", excerpt(word.begin, word.end).text);
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
     if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is known");
     return SINGE_OK;
 }
@@ -158,8 +156,7 @@ static SingeResult ply_header_line(Ply *ply, bool *format_known, bool *ended) {
     else if (word_is(word, "element")) TRY(ply_header_element(ply));
     else if (word_is(word, "property")) TRY(ply_header_property(ply));
     else if (!*ended)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "\"%s\" is not a line of a PLY header",
-                          excerpt(word.begin, word.end).text);
+        return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
     text_skip_blanks(&ply->text);
     if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
     if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");
@@ -180,8 +177,8 @@ static SingeResult ply_check_counts(const Ply *ply) {
         }
         // the product is below 2^31 * 8000
         if (least * element->count > left)
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements \"%s\"",
-                              element->count, excerpt(element->name, element->name_end).text);
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
+                              element->count, i + 1);
         left -= least * element->count;
     }
     return SINGE_OK;

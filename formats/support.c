@@ -1,5 +1,7 @@
 #include "support.h"
 
+#include "printable.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,6 +69,7 @@ SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
+    printable_trim(error->message);
     return code;
 }
 
@@ -76,13 +79,7 @@ SingeResult refuse_memory(SingeError *error, const char *stage, const char *name
 
 const char *short_name(const char *name) {
     size_t length = strlen(name);
-    return length > 200 ? name + length - 200 : name;
-}
-
-Excerpt excerpt(const uint8_t *begin, const uint8_t *end) {
-    Excerpt shown;
-    size_t length = (size_t)(end - begin), kept = length > 24 ? 21 : length;
-    for (size_t i = 0; i < kept; i++) shown.text[i] = begin[i] >= 32 && begin[i] < 127 ? (char)begin[i] : '?';
-    strcpy(shown.text + kept, length > 24 ? "..." : "");
-    return shown;
+    name += length > 200 ? length - 200 : 0;
+    while (((unsigned char)*name & 0xc0) == 0x80) name++; // not within a character
+    return name;
 }

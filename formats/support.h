@@ -33,12 +33,6 @@ SingeResult refuse_memory(SingeError *error, const char *stage, const char *name
 /// The end of a path, short enough that a message keeps its reason.
 const char *short_name(const char *name);
 
-/// A piece of a file made fit to print: at most 24 characters of printable ASCII.
-typedef struct Excerpt {
-    char text[28];
-} Excerpt;
-Excerpt excerpt(const uint8_t *begin, const uint8_t *end);
-
 static inline uint32_t load_u32_little(const uint8_t *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }

@@ -43,6 +43,13 @@ static inline const uint8_t *text_word_end(const Text *text) {
     return p;
 }
 
+/// Where the cursor is in its line, from 1, in bytes. `begin` is the file's first.
+static inline int64_t text_column(const Text *text, const uint8_t *begin) {
+    const uint8_t *p = text->at;
+    while (p > begin && !text_is_end(p[-1])) p--;
+    return text->at - p + 1;
+}
+
 static inline bool text_word_is(const uint8_t *begin, const uint8_t *end, const char *word) {
     size_t length = strlen(word);
     return (size_t)(end - begin) == length && memcmp(begin, word, length) == 0;

@@ -1,5 +1,6 @@
 // The material that another begins as: one of those that are built in, or a file. Either is a map of the same keys as
 // `material` in a scene, and may have a base of its own.
+#include "formats/printable.h"
 #include "scene/builtin.h"
 #include "scene/values.h"
 
@@ -78,7 +79,7 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
         SceneText *known = base_known(reader, builtin->name);
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
     }
-    char seen[80], hint[80], names[160];
+    char seen[NODE_WORDS], hint[80], names[160];
     message_add(reader->messages, reader->text, node->place,
                 "there is no material %s; built in are %s, and a file of your own is named with its ending "
                 "(mine.yaml)%s",
@@ -98,11 +99,8 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
         return NULL;
     if ((text = base_known(reader, file->path)))
         return text;
-    if (file_read(file->path, (SingeAllocator){0}, &bytes, &error))
-        message_add(reader->messages, reader->text, node->place, "%s", error.message);
-    else if (bytes.size > SCENE_BYTES_MOST)
-        message_add(reader->messages, reader->text, node->place, "a material has at most 1 MiB, %s has %zu bytes",
-                    file->path, bytes.size);
+    if (file_read_most(file->path, SCENE_BYTES_MOST, (SingeAllocator){0}, &bytes, &error))
+        message_add(reader->messages, reader->text, node->place, "a material cannot be read: %s", error.message);
     else
         text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
@@ -117,7 +115,7 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
                                           outer->status.st_dev == link->status.st_dev)) {
             message_add(reader->messages, reader->text, node->place, "%s begins as itself, by way of %s",
-                        link->text->name, reader->chain->text->name);
+                        shown_path(link->text->name).text, shown_path(reader->chain->text->name).text);
             return false;
         }
     if (link->depth <= BASES_MOST)
@@ -153,7 +151,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
                            reader->messages);
     if (!root || !inner.prefix)
         return;
-    char seen[80];
+    char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, root->place, "a material must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));

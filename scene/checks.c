@@ -1,4 +1,5 @@
 // Checks that need more than one key.
+#include "formats/printable.h"
 #include "scene/schema.h"
 
 #include <string.h>
@@ -136,7 +137,7 @@ static void check_names(Reader *reader, const Node *list, Scene *scene) {
             if (strcmp(scene->sheets[i].name, scene->sheets[j].name) == 0) {
                 const Node *name = node_find(node, "name");
                 message_add(reader->messages, reader->text, name ? name->place : node->place,
-                            "two sheets are called '%s'; give each its own name", scene->sheets[i].name);
+                            "two sheets are called '%s'; give each its own name", shown(scene->sheets[i].name).text);
                 break;
             }
     }
@@ -169,7 +170,7 @@ static void resolve_pin(Reader *reader, const Node *node, Scene *scene, ScenePin
     const Node *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->place : node->place, "there is no sheet '%s'%s",
-                pin->sheet, nearest_hint(&nearest, hint, sizeof hint));
+                shown(pin->sheet).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
 // The step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10.

@@ -114,7 +114,8 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         break;
     case ROW_TEXT: add(buffer, size, "a text"); break;
     case ROW_NAME:
-        add(buffer, size, "a name of at most 100 characters without / \\ : * ? \" < > | % or a dot in front");
+        add(buffer, size, "a name of at most 100 characters and 200 bytes, all of them printable, without / \\ : * ? \" < > | % or a "
+            "dot in front");
         break;
     case ROW_FILE: add(buffer, size, "the name of a file"); break;
     case ROW_BASE: add_base(buffer, size); break;

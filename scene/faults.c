@@ -2,6 +2,7 @@
 // a scene is refused anyway: a good one is built once.
 #include "scene/faults.h"
 
+#include "formats/printable.h"
 #include "scene/schema.h"
 
 #include <string.h>
@@ -49,8 +50,8 @@ static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, con
         snprintf(face, sizeof face, ":%u", (unsigned)mesh->cell_lines[cell]);
     else if (cell < mesh->cell_count)
         snprintf(face, sizeof face, ": face %u", (unsigned)(mesh->cell_faces ? mesh->cell_faces[cell] : cell) + 1);
-    message_add(messages, scene->text, file->place, "%s%s: %s (cells and vertices counted from 0)", file->name, face,
-                what);
+    message_add(messages, scene->text, file->place, "%s%s: %s (cells and vertices counted from 0)",
+                shown_path(file->name).text, face, what);
 }
 
 bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scope, SceneMessages *messages) {

@@ -1,4 +1,5 @@
 // The files of a scene: meshes, transformed, and pictures.
+#include "formats/printable.h"
 #include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
@@ -128,8 +129,11 @@ static void check_attribute(Loader *loader, const char *key, const SingeParam *p
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
-    message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no attribute '%s'%s", key,
-                param->attribute, nearest_hint(&nearest, hint, sizeof hint));
+    if (file->place.file) // what stands in other files than the scene is not told
+        message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no such attribute", key);
+    else
+        message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no attribute '%s'%s", key,
+                    shown(param->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {

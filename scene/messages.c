@@ -1,18 +1,28 @@
 #include "scene/messages.h"
 
+#include "formats/printable.h"
+
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MESSAGES_MOST = 200, LINE_WIDTH = 110 };
 
-static char *text_copy(const char *text, size_t length) {
-    char *copy = malloc(length + 1);
-    if (copy) {
-        memcpy(copy, text, length);
-        copy[length] = 0;
-    }
-    return copy;
+// A copy as it may be printed (formats/printable.h); tabs are blanks.
+static char *text_printable(const char *text, size_t length) {
+    const char *end = text + length;
+    char *copy = malloc(PRINTABLE_PIECE * length + 1);
+    size_t used = 0;
+    if (!copy)
+        return NULL;
+    while (text < end)
+        if (*text == '\t')
+            copy[used++] = ' ', text++;
+        else
+            used += printable_character(&text, end, copy + used);
+    copy[used] = 0;
+    char *fit = realloc(copy, used + 1);
+    return fit ? fit : copy;
 }
 
 static char *text_format(const char *format, va_list arguments) {
@@ -21,34 +31,12 @@ static char *text_format(const char *format, va_list arguments) {
     int length = vsnprintf(NULL, 0, format, again);
     va_end(again);
     char *text = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (text)
-        vsnprintf(text, (size_t)length + 1, format, arguments);
-    return text;
-}
-
-// The length of a UTF-8 character at the start of a text; 0 where its bytes are not one.
-static int character_length(const unsigned char *c) {
-    int length = *c < 0x80                 ? 1
-                 : *c >= 0xc2 && *c < 0xe0 ? 2
-                 : *c >= 0xe0 && *c < 0xf0 ? 3
-                 : *c >= 0xf0 && *c < 0xf5 ? 4
-                                           : 0;
-    for (int i = 1; i < length; i++)
-        if ((c[i] & 0xc0) != 0x80)
-            return 0;
-    return length;
-}
-
-// Bytes that would move the cursor become blanks, and what is not UTF-8 question marks.
-static void text_tame(char *text) {
-    for (unsigned char *c = (unsigned char *)text; *c;) {
-        int length = character_length(c);
-        if (!length)
-            *c = '?';
-        else if (*c < 0x20 || *c == 0x7f)
-            *c = ' ';
-        c += length ? length : 1;
-    }
+    if (!text)
+        return NULL;
+    vsnprintf(text, (size_t)length + 1, format, arguments);
+    char *printable = text_printable(text, strlen(text));
+    free(text);
+    return printable;
 }
 
 static bool starts_character(char byte) { return ((unsigned char)byte & 0xc0) != 0x80; }
@@ -76,11 +64,16 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
         while (end > start && !starts_character(*end))
             end--;
     }
-    *caret = column;
-    char *copy = text_copy(start, (size_t)(end - start));
-    if (copy)
-        text_tame(copy);
-    return copy;
+    // the caret counts characters as they are shown
+    const char *at = start;
+    for (int i = 1; i < column && at < end; i++)
+        do
+            at++;
+        while (at < end && !starts_character(*at));
+    char *before = text_printable(start, (size_t)(at - start));
+    *caret = before ? (int)printable_count(before) + 1 : 0;
+    free(before);
+    return *caret ? text_printable(start, (size_t)(end - start)) : NULL;
 }
 
 // The file that a place is in.
@@ -94,24 +87,14 @@ static const SceneText *text_of(const SceneText *text, ScenePlace place) {
 static char *text_origin(const SceneText *text, ScenePlace place) {
     const SceneText *file = text_of(text, place);
     const char *name = file && file->name ? file->name : "scene";
-    size_t size = 64;
-    if (place.set > 0 && text && place.set <= text->set_count) {
-        const char *set = text->sets[place.set - 1];
-        size += strlen(set);
-        char *origin = malloc(size);
-        if (origin)
-            snprintf(origin, size, "--set %s", set);
-        return origin;
-    }
-    size += strlen(name);
-    char *origin = malloc(size);
-    if (!origin)
-        return NULL;
-    if (place.line > 0)
-        snprintf(origin, size, "%s:%d:%d", name, place.line, place.column);
+    char origin[sizeof(Shown) + 40];
+    if (place.set > 0 && text && place.set <= text->set_count)
+        snprintf(origin, sizeof origin, "--set %s", shown(text->sets[place.set - 1]).text);
+    else if (place.line > 0)
+        snprintf(origin, sizeof origin, "%s:%d:%d", shown_path(name).text, place.line, place.column);
     else
-        snprintf(origin, size, "%s", name);
-    return origin;
+        snprintf(origin, sizeof origin, "%s", shown_path(name).text);
+    return text_printable(origin, strlen(origin));
 }
 
 static bool told_already(const SceneMessages *messages, const SceneMessage *message) {
@@ -144,15 +127,14 @@ void message_add(SceneMessages *messages, const SceneText *text, ScenePlace plac
         messages->left_out++;
         return;
     }
-    text_tame(message.text);
-    text_tame(message.origin);
     if (place.file && told_already(messages, &message)) {
         free(message.text);
         free(message.origin);
         return;
     }
     const SceneText *file = text_of(text, place);
-    if (file && place.line > 0 && place.set == 0)
+    // a line is shown of the scene alone: other files may be none of whoever sees the message
+    if (file && place.line > 0 && place.set == 0 && place.file == 0)
         message.source = source_line(file, place.line, place.column, &message.caret);
     items[messages->count++] = message;
 }

@@ -1,6 +1,8 @@
 // scene_read and scene_parse: bytes → tree → --set → scene.
 #include "scene/values.h"
 
+#include "formats/printable.h"
+
 #include <string.h>
 
 // The text is kept with the scene, so that later messages can show its lines.
@@ -32,15 +34,15 @@ static void take_name(Reader *reader, const Node *root) {
     row_expected(&row, expected, sizeof expected);
     reader->scene->name = stem(reader->arena, reader->text->name);
     if (reader->scene->name && !node_find(root, "name") && !value_names_files(reader->scene->name))
-        message_add(reader->messages, reader->text, (ScenePlace){0},
-                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s", reader->scene->name,
-                    expected);
+        message_add(reader->messages, reader->text, (ScenePlace){.line = 1, .column = 1},
+                    "the outputs cannot be called '%s' as the file is; give the scene a name: %s",
+                    shown(reader->scene->name).text, expected);
 }
 
 static void scene_fill(Reader *reader, const Node *root) {
     Scene *scene = reader->scene;
     if (root->kind != NODE_MAP) {
-        char seen[80];
+        char seen[NODE_WORDS];
         message_add(reader->messages, reader->text, root->place, "a scene must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
         return;
@@ -88,7 +90,7 @@ SingeResult scene_parse(const char *name, const char *bytes, size_t size, const 
                       .set_count = set_count > 0 ? set_count : 0};
     *scene = NULL;
     if (size > SCENE_BYTES_MOST) {
-        message_add(messages, &text, (ScenePlace){0}, "a scene has at most 1 MiB, this one has %zu bytes", size);
+        message_add(messages, &text, (ScenePlace){.line = 1, .column = 1}, "a scene has at most 1 MiB, this one has %zu bytes", size);
         return SINGE_ERROR_LIMIT;
     }
     SceneArena *arena = arena_create();
@@ -106,9 +108,9 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
     Bytes bytes = {0};
     SingeError error;
     *scene = NULL;
-    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, &error);
+    SingeResult result = file_read_most(path, SCENE_BYTES_MOST, (SingeAllocator){0}, &bytes, &error);
     if (result) {
-        message_add(messages, &text, (ScenePlace){0}, "%s", error.message);
+        message_add(messages, &text, (ScenePlace){0}, "a scene cannot be read: %s", error.message);
         return result;
     }
     const char *slash = strrchr(path, '/');

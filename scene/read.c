@@ -60,12 +60,12 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         int i = 0;
         for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++)
             nearest_offer(&nearest, keys[i]);
-        char hint[80];
+        char hint[80], key[NODE_WORDS];
         if (i == 5)
-            message_add(reader->messages, reader->text, child->key_place, "unknown key '%s' in %s%s", child->key,
-                        row->key, nearest_hint(&nearest, hint, sizeof hint));
+            message_add(reader->messages, reader->text, child->key_place, "unknown key%s in %s%s",
+                        node_key(child, key, sizeof key), row->key, nearest_hint(&nearest, hint, sizeof hint));
         else if (given & 1u << i)
-            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", child->key,
+            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", keys[i],
                         row->key);
         else
             given |= 1u << i;
@@ -108,7 +108,7 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
         if (child->kind == NODE_MAP) {
             schema_read(reader, schema, child, items);
         } else {
-            char seen[80];
+            char seen[NODE_WORDS];
             message_add(reader->messages, reader->text, child->place, "an entry of '%s' must be a map, not %s",
                         row->key, node_describe(child, seen, sizeof seen));
         }
@@ -256,16 +256,16 @@ static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, con
         int mine = 0;
         while (kind > 1u << mine)
             mine++;
-        message_add(reader->messages, reader->text, child->key_place, "a %s has no '%s'", names[mine], child->key);
+        message_add(reader->messages, reader->text, child->key_place, "a %s has no '%s'", names[mine], other->key);
         return;
     }
-    char hint[80];
+    char hint[80], key[NODE_WORDS];
     Nearest nearest = {.word = child->key};
     for (int i = 0; i < schema->row_count; i++)
         if (row_allowed(&schema->rows[i], kind))
             nearest_offer(&nearest, schema->rows[i].key);
-    message_add(reader->messages, reader->text, child->key_place, "unknown key '%s' in %s%s", child->key, schema->title,
-                nearest_hint(&nearest, hint, sizeof hint));
+    message_add(reader->messages, reader->text, child->key_place, "unknown key%s in %s%s",
+                node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
 }
 
 static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
@@ -280,7 +280,7 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
             continue;
         }
         if (*given & 1ull << i)
-            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", child->key,
+            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", row->key,
                         schema->title);
         else
             read_row(reader, row, child, object);

@@ -71,7 +71,7 @@ static Node *child_new(Setter *setter, Node *map, const char *step) {
 
 // The node that the path leads to, made where it is missing. NULL with a message, or without memory.
 static Node *setter_walk(Setter *setter, Node *root) {
-    char step[STEP_MOST], seen[80];
+    char step[STEP_MOST], seen[NODE_WORDS];
     bool bad = false;
     Node *node = root;
     setter->rest = setter->path;

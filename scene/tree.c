@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "formats/printable.h"
 #include "scene/scalar.h"
 
 enum { DEPTH_MOST = 64 };
@@ -156,7 +157,10 @@ static void builder_report(Builder *builder, struct fy_diag *diag) {
         ScenePlace place = builder->origin;
         place.line = found->line > 0 ? found->line : 0;
         place.column = found->column > 0 ? found->column : 1;
-        message_add(builder->messages, builder->text, place, "not valid YAML: %s", found->msg ? found->msg : "?");
+        if (place.file || !found->msg)
+            message_add(builder->messages, builder->text, place, "not valid YAML");
+        else
+            message_add(builder->messages, builder->text, place, "not valid YAML: %s", shown(found->msg).text);
         any = true;
     }
     if (!any)
@@ -256,7 +260,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
             builder.root->place = origin;
         }
     } else if (!builder.root && !arena_failed(arena)) {
-        message_add(messages, text, origin,
+        message_add(messages, text, place_at(&builder, 1, 1),
                     origin.file ? "the file is empty" : "the scene is empty; at least 'sheets' is needed");
     }
     return builder.root;
@@ -279,9 +283,13 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
     }
     if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null")))
         return "nothing";
-    int most = strlen(node->text) > 40 ? 37 : 40;
-    while (most < 40 && ((unsigned char)node->text[most] & 0xc0) == 0x80)
-        most--;
-    snprintf(buffer, size, "'%.*s%s'", most, node->text, most < 40 ? "..." : "");
+    if (node->place.file) // what stands in other files than the scene is not told
+        return "this value";
+    snprintf(buffer, size, "'%s'", shown(node->text).text);
+    return buffer;
+}
+
+const char *node_key(const Node *node, char *buffer, size_t size) {
+    snprintf(buffer, size, node->key_place.file ? "" : " '%s'", shown(node->key).text);
     return buffer;
 }

@@ -29,7 +29,13 @@ bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessage
 /// The last child with this key, or NULL.
 Node *node_find(const Node *map, const char *key);
 
-/// "a map", "a list of 3", "nothing" or the value itself in quotes, for messages.
+enum { NODE_WORDS = 1100 }; ///< bytes that a description may take
+
+/// "a map", "a list of 3", "nothing" or the value itself in quotes, cut and printable, for messages. Of a value in
+/// another file than the scene: "this value".
 const char *node_describe(const Node *node, char *buffer, size_t size);
+
+/// " 'key'", cut and printable; "" of a key in another file than the scene.
+const char *node_key(const Node *node, char *buffer, size_t size);
 
 #endif

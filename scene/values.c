@@ -1,13 +1,15 @@
 // Single values: numbers, words and names of files.
 #include "scene/values.h"
 
+#include "formats/printable.h"
+
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 void value_wrong(Reader *reader, const Node *node, const SchemaRow *row) {
-    char expected[240], seen[80];
+    char expected[240], seen[NODE_WORDS];
     row_expected(row, expected, sizeof expected);
     message_add(reader->messages, reader->text, node->place, "%s must be %s, not %s", row->key, expected,
                 node_describe(node, seen, sizeof seen));
@@ -28,7 +30,7 @@ static bool float_in_range(const SchemaRow *row, float value) {
 }
 
 static void out_of_range(Reader *reader, const SchemaRow *row, const Node *node) {
-    char range[80], seen[80];
+    char range[80], seen[NODE_WORDS];
     const char *unit = quantity_unit(row->dimension);
     row_range(row, range, sizeof range);
     message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s%s%s",
@@ -51,7 +53,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *
     }
     NumberFault fault = quantity_read(node->text, row->dimension, &value);
     if (fault == NUMBER_BAD_UNIT) {
-        char units[80], seen[80];
+        char units[80], seen[NODE_WORDS];
         quantity_units(row->dimension, units, sizeof units);
         message_add(reader->messages, reader->text, node->place, "%s has an unknown unit for a %s; possible are: %s",
                     node_describe(node, seen, sizeof seen), quantity_name(row->dimension),
@@ -161,7 +163,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
         }
         nearest_offer(&nearest, names[i]);
     }
-    char expected[240], seen[80], hint[80];
+    char expected[240], seen[NODE_WORDS], hint[80];
     SchemaRow choice = *row;
     choice.type = ROW_ENUM;
     choice.names = names;
@@ -194,15 +196,14 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
 }
 
 bool value_is_text(const Node *node) {
-    char seen[80];
+    char seen[NODE_WORDS];
     return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];
 }
 
 bool value_names_files(const char *text) {
-    bool good = *text && *text != '.' && strlen(text) <= 100;
-    for (const char *c = text; good && *c; c++)
-        good = (unsigned char)*c >= 0x20 && *c != 0x7f && !strchr("/\\:*?\"<>|%", *c);
-    return good;
+    // 200 bytes leave room for the endings of files' names, of which systems take 255 bytes
+    bool good = *text && *text != '.' && strlen(text) <= 200 && printable_count(text) <= 100 && printable_is(text);
+    return good && !strpbrk(text, "/\\:*?\"<>|%");
 }
 
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
@@ -244,6 +245,9 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
         fault = "this is a folder";
     else if (access(field->path, R_OK))
         fault = "the file cannot be read";
-    if (fault)
-        message_add(reader->messages, reader->text, node->place, "%s: %s (%s)", row->key, fault, field->path);
+    if (fault && node->place.file)
+        message_add(reader->messages, reader->text, node->place, "%s: %s", row->key, fault);
+    else if (fault)
+        message_add(reader->messages, reader->text, node->place, "%s: %s (%s)", row->key, fault,
+                    shown_path(field->path).text);
 }

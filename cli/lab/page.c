@@ -5,6 +5,7 @@
 
 #include "cli/folder.h"
 #include "cli/text.h"
+#include "formats/printable.h"
 #include "scene/builtin.h"
 
 extern const SceneBuiltin paper_files[]; // of the folder `paper`, embedded as they are
@@ -22,12 +23,12 @@ static bool take_item(const Page *page, const ArgReader *reader, int option, con
     request->name = word;
     for (int i = 0; i < page->count; i++)
         if (strcmp(word, page->items[i].name) == 0) return true;
-    if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", word), false;
+    if (option != ARG_OPERAND) return args_complain(reader, "--only: there is no '%s'", shown(word).text), false;
     request->name = NULL;
     if (strcmp(word, "all") == 0) return true;
     const char *near = args_nearest(word, page->items, page->count, sizeof *page->items);
-    if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", word, near);
-    else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", word);
+    if (near) args_complain(reader, "unknown WHAT '%s'; did you mean '%s'?", shown(word).text, near);
+    else args_complain(reader, "unknown WHAT '%s': expected all, or one of the experiments", shown(word).text);
     return false;
 }
 
@@ -68,7 +69,8 @@ static SingeResult run_item(Lab *lab, const PageItem *item, SingeError *error) {
 
 /// Prints the error.
 static ExitCode fail(const SingeError *error) {
-    fprintf(stderr, "singe: error: %s\n", error->message[0] ? error->message : singe_result_name(error->code));
+    Console console = console_make(false);
+    console_error(&console, "%s", error->message[0] ? error->message : singe_result_name(error->code));
     return EXIT_FAILED;
 }
 

@@ -79,7 +79,7 @@ class Materials(Case):
         self.assertEqual((tissue["material"], tissue["finding"]), ("tissue", "as sources say"))
         self.write_mine("base: newsprint\nthikness: 1\n")
         _, err = self.singe("bench", "front", "--material", "materials/mine.yaml", cwd=self.dir, expect=2)
-        self.assertIn("mine.yaml:2:1: error: unknown key 'thikness' in a material; did you mean 'thickness'?", err)
+        self.assertIn("mine.yaml:2:1: error: unknown key in a material; did you mean 'thickness'?", err)
         _, err = self.singe("bench", "front", "--material", "newsprint," * 17, expect=2)
         self.assertIn("at most 16 materials", err)
 

@@ -91,6 +91,32 @@ class Usage(Case):
                 self.singe("check", taken, "--set", "name=good")
         self.singe("check", self.write_scene("n" * 100 + ".yaml"))
 
+    def test_unprintable_arguments(self):
+        """Names of files and words of the command line reach the terminal escaped and cut."""
+        bad = "a\x1b[31m\u009b\u202e\u2028\nb"
+        long = "é" * 3000
+        self.write_scene(bad + ".yaml", extra="fps: 0\n")
+        mesh = f'sheets: [{{mesh: "{bad}.obj"}}]\n'.replace("\x1b", "\\x1b").replace("\n", "\\n", 1)
+        with open(self.path("mesh.yaml"), "w") as file:
+            file.write(mesh)
+        with open(self.path(bad + ".obj"), "w") as file:
+            file.write("v SECRET 0 0\n")
+        for args in (
+            ["check", bad + ".yaml"], ["check", bad], ["check", "mesh.yaml"], ["run", bad], ["render", bad],
+            ["verify", bad], ["measure", bad], ["run", self.scene, "--set", bad], ["run", self.scene, "--" + bad],
+            ["run", self.scene, bad], ["run", self.scene, "--threads", bad], ["bench", bad], ["paper", bad], [bad],
+            ["validate", "--only", bad], ["run", "--set", f"{bad}=1", self.scene], ["bench", "plot", bad],
+            ["bench", "front", "--material", bad], ["render", ".", "--frames", bad], [long], ["run", "--" + long],
+            ["bench", long], ["run", self.scene, "--threads", long], ["paper", long], ["bench", "swing", "--time", bad],
+        ):
+            with self.subTest(args):
+                done = subprocess.run([SINGE, *args], capture_output=True, text=True, cwd=self.dir, timeout=60)
+                self.assertIn(done.returncode, (1, 2))
+                for character in "\x1b\u009b\u202e\u2028":
+                    self.assertNotIn(character, done.stdout + done.stderr)
+                self.assertNotIn("SECRET", done.stderr)
+                self.assertNotIn("é" * 300, done.stderr)
+
     def test_check(self):
         out, _ = self.singe("check", self.scene)
         for word in ("particles     313", "springs       1440", "red         576", "green       264", "blue        312",

@@ -162,21 +162,21 @@ static void refuses_bad_headers(void **state) {
     expect_error("ply\nformat utf8 1.0\n", SINGE_ERROR_FORMAT, 2, "not a PLY format");
     expect_error("ply\nformat ascii 2.0\n", SINGE_ERROR_FORMAT, 2, "version 1.0");
     expect_error(HEADER "format ascii 1.0\n", SINGE_ERROR_FORMAT, 3, "twice");
-    expect_error(HEADER "element vertex\n", SINGE_ERROR_FORMAT, 3, "not a count");
-    expect_error(HEADER "element vertex -4\n", SINGE_ERROR_FORMAT, 3, "not a count");
-    expect_error(HEADER "element vertex 4x\n", SINGE_ERROR_FORMAT, 3, "not a count");
+    expect_error(HEADER "element vertex\n", SINGE_ERROR_FORMAT, 3, "the line has no count of elements");
+    expect_error(HEADER "element vertex -4\n", SINGE_ERROR_FORMAT, 3, "the line has no count of elements");
+    expect_error(HEADER "element vertex 4x\n", SINGE_ERROR_FORMAT, 3, "the line has no count of elements");
     expect_error(HEADER "element vertex 4294967296\n", SINGE_ERROR_LIMIT, 3, "too many");
     expect_error(HEADER "element vertex 99999999999999999999999\n", SINGE_ERROR_LIMIT, 3, "too many");
     expect_error(HEADER "element\n", SINGE_ERROR_FORMAT, 3, "name is missing");
     expect_error(HEADER "element vertex 4 5\n", SINGE_ERROR_FORMAT, 3, "too many words");
     expect_error(HEADER "element vertex 4\nelement vertex 4\n", SINGE_ERROR_FORMAT, 4, "twice");
     expect_error(HEADER "property float x\n", SINGE_ERROR_FORMAT, 3, "before any element");
-    expect_error(HEADER "element vertex 4\nproperty real x\n", SINGE_ERROR_FORMAT, 4, "\"real\" is not a PLY type");
+    expect_error(HEADER "element vertex 4\nproperty real x\n", SINGE_ERROR_FORMAT, 4, "no PLY type where one is due");
     expect_error(HEADER "element vertex 4\nproperty float x\nproperty int x\n", SINGE_ERROR_FORMAT, 5, "twice");
     expect_error(HEADER "element vertex 4\nproperty float\n", SINGE_ERROR_FORMAT, 4, "name is missing");
     expect_error(HEADER "element face 4\nproperty list float int vertex_indices\n", SINGE_ERROR_FORMAT, 4,
                  "integer type");
-    expect_error(HEADER "elephant\n", SINGE_ERROR_FORMAT, 3, "\"elephant\"");
+    expect_error(HEADER "elephant\n", SINGE_ERROR_FORMAT, 3, "this is not a line of a PLY header");
     expect_error(HEADER "element vertex 4\n" XYZ "element face 1\n" FACES "end_header", SINGE_ERROR_FORMAT, 9,
                  "cut off");
 }
@@ -200,20 +200,20 @@ static void refuses_bad_bodies(void **state) {
                  SINGE_ERROR_FORMAT, -1, "integer type");
     expect_error(GOOD_HEADER SQUARE "2 0 1\n", SINGE_ERROR_MESH, 14, "a.ply:14: face has 2 corners; it needs three");
     expect_error(GOOD_HEADER SQUARE "255 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "too few values");
-    expect_error(GOOD_HEADER SQUARE "300 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "\"300\" is out of range");
+    expect_error(GOOD_HEADER SQUARE "300 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "the value in column 1 is out of range");
     expect_error(GOOD_HEADER SQUARE "-4 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "out of range");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 4\n", SINGE_ERROR_MESH, 14, "index 4 is out of range");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 -1\n", SINGE_ERROR_MESH, 14, "index -1 is out of range");
-    expect_error(GOOD_HEADER SQUARE "4 0 1 2.5 3\n", SINGE_ERROR_FORMAT, 14, "\"2.5\" is not an integer");
+    expect_error(GOOD_HEADER SQUARE "4 0 1 2.5 3\n", SINGE_ERROR_FORMAT, 14, "the value in column 7 is not an integer");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2\n", SINGE_ERROR_FORMAT, 14, "too few values");
     expect_error(GOOD_HEADER SQUARE "4 0 1 2 3 4\n", SINGE_ERROR_FORMAT, 14, "too many values");
     expect_error(GOOD_HEADER SQUARE, SINGE_ERROR_FORMAT, -1, "too short");
     expect_error(GOOD_HEADER "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
-                 "\"nan\" is not a finite number");
+                 "is not a finite number");
     expect_error(GOOD_HEADER "0 0 0\n1 1e39 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
-                 "\"1e39\" is out of range");
+                 "is out of range");
     expect_error(GOOD_HEADER "0 0 0\n1 y 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
-                 "\"y\" is not a number");
+                 "is not a number");
     expect_error(GOOD_HEADER "0 0 0\n1 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "too few values");
 }
 

@@ -168,6 +168,46 @@ static void test_files(void **state) {
     scene_free(scene);
 }
 
+/// Files that are none of whoever sees the messages: not a word of them is repeated, whatever is wrong with them.
+static void test_secrets(void **state) {
+    (void)state;
+    static const char *const secrets[] = {
+        "SECRET:$6$SECRET:19000:0:99999:7:::\n",        "SECRET\nSECRET\n",
+        "SECRET: SECRET\n",                             "- SECRET\n",
+        "grammage: SECRET\n",                           "grammage: 3 SECRET\n",
+        "grammage: {SECRET: 1}\n",                      "grammage: {from: SECRET, to: 1, SECRET: 2}\n",
+        "heat_operator: SECRET\n",                      "base: SECRET\n",
+        "base: ./SECRET\n",                             "base: SECRET.yaml\n",
+        "grammage: [SECRET\n",                          "%SECRET\n",
+        "SECRET\x01\n",                                 "? [SECRET]\n",
+        "&SECRET a\n",                                  "!SECRET a\n",
+        "\"SECRET\n",                                   "grammage: 1\nSECRET\n",
+        "weight: SECRET\n",                             "measured: {speed: [SECRET, 1]}\n",
+        "thickness: {from: 1, to: 2, picture: SECRET}\n", "ablate: SECRET\n",
+        "'SECRET': *SECRET\n",                          "SECRET: >1\n SECRET\n",
+    };
+    Folder folder = folder_make();
+    for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
+        Scene *scene = NULL;
+        SceneMessages messages = {0};
+        folder_file(&folder, "other.yaml", secrets[i]);
+        SingeResult result = folder_parse(&folder, SHEET "    material: other.yaml\n", NULL, 0, &scene, &messages);
+        assert_int_equal(result, SINGE_ERROR_FORMAT);
+        assert_true(messages.count > 0);
+        for (uint32_t m = 0; m < messages.count; m++) {
+            const SceneMessage *message = &messages.items[m];
+            if (strstr(message->text, "SECRET") || message->source)
+                fail_msg("%s: %s", secrets[i], message->text);
+            assert_null(strstr(message->origin, "SECRET"));
+            if (message->place.line <= 0 || message->place.column <= 0)
+                fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
+            assert_non_null(strstr(message->origin, "other.yaml:"));
+        }
+        scene_messages_free(&messages);
+    }
+    folder_remove(&folder);
+}
+
 /// One mistake, with its place and its line.
 static void expect_mistake(const Folder *folder, const char *line, const char *origin, const char *says, int count) {
     char text[400];
@@ -228,8 +268,8 @@ static void test_mistakes(void **state) {
     expect_mistake(in, "    material: value.yaml\n", "value.yaml:1:11", "possible are: kg/m2, g/m2", 1);
     expect_mistake(in, "    material: list.yaml\n", "list.yaml:1:1", "a material must be a map", 1);
     expect_mistake(in, "    material: word.yaml\n", "word.yaml:1:1",
-                   "a material must be a map (key: value), not 'newsprint'", 1);
-    expect_mistake(in, "    material: empty.yaml\n", "empty.yaml", "the file is empty", 1);
+                   "a material must be a map (key: value), not this value", 1);
+    expect_mistake(in, "    material: empty.yaml\n", "empty.yaml:1:1", "the file is empty", 1);
     expect_mistake(in, "    material: broken.yaml\n", "broken.yaml:2:1", "not valid YAML", 1);
     expect_mistake(in, "    material: self.yaml\n", "self.yaml:2:7", "begins as itself", 1);
     expect_mistake(in, "    material: one.yaml\n", "two.yaml:1:7", "one.yaml begins as itself, by way of", 1);
@@ -237,11 +277,16 @@ static void test_mistakes(void **state) {
     expect_mistake(in, "    material: unknown.yaml\n", "unknown.yaml:1:7", "did you mean 'newsprint'?", 1);
     expect_mistake(in, "    material: range.yaml\n", "range.yaml:1:19", "must not begin above its end", 1);
     expect_mistake(in, "    material: deep0.yaml\n", "deep15.yaml:1:7", "more than 16 deep", 1);
-    expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "at most 1 MiB", 1);
+    expect_mistake(in, "    material: long.yaml\n", "scene.yaml:3:15", "larger than 1 MiB", 1);
     // told once however many sheets are made of it, and behind those of the scene
     expect_mistake(in,
                    "    material: key.yaml\n  - {grid: {size: [1, 1], cells: [1, 1]}, material: key.yaml}\npac: 2\n",
                    "scene.yaml:5:1", "did you mean 'pace'?", 2);
+    char fifo[100];
+    snprintf(fifo, sizeof fifo, "%s/fifo.yaml", folder.path);
+    assert_int_equal(mkfifo(fifo, 0600), 0);
+    expect_mistake(in, "    material: fifo.yaml\n", "scene.yaml:3:15", "not a regular file", 1);
+    expect_mistake(in, "    material: /dev/zero\n", "scene.yaml:3:15", "not a regular file", 1);
     folder_remove(in);
     // without a folder files are not looked for, but what is built in is there
     Scene *scene = folder_scene(NULL, SHEET "    material: gone.yaml\n", NULL, 0);
@@ -252,7 +297,7 @@ static void test_mistakes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_built_in), cmocka_unit_test(test_changed), cmocka_unit_test(test_set),
-        cmocka_unit_test(test_files),    cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_files),    cmocka_unit_test(test_mistakes), cmocka_unit_test(test_secrets),
     };
     return cmocka_run_group_tests_name("scene_materials", tests, NULL, NULL);
 }

@@ -217,8 +217,8 @@ static void whole(const char *text, const char *origin, const char *part) {
 
 static void test_syntax(void **state) {
     (void)state;
-    whole("", "bad.yaml", "empty");
-    whole("# nothing\n", "bad.yaml", "empty");
+    whole("", "bad.yaml:1:1", "empty");
+    whole("# nothing\n", "bad.yaml:1:1", "empty");
     whole("- 1\n", "bad.yaml:1:1", "a scene must be a map");
     whole("hello", "bad.yaml:1:1", "a scene must be a map");
     whole("frames: 3\n", "bad.yaml:1:1", "needs 'sheets'");
@@ -239,6 +239,109 @@ static void test_syntax(void **state) {
     whole("frames: 3\nname: \xff\n", "bad.yaml:2:7", "not text");
 }
 
+/// Everything that a message says, in one text.
+static char *printed(const SceneMessages *messages) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    scene_messages_print(messages, file);
+    fclose(file);
+    return text;
+}
+
+/// What a terminal would act on, and what nobody sees, is escaped, wherever a scene says it.
+static void test_unprintable(void **state) {
+    (void)state;
+    static const struct { const char *bytes, *escaped; } characters[] = {
+        {"\xc2\x9b", "\\u009b"},         {"\xc2\x85", "\\u0085"},     {"\x7f", "\\x7f"},
+        {"\xe2\x80\xae", "\\u202e"},     {"\xe2\x81\xa6", "\\u2066"}, {"\xe2\x80\x8d", "\\u200d"},
+        {"\xef\xbb\xbf", "\\ufeff"},     {"\xe2\x80\xa8", "\\u2028"}, {"\xe2\x80\xa9", "\\u2029"},
+        {"\xe2\x80\x8f", "\\u200f"},     {"\xc2\xad", "\\u00ad"},     {"\xf3\xa0\x81\x81", "\\U000e0041"},
+    };
+    static const char *const lines[] = {"k%s: 1",
+                                        "fps: a%sb",
+                                        "name: a%sb",
+                                        "sources: [{kind: s%s}]",
+                                        "pins: [{sheet: a%sb, vertices: [1]}]",
+                                        "    material: n%s",
+                                        "    material: {mass_rate: {f%s: 1}}",
+                                        "  - {name: a%sb}",
+                                        "a: \"\\x%s\"",
+                                        "fps: 3 m%s"};
+    for (size_t c = 0; c < sizeof characters / sizeof *characters; c++)
+        for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+            char line[200], text[400];
+            snprintf(line, sizeof line, lines[i], characters[c].bytes);
+            snprintf(text, sizeof text, "%s%s\n", SHEET, line);
+            SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+            char *all = printed(&messages);
+            assert_null(strstr(all, characters[c].bytes));
+            if (i < 8)
+                assert_non_null(strstr(all, characters[c].escaped));
+            free(all);
+            scene_messages_free(&messages);
+            const char *set[] = {line + strspn(line, " -{")}; // "fps: a" is no PATH=VALUE, and told as it is
+            messages = failing(SHEET, strlen(SHEET), NULL, set, 1, SINGE_ERROR_FORMAT);
+            all = printed(&messages);
+            assert_null(strstr(all, characters[c].bytes));
+            free(all);
+            scene_messages_free(&messages);
+        }
+}
+
+/// Texts without end are cut, between characters.
+static void test_cut(void **state) {
+    (void)state;
+    static const char *const lines[] = {"%s: 1",          "fps: %s",     "name: %s",
+                                        "steps: %s",      "gas: {%s: 1}", "pins: [{sheet: %s, vertices: [1]}]",
+                                        "sources: [{kind: %s}]"};
+    static const char *const pieces[] = {"k", "\u00e9", "\u20ac", "\U0001f525", "\xc2\x9b"};
+    size_t room = 500000;
+    char *word = malloc(room), *text = malloc(2 * room);
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+        for (size_t k = 0; k < sizeof pieces / sizeof *pieces; k++) {
+            size_t length = strlen(pieces[k]), count = 400000 / length;
+            for (size_t n = 0; n <= count; n++) memcpy(word + n * length, pieces[k], length + 1);
+            int used = snprintf(text, 2 * room, "%s", SHEET);
+            snprintf(text + used, 2 * room - (size_t)used, lines[i], word);
+            SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
+            for (uint32_t m = 0; m < messages.count; m++) {
+                assert_true(strlen(messages.items[m].text) < 1500);
+                assert_true(strlen(messages.items[m].origin) < 100);
+                assert_true(!messages.items[m].source || strlen(messages.items[m].source) < 1500);
+                assert_null(strstr(messages.items[m].text, "\\x")); // no half characters
+                assert_true(!messages.items[m].source || !strstr(messages.items[m].source, "\\x"));
+            }
+            scene_messages_free(&messages);
+            const char *set[] = {text + used};
+            messages = failing(SHEET, strlen(SHEET), NULL, set, 1, SINGE_ERROR_FORMAT);
+            assert_true(strlen(messages.items[0].text) < 1500 && strlen(messages.items[0].origin) < 1100);
+            scene_messages_free(&messages);
+        }
+    free(word), free(text);
+}
+
+/// A name has characters, and bytes enough for them in the names of files.
+static void test_names(void **state) {
+    (void)state;
+    static const struct { const char *piece; int count; bool good; } names[] = {
+        {"n", 100, true}, {"n", 101, false}, {"\u00e9", 100, true}, {"\u00e9", 101, false}, {"\u20ac", 66, true},
+        {"\u20ac", 67, false}, {"\u200b", 1, false}, {"\u202e", 1, false}, {"\xc2\x85", 2, false}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text[1000] = SHEET "name: ";
+        for (int n = 0; n < names[i].count; n++) strcat(text, names[i].piece);
+        Scene *scene = NULL;
+        SceneMessages messages = {0};
+        SingeResult result = scene_parse("t", text, strlen(text), NULL, NULL, 0, &scene, &messages);
+        assert_int_equal(result, names[i].good ? SINGE_OK : SINGE_ERROR_FORMAT);
+        if (!names[i].good)
+            assert_non_null(strstr(messages.items[0].text, "at most 100 characters and 200 bytes"));
+        scene_messages_free(&messages);
+        scene_free(scene);
+    }
+}
+
 static void expect_origin_prefix(const SceneMessages *messages, const char *prefix) {
     assert_true(messages->count > 0);
     assert_memory_equal(messages->items[0].origin, prefix, strlen(prefix));
@@ -251,7 +354,7 @@ static void test_limits(void **state) {
     memset(text, ' ', size);
     text[size] = 0;
     SceneMessages messages = failing(text, size, NULL, NULL, 0, SINGE_ERROR_LIMIT);
-    expect_message(&messages, 0, "bad.yaml", "at most 1 MiB");
+    expect_message(&messages, 0, "bad.yaml:1:1", "at most 1 MiB");
     scene_messages_free(&messages);
     memset(text, '[', 100000); // nested far too deep
     messages = failing(text, 100000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
@@ -396,6 +499,8 @@ int main(void) {
         cmocka_unit_test(test_files),          cmocka_unit_test(test_range_words),
         cmocka_unit_test(test_ranges_at_once), cmocka_unit_test(test_step),
         cmocka_unit_test(test_truncated),      cmocka_unit_test(test_truncated_block),
+        cmocka_unit_test(test_unprintable),    cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,109 @@
+#include "formats/printable.h"
+
+#include <stdint.h>
+#include <string.h>
+
+/// Characters of Unicode that are controls, have no width of their own or turn the direction of writing.
+static const struct Range {
+    uint32_t first, last;
+} unseen[] = {
+    {0x80, 0x9f},     {0xad, 0xad},     {0x34f, 0x34f},     {0x61c, 0x61c},     {0x115f, 0x1160},   {0x17b4, 0x17b5},
+    {0x180b, 0x180f}, {0x200b, 0x200f}, {0x2028, 0x202e},   {0x2060, 0x206f},   {0x3164, 0x3164},   {0xfdd0, 0xfdef},
+    {0xfeff, 0xfeff}, {0xffa0, 0xffa0}, {0xfff0, 0xfffb},   {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff},
+};
+
+/// Length of the UTF-8 character at `c`, and its code; 0 where the bytes are not one.
+static int character_at(const unsigned char *c, const unsigned char *end, uint32_t *code) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    int length = *c < 0x80 ? 1 : *c >= 0xc2 && *c < 0xe0 ? 2 : *c >= 0xe0 && *c < 0xf0 ? 3 : *c >= 0xf0 && *c < 0xf5 ? 4 : 0;
+    if (length == 0 || end - c < length) return 0;
+    *code = length == 1 ? *c : *c & (0x7fu >> length);
+    for (int i = 1; i < length; i++) {
+        if ((c[i] & 0xc0) != 0x80) return 0;
+        *code = *code << 6 | (c[i] & 0x3fu);
+    }
+    bool surrogate = *code >= 0xd800 && *code < 0xe000;
+    return *code < least[length] || *code > 0x10ffff || surrogate ? 0 : length;
+}
+
+static bool is_unseen(uint32_t code) {
+    if (code < 0x20 || code == 0x7f || (code & 0xfffe) == 0xfffe) return true;
+    for (size_t i = 0; i < sizeof unseen / sizeof *unseen; i++)
+        if (code >= unseen[i].first && code <= unseen[i].last) return true;
+    return false;
+}
+
+size_t printable_character(const char **at, const char *end, char piece[PRINTABLE_PIECE]) {
+    const unsigned char *c = (const unsigned char *)*at;
+    uint32_t code = *c;
+    int length = character_at(c, (const unsigned char *)end, &code);
+    *at += length ? length : 1;
+    if (length && !is_unseen(code)) {
+        memcpy(piece, c, (size_t)length);
+        piece[length] = 0;
+        return (size_t)length;
+    }
+    const char *names = "\nn\tt\rr", *name = code < 0x20 && code ? strchr(names, (int)code) : NULL;
+    if (name && length) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\%c", name[1]);
+    if (length <= 1) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\x%02x", (unsigned)*c);
+    return (size_t)snprintf(piece, PRINTABLE_PIECE, code > 0xffff ? "\\U%08x" : "\\u%04x", (unsigned)code);
+}
+
+bool printable_is(const char *text) {
+    const char *end = text + strlen(text);
+    char piece[PRINTABLE_PIECE];
+    while (text < end) {
+        const char *before = text;
+        size_t length = printable_character(&text, end, piece);
+        if (length != (size_t)(text - before) || memcmp(before, piece, length) != 0) return false;
+    }
+    return true;
+}
+
+size_t printable_count(const char *text) {
+    const char *end = text + strlen(text);
+    char piece[PRINTABLE_PIECE];
+    size_t count = 0;
+    for (; text < end; count++) printable_character(&text, end, piece);
+    return count;
+}
+
+void printable_write(const char *text, FILE *file) {
+    const char *end = text + strlen(text);
+    char piece[PRINTABLE_PIECE];
+    while (text < end) {
+        size_t length = printable_character(&text, end, piece);
+        fwrite(piece, 1, length, file);
+    }
+}
+
+Shown shown(const char *text) {
+    Shown result;
+    const char *end = text + strlen(text);
+    size_t used = 0;
+    for (int i = 0; i < SHOWN_MOST && text < end; i++) used += printable_character(&text, end, result.text + used);
+    strcpy(result.text + used, text < end ? "..." : "");
+    return result;
+}
+
+Shown shown_path(const char *path) {
+    Shown result;
+    const char *end = path + strlen(path);
+    size_t left = printable_count(path), used = 0;
+    char piece[PRINTABLE_PIECE];
+    if (left > SHOWN_PATH_MOST) used = strlen(strcpy(result.text, "..."));
+    for (; left > SHOWN_PATH_MOST; left--) printable_character(&path, end, piece);
+    while (path < end && used < sizeof result.text - PRINTABLE_PIECE)
+        used += printable_character(&path, end, result.text + used);
+    result.text[used] = 0;
+    return result;
+}
+
+void printable_trim(char *text) {
+    size_t length = strlen(text), back = 0;
+    while (back < 3 && back < length && ((unsigned char)text[length - 1 - back] & 0xc0) == 0x80) back++;
+    if (back == length) return;
+    uint32_t code;
+    unsigned char *start = (unsigned char *)text + length - 1 - back;
+    if (*start >= 0xc0 && !character_at(start, (unsigned char *)text + length, &code)) *start = 0;
+}
