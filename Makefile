@@ -11,7 +11,7 @@ MEASURING = cli_paper|cli_materials|cli_bench|heat_front
 # check-examples has them: together they would take longer than all the rest
 LONG_EXAMPLES = LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain
 
-.PHONY: all demo check check-examples pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all demo check check-examples torture pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -56,6 +56,11 @@ check:
 # every example, run whole and verified: 25 minutes
 check-examples: build
 	ctest --preset release -j2 -R '^example_'
+
+# every allocation, write, open, ... of whole commands fails once: half an hour; Ctrl-C ends it with its table
+torture:
+	cmake --preset release
+	cmake --build --preset release --target torture
 
 pictures:
 	scripts/draw_gallery.sh

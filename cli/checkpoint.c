@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/text.h"
+
 /// At the end of the file, so that the snapshot need not be copied. The byte order is the machine's, as is the
 /// snapshot's.
 typedef struct Trailer {
@@ -59,9 +61,8 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file) scene_dump(&bare, SCENE_JSON, 0, file);
-    bool bad = !file || ferror(file);
-    if (file && fclose(file) != 0) bad = true;
-    if (!bad) {
+    const bool good = text_stream_end(file, &text);
+    if (good) {
         *hash = hash_bytes(hash_start, text, size);
         for (uint32_t i = 0; i < assets->sheet_count; i++) {
             *hash = hash_mesh(*hash, &assets->meshes[i]);
@@ -70,7 +71,7 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
         for (uint32_t i = 0; i < assets->source_count; i++) *hash = hash_picture(*hash, &assets->source_pictures[i]);
     }
     free(text);
-    if (!bad) return SINGE_OK;
+    if (good) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
     return SINGE_ERROR_MEMORY;
 }

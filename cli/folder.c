@@ -127,12 +127,20 @@ static SingeResult remove_file(const char *path, int *removed, SingeError *error
     return SINGE_OK;
 }
 
+/// The next entry of a folder; NULL at its end, and with *result where it cannot be read.
+static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result, SingeError *error) {
+    errno = 0;
+    struct dirent *entry = readdir(dir);
+    if (!entry && errno) *result = folder_fail(path, "list", errno, error);
+    return entry;
+}
+
 /// Removes frames, where `frames` is set, and what a killed run left half written. The folder need not be there.
 static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner[which].name);
     DIR *dir = opendir(path);
     SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
-    for (struct dirent *entry; dir && (entry = readdir(dir)) && !result;) {
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         if (!frame_of(folder, entry->d_name, inner[which].ending, &rest)) continue;
         if (!(*rest == 0 && frames) && !is_temporary(rest)) continue;
@@ -150,7 +158,7 @@ static SingeResult clean_top(const Folder *folder, int *removed, SingeError *err
     static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png"};
     DIR *dir = opendir(folder->path);
     SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
-    for (struct dirent *entry; !result && (entry = readdir(dir));) {
+    for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
         bool ours = false;
         for (int i = 0; i < 3; i++) {
             size_t length = strlen(names[i]);
@@ -188,27 +196,32 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
     return result;
 }
 
-int folder_frames(const Folder *folder, int *first, int *last) {
+/// The smallest and greatest frame with a PLY; *last is 0 when there is none.
+static SingeResult find_frames(const Folder *folder, int *first, int *last, SingeError *error) {
     char *path = text_format("%s/ply", folder->path);
     DIR *dir = opendir(path);
-    int count = 0;
+    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
     *first = INT_MAX, *last = 0;
-    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+    for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
         int frame = frame_of(folder, entry->d_name, ".ply", &rest);
         if (!frame || *rest) continue;
-        count++;
         if (frame < *first) *first = frame;
         if (frame > *last) *last = frame;
     }
     if (dir) closedir(dir);
     free(path);
-    return count;
+    return result;
 }
 
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last) {
     int lowest, highest;
-    if (folder_frames(folder, &lowest, &highest) == 0) {
+    SingeError error = {0};
+    if (find_frames(folder, &lowest, &highest, &error)) {
+        console_result(console, &error);
+        return EXIT_FAILED;
+    }
+    if (highest == 0) {
         console_error(console, "no frames %s/ply/%s.*.ply", folder->path, folder->name);
         return EXIT_INPUT;
     }

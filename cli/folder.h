@@ -45,9 +45,6 @@ SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts
 /// Removes what a killed run left half written under temporary names.
 SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);
 
-/// The smallest and greatest frame with a PLY, and how many there are; 0 when none.
-int folder_frames(const Folder *folder, int *first, int *last);
-
 /// Checks that there are PLYs of the frames asked for, from *first to *last, or sets both to all where *first is 0.
 /// A message has been printed unless the result is EXIT_GOOD.
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last);

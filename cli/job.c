@@ -85,10 +85,11 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
     SingeError error = {0};
     Bytes bytes = {0};
     char *record = text_format("%s/run.json", folder);
-    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
+    const SingeResult result = file_read(record, (SingeAllocator){0}, &bytes, &error);
+    if (result) {
         console_result(console, &error);
         free(record);
-        return EXIT_INPUT;
+        return job_exit(result);
     }
     const char *scene, *scene_folder, *json = (const char *)bytes.data;
     size_t scene_size, folder_size;

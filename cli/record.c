@@ -111,11 +111,9 @@ SingeResult record_write(const Record *record, const Folder *folder, const Job *
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file) write_all(file, record, job);
-    bool bad = !file || ferror(file);
-    if (file && fclose(file) != 0) bad = true;
     SingeResult result = SINGE_ERROR_MEMORY;
-    if (bad) *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "run.json", .element = -1};
-    else result = file_write(folder->record, text, size, error);
+    if (text_stream_end(file, &text)) result = file_write(folder->record, text, size, error);
+    else *error = (SingeError){.code = result, .stage = "run.json", .element = -1};
     free(text);
     return result;
 }

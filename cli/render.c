@@ -1,5 +1,6 @@
 // singe render: the pictures, video and contact sheet of a cache, drawn again from its PLYs and the scene that its
 // run.json holds.
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -121,7 +122,7 @@ static SingeResult read_gas(Render *render, int frame, Gas *gas, SingeError *err
     Bytes bytes = {0};
     SingeResult result = SINGE_OK;
     char *path = folder_vdb(&render->folder, frame);
-    if (access(path, F_OK) == 0) {
+    if (access(path, F_OK) == 0 || errno != ENOENT) {
         result = file_read(path, (SingeAllocator){0}, &bytes, error);
         if (!result) result = vdb_read_gas(path, bytes.data, bytes.size, (SingeAllocator){0}, gas, NULL, error);
         bytes_free(&bytes);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/job.h"
 #include "formats/formats.h"
 #include "formats/number.h"
 #include "formats/text.h"
@@ -54,9 +55,10 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
         console_warn(console, "no %s: inverted cells are not known", path);
         return EXIT_GOOD;
     }
-    if (file_read(path, (SingeAllocator){0}, &bytes, &error)) {
+    const SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, &error);
+    if (result) {
         console_result(console, &error);
-        return EXIT_INPUT;
+        return job_exit(result);
     }
     Text text = {bytes.data, bytes.data + bytes.size, 1};
     bool good = read_header(&text, place);
@@ -64,11 +66,11 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
     for (size_t i = 0; i < bytes.size; i++) lines += bytes.data[i] == '\n';
     table->rows = calloc(lines, sizeof *table->rows);
     while (good && table->rows && text.at < text.end) good = read_row(&text, place, &table->rows[table->count++]);
-    if (!good || !table->rows)
-        console_error(console, "%s:%lld: not a line of such numbers, or no memory for it", path,
-                      (long long)text.line - 1);
+    if (!table->rows) console_error(console, "%s: out of memory", path);
+    else if (!good) console_error(console, "%s:%lld: not a line of such numbers", path, (long long)text.line - 1);
     bytes_free(&bytes);
-    return good && table->rows ? EXIT_GOOD : EXIT_INPUT;
+    if (!table->rows) return EXIT_FAILED;
+    return good ? EXIT_GOOD : EXIT_INPUT;
 }
 
 void stats_table_free(StatsTable *table) {

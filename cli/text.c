@@ -7,20 +7,29 @@
 
 #include "cli/cli.h"
 
+/// A block that is there, or the end.
+static char *need(char *block) {
+    if (block) return block;
+    fputs("singe: error: out of memory\n", stderr);
+    exit(EXIT_FAILED);
+}
+
 char *text_format(const char *format, ...) {
     va_list list, again;
     va_start(list, format);
     va_copy(again, list);
     int length = vsnprintf(NULL, 0, format, list);
-    char *text = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (!text) {
-        fputs("singe: error: out of memory\n", stderr);
-        exit(EXIT_FAILED);
-    }
+    char *text = need(length < 0 ? NULL : malloc((size_t)length + 1));
     vsnprintf(text, (size_t)length + 1, format, again);
     va_end(again);
     va_end(list);
     return text;
+}
+
+bool text_stream_end(FILE *stream, char **text) {
+    bool good = stream && !ferror(stream);
+    if (stream && fclose(stream) != 0) good = false;
+    return good && *text; // without memory for the last change of its size there is no text, and no error
 }
 
 void text_json_string(FILE *file, const char *text) {
@@ -100,8 +109,7 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
 char *text_json_unquote(const char *value, size_t size) {
     while (size && (value[size - 1] == ' ' || value[size - 1] == '\n')) size--;
     if (size < 2 || value[0] != '"' || value[size - 1] != '"') return NULL;
-    char *text = malloc(size), *out = text;
-    if (!text) return NULL;
+    char *text = need(malloc(size)), *out = text;
     for (size_t i = 1; i < size - 1; i++) {
         if (value[i] != '\\' || i + 1 >= size - 1) {
             *out++ = value[i];

@@ -10,6 +10,10 @@
 /// A formatted string from malloc. Without memory for it the program ends with EXIT_FAILED.
 char *text_format(const char *format, ...) SINGE_PRINTF(1, 2);
 
+/// Ends a stream of open_memstream, or NULL where it could not be opened. Whether *text has all that was written; the
+/// caller frees it either way.
+SINGE_NODISCARD bool text_stream_end(FILE *stream, char **text);
+
 /// Writes a JSON string with its quotes.
 void text_json_string(FILE *file, const char *text);
 
@@ -20,7 +24,8 @@ void text_json_number(FILE *file, double number);
 /// text is not JSON up to it.
 bool text_json_member(const char *json, size_t size, const char *name, const char **value, size_t *value_size);
 
-/// The characters of a JSON string value, from malloc; NULL when it is not one.
+/// The characters of a JSON string value, from malloc; NULL when it is not one. Without memory for it the program ends
+/// with EXIT_FAILED.
 char *text_json_unquote(const char *value, size_t size);
 
 #endif

@@ -11,6 +11,7 @@
 #include "cli/findings.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
+#include "cli/job.h"
 #include "cli/stats_table.h"
 #include "cli/text.h"
 #include "formats/printable.h"
@@ -220,10 +221,11 @@ static ExitCode find_folder(Verify *verify, const char *path) {
     const char *value;
     size_t size;
     char *record = text_format("%s/run.json", path), *name = NULL;
-    if (file_read(record, (SingeAllocator){0}, &bytes, &error)) {
+    const SingeResult result = file_read(record, (SingeAllocator){0}, &bytes, &error);
+    if (result) {
         console_result(&verify->console, &error);
         free(record);
-        return EXIT_INPUT;
+        return job_exit(result);
     }
     if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
         name = text_json_unquote(value, size);

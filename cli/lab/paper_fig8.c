@@ -7,6 +7,7 @@
 
 #include "cli/lab/paper.h"
 #include "cli/lab/paper_states.h"
+#include "cli/text.h"
 #include "formats/formats.h"
 
 enum { CELLS = 20, STEPS = 20, COUNTED = 7, LINES = SINGE_COLOUR_COUNT + 1 };
@@ -59,9 +60,10 @@ static SingeResult fig8_write(Lab *lab, const char *state, const Fig8 *fig, Sing
         for (int l = 0; l < LINES; l++) fprintf(file, ",%.9g", fig->error[l][step]);
         fputc('\n', file);
     }
-    fclose(file);
+    SingeResult result = SINGE_ERROR_MEMORY;
     snprintf(path, sizeof path, "%s/fig8-%s.csv", report_folder(lab->report), state);
-    SingeResult result = file_write(path, csv, size, error);
+    if (text_stream_end(file, &csv)) result = file_write(path, csv, size, error);
+    else *error = (SingeError){.code = result, .element = -1};
     free(csv);
     if (result) return result;
     snprintf(title, sizeof title, "Error of each colour: %s, %d springs", state, 10 * CELLS * CELLS);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/text.h"
 #include "formats/formats.h"
 
 enum { WIDTH = 720, HEIGHT = 400, LEFT = 76, RIGHT = 220, TOP = 48, BOTTOM = 50 };
@@ -112,10 +113,8 @@ SingeResult plot_write(const Plot *plot, const char *path, SingeError *error) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     SingeResult result = SINGE_ERROR_MEMORY;
-    if (file) {
-        plot_draw(plot, file);
-        if (fclose(file) == 0) result = file_write(path, text, size, error);
-    }
+    if (file) plot_draw(plot, file);
+    if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
     if (result == SINGE_ERROR_MEMORY) *error = (SingeError){.code = result, .element = -1};
     free(text);
     return result;

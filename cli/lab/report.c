@@ -92,12 +92,14 @@ static void finish_item(Report *report) {
     if (!report->name) return;
     body(report, BLOCK_NONE);
     const char *class = report->item_failed ? "bad" : "good", *verdict = report->item_failed ? "fails" : "holds";
-    if (fclose(report->body.file) == 0 && report->body.text) {
+    if (text_stream_end(report->body.file, &report->body.text)) {
         fprintf(report->page.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
                 report->heading, class, verdict, report->body.text);
         fprintf(report->index.file,
                 "<tr><td><a href=\"#%s\">%s</a></td><td>%d of %d</td><td class=\"%s\">%s</td></tr>\n", report->name,
                 report->heading, report->item_measures - report->item_failed, report->item_measures, class, verdict);
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
     }
     report->body.file = NULL;
     draft_free(&report->body);
@@ -244,9 +246,10 @@ static SingeResult write_draft(const Report *report, const char *name, Draft *dr
                                SingeError *error) {
     char *path = text_format("%s/%s", report->folder, name);
     if (more) fwrite(more->text, 1, more->size, draft->file);
-    bool good = fclose(draft->file) == 0;
+    const bool good = text_stream_end(draft->file, &draft->text);
     draft->file = NULL;
     SingeResult result = good ? file_write(path, draft->text, draft->size, error) : SINGE_ERROR_MEMORY;
+    if (!good) *error = (SingeError){.code = result, .element = -1};
     free(path);
     return result;
 }
