@@ -9,7 +9,8 @@
 //                      does, what meets goes only as far as is free (touch_guard.c). That is a guarantee, not a force
 //
 // Both look at pairs of cells that are near, which are found anew when cells have used up the motion that the last
-// search allowed for (touch_find.c). All lists have a fixed order: the same bytes for any number of threads.
+// search allowed for (touch_find.c). All lists have a fixed order: the same bytes for any number of threads. Where there are more
+// pairs than a list has room for, it grows (touch_room.c).
 #ifndef CONTACT_TOUCH_H
 #define CONTACT_TOUCH_H
 
@@ -21,26 +22,27 @@ typedef struct TouchPlan TouchPlan;
 
 SingeResult touch_check(const SingeContactDef *def, SingeError *error);
 
-/// Scratch for the shell; `time_step` in s. SINGE_ERROR_MEMORY.
+/// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
 SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                               TouchPlan **plan);
 void touch_plan_free(Memory *memory, TouchPlan *plan);
 
-/// What the plan remembers of the last search, as part of a snapshot.
-void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream);
+/// What the plan remembers of the last search, as part of a snapshot. SINGE_ERROR_MEMORY when reading.
+SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream);
 
 /// To be called when cells have other corners than before.
 void touch_plan_forget(TouchPlan *plan);
 
-/// Opens a step whose particles are at `dynamics`, the inverse masses in place.
-void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
+/// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as touch_guard:
+/// where sheets crowd, lists grow. Then the step is to be undone; the next one searches anew.
+SingeResult touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
 
 /// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
 void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since touch_open.
-void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
-                 DynamicsState *dynamics);
+SingeResult touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                        DynamicsState *dynamics);
 
 /// What has been done since the plan was made.
 typedef struct TouchCounters {
@@ -49,7 +51,7 @@ typedef struct TouchCounters {
     uint64_t pushes;     ///< pairs of points that a substep had to push apart, summed over substeps
     uint64_t stops;      ///< pairs of cells whose way was cut short
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
-    uint64_t dropped;    ///< pairs for which there was no room
+    uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
     uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
     double seconds;
 } TouchCounters;

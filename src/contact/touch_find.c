@@ -3,6 +3,7 @@
 // A cell is a box that moves along: its box at the search, widened by half of thickness + slack, on the way that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner leaves its way by more than half the slack; touch_guard.c watches that.
+#include "base/error.h"
 #include "contact/touch_plan.h"
 
 typedef struct Find {
@@ -104,28 +105,28 @@ static void sweep_boxes(void *task, int begin, int end) {
 static void add_cells(TouchPlan *plan) {
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
-        if (plan->pair_count < plan->pair_capacity)
-            plan->pairs[plan->pair_count++] = (TouchPair){.a = c, .b = c, .hit = 2, .bridge = c};
-        else plan->counters.dropped++;
+        plan->pairs[plan->pair_count++] = (TouchPair){.a = c, .b = c, .hit = 2, .bridge = c};
     }
 }
 
-static void find_pairs(Find *find, Pool *pool) {
+static SingeResult find_pairs(Find *find, Pool *pool) {
     enum { TRIALS = 5 };
     TouchPlan *plan = find->plan;
+    uint64_t count;
     plan->slack = plan->slack_most;
     for (int trial = 1;; trial++) {
         plan->reach = plan->thickness + plan->slack;
         pool_for(pool, (int)plan->cell_count, 512, sweep_boxes, find);
-        uint64_t count = touch_grid_pairs(plan, find->shell, pool);
-        if (count + plan->cell_count <= plan->pair_capacity || trial == TRIALS) {
-            plan->counters.dropped += count - plan->pair_count;
-            break;
-        }
+        count = touch_grid_pairs(plan, find->shell, pool);
+        if (count + plan->cell_count <= plan->sizes.pair_budget || trial == TRIALS) break;
         plan->slack *= 0.5f; // too crowded: look less far
     }
+    if (!touch_grow_pairs(plan, count + plan->cell_count)) return SINGE_ERROR_MEMORY;
+    touch_grid_keep(plan, find->shell, pool, count, plan->pair_capacity - plan->cell_count);
+    plan->counters.dropped += count - plan->pair_count;
     add_cells(plan);
     plan->listed_count = plan->pair_count;
+    return SINGE_OK;
 }
 
 /// Fewer steps where corners move fast against each other: in the mean by a third of a cell at most.
@@ -143,14 +144,15 @@ static void choose_steps(TouchPlan *plan, const Shell *shell) {
     plan->steps = step * TOUCH_STEPS < most ? TOUCH_STEPS : step * 2 > most ? 2 : (uint32_t)(most / step);
 }
 
-void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool) {
+SingeResult touch_search(TouchPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
-    plan->listed_count = 0, plan->restless = 0;
+    plan->listed_count = plan->pair_count = 0, plan->restless = 0;
     choose_steps(plan, shell);
     find_owners(plan, shell);
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
-    find_pairs(&find, pool);
+    TRY(find_pairs(&find, pool));
     touch_find_tangled(plan, shell, plan->searched == 0);
     plan->searched = 1;
     plan->counters.searches++;
+    return SINGE_OK;
 }

@@ -44,8 +44,8 @@ static uint64_t fill_grid(TouchPlan *plan, bool writing) {
         if (!plan->alive[c]) continue;
         const TouchBox *box = &plan->boxes[c];
         Cube first = touch_cube(box->swept_low, inverse), last = touch_cube(box->swept_high, inverse), at = first;
-        count += touch_cubes(first, last, plan->entry_capacity);
-        if (count > plan->entry_capacity) return count;
+        count += touch_cubes(first, last, plan->sizes.entries);
+        if (count > plan->sizes.entries) return count;
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
                 for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
@@ -57,16 +57,21 @@ static uint64_t fill_grid(TouchPlan *plan, bool writing) {
     return count;
 }
 
+static void clear_buckets(TouchPlan *plan) {
+    memset(plan->bucket_first, 0, ((size_t)plan->bucket_count + 2) * sizeof *plan->bucket_first);
+}
+
 static void sort_into_grid(TouchPlan *plan) {
     plan->entry_count = 0;
     plan->edge = first_edge(plan);
-    if (!(plan->edge > 0)) return;
-    uint64_t count;
-    for (;; plan->edge *= 1.3f) {
-        memset(plan->bucket_first, 0, ((size_t)plan->bucket_count + 2) * sizeof *plan->bucket_first);
-        count = fill_grid(plan, false);
-        if (count <= plan->entry_capacity) break;
+    clear_buckets(plan);
+    uint64_t count = 0;
+    for (; plan->edge > 0; plan->edge *= 1.3f) {
+        if (!(plan->edge < 1e30f)) plan->edge = 0; // a place is not finite: the step will tell
+        else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
+        clear_buckets(plan);
     }
+    if (!(plan->edge > 0)) return;
     for (uint32_t b = 0; b < plan->bucket_count; b++) plan->bucket_first[b + 2] += plan->bucket_first[b + 1];
     fill_grid(plan, true);
     plan->entry_count = (uint32_t)count;
@@ -165,7 +170,7 @@ static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t c
                          TouchWriter *writer) {
     for (uint32_t first = 0; first < count; first += TILE) {
         fill_tile(entries + first, count - first < TILE ? count - first : TILE, tile);
-        for (uint32_t i = 0; i < first + tile->count; i++) {
+        for (uint32_t i = 0; i < first + tile->count && !touch_list_is_full(writer); i++) {
             uint32_t after = i < first ? 0 : i - first + 1;
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
                 unsigned meet = meet_four(tile, j, &entries[i]);
@@ -180,15 +185,15 @@ static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t c
 static void pair_block(void *context, TouchList *list, int block) {
     const Find *find = context;
     const TouchPlan *plan = find->plan;
-    TouchWriter writer = touch_list_begin(list);
+    TouchWriter writer = touch_list_begin(list, block);
     Tile tile;
     uint32_t first = (uint32_t)block * TOUCH_BUCKETS, last = first + TOUCH_BUCKETS;
     if (last > plan->bucket_count) last = plan->bucket_count;
-    for (uint32_t b = first; b < last; b++) {
+    for (uint32_t b = first; b < last && !touch_list_is_full(&writer); b++) {
         uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
         if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);
     }
-    touch_list_end(&writer, block);
+    touch_list_end(&writer);
 }
 
 static void keep_pair(void *context, const void *item, uint32_t number) {
@@ -196,14 +201,19 @@ static void keep_pair(void *context, const void *item, uint32_t number) {
     memcpy(&find->plan->pairs[number], item, sizeof(TouchPair));
 }
 
+static int grid_blocks(const TouchPlan *plan) {
+    return (int)((plan->bucket_count + TOUCH_BUCKETS - 1) / TOUCH_BUCKETS);
+}
+
 uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
-    int blocks = (int)((plan->bucket_count + TOUCH_BUCKETS - 1) / TOUCH_BUCKETS);
-    plan->pair_count = 0;
     sort_into_grid(plan);
-    if (plan->entry_count == 0) return 0;
-    uint64_t count = touch_list_write(&plan->found_pairs, pool, blocks, plan->pair_capacity, pair_block, &find);
-    plan->pair_count = (uint32_t)(count < plan->pair_capacity ? count : plan->pair_capacity);
+    return touch_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_most, pair_block, &find);
+}
+
+void touch_grid_keep(TouchPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
+    Find find = {plan, shell};
+    int blocks = grid_blocks(plan);
+    plan->pair_count = touch_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
     touch_list_read(&plan->found_pairs, pool, blocks, plan->pair_count, keep_pair, &find);
-    return count;
 }

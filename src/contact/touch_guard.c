@@ -6,6 +6,7 @@
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
 // search is repeated for this step's own ways.
 #include "base/clock.h"
+#include "base/error.h"
 #include "contact/touch_guard.h"
 #include "contact/touch_near.h"
 
@@ -117,7 +118,7 @@ static uint32_t list_changed(TouchPlan *plan) {
 // ---- the step's end
 
 /// Searches for the ways of this step.
-static void search_again(Guard *guard, const State *state, Pool *pool, float h) {
+static SingeResult search_again(Guard *guard, const State *state, Pool *pool, float h) {
     TouchPlan *plan = guard->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Quad start = quad_load(plan->start[v]), speed = (quad_load(guard->dynamics->position[v]) - start) / h;
@@ -128,7 +129,7 @@ static void search_again(Guard *guard, const State *state, Pool *pool, float h) 
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = guard->cell_flags[c] & SINGE_ALIVE;
     plan->step = state->step;
     guard->time = h;
-    touch_search(plan, guard->shell, pool);
+    return touch_search(plan, guard->shell, pool);
 }
 
 static void measure(Guard *guard, Pool *pool) {
@@ -148,33 +149,38 @@ static uint32_t list_strayed(TouchPlan *plan) {
     return count;
 }
 
-/// Lists what cells that have left their boxes may have met; all anew where these are many. Returns the first pair that
-/// is new.
-static uint32_t follow_strayed(Guard *guard, const State *state, Pool *pool, float h) {
+/// Lists what cells that have left their boxes may have met; all anew where these are many. *first is the first pair
+/// that is new.
+static SingeResult follow_strayed(Guard *guard, const State *state, Pool *pool, float h, uint32_t *first) {
     TouchPlan *plan = guard->plan;
     uint32_t count = list_strayed(plan);
-    if (count == 0) return plan->pair_count;
+    *first = plan->pair_count;
+    if (count == 0) return SINGE_OK;
     bool all = count > plan->cell_count / STRAY_MOST || plan->edge <= 0;
     if (all) {
-        search_again(guard, state, pool, h);
+        TRY(search_again(guard, state, pool, h));
         measure(guard, pool);
         count = list_strayed(plan);
     }
-    touch_search_strayed(plan, guard->shell, pool, count, (const float(*)[4])guard->dynamics->position);
+    TRY(touch_search_strayed(plan, guard->shell, pool, count, (const float(*)[4])guard->dynamics->position));
     plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
-    return all ? 0 : plan->listed_count;
+    *first = all ? 0 : plan->listed_count;
+    return SINGE_OK;
 }
 
-/// One look at all that may have met, or at what the last round has changed. Returns the number of pairs that have.
-static uint32_t look(Guard *guard, const State *state, Pool *pool, float h, bool changed) {
-    uint32_t hits;
+/// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
+static SingeResult look(Guard *guard, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+    uint32_t first;
     if (changed) {
-        hits = meet_changed(guard, pool);
+        *hits = meet_changed(guard, pool);
     } else {
         measure(guard, pool);
-        hits = guard_meet(guard, pool, 0);
+        *hits = guard_meet(guard, pool, 0);
     }
-    return hits > 0 ? hits : guard_meet(guard, pool, follow_strayed(guard, state, pool, h));
+    if (*hits > 0) return SINGE_OK;
+    TRY(follow_strayed(guard, state, pool, h, &first));
+    *hits = guard_meet(guard, pool, first);
+    return SINGE_OK;
 }
 
 /// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has
@@ -186,7 +192,7 @@ static Quad shifted_velocity(Quad before, Quad shift, Quad way, float h) {
     return square > most ? sqrtf(most / square) * after : after;
 }
 
-/// Velocities and centres follow what has been changed; the zones are emptied.
+/// Velocities and centres follow what has been changed.
 static void close_ways(const Guard *guard, float h) {
     TouchPlan *plan = guard->plan;
     DynamicsState *dynamics = guard->dynamics;
@@ -212,19 +218,22 @@ static void close_ways(const Guard *guard, float h) {
         if (quad_dot(shift, shift) > 0)
             quad_store(dynamics->velocity[v], shifted_velocity(quad_load(dynamics->velocity[v]), shift, way, h));
     }
+}
+
+static void empty_zones(TouchPlan *plan) {
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;
 }
 
-void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
-                 DynamicsState *dynamics) {
-    double start = clock_seconds();
+static SingeResult close_step(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                              DynamicsState *dynamics) {
     Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
                    h * (float)(state->step - plan->step + 1)};
     bool stopped = false;
     if (plan->closed) mark_moved(&guard);
     for (int round = 0;; round++) {
-        uint32_t hits = look(&guard, state, pool, h, stopped || plan->closed);
+        uint32_t hits;
+        TRY(look(&guard, state, pool, h, stopped || plan->closed, &hits));
         if (hits == 0) break;
         if (round == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;
@@ -236,9 +245,19 @@ void touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *
         else guard_zones(&guard, round - IMPACT_ROUNDS);
         stopped = true;
     }
-    plan->pair_count = plan->listed_count;
     if (stopped) close_ways(&guard, h);
     memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);
     plan->closed = true;
+    return SINGE_OK;
+}
+
+SingeResult touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                        DynamicsState *dynamics) {
+    double start = clock_seconds();
+    SingeResult result = close_step(plan, shell, state, pool, h, dynamics);
+    plan->pair_count = plan->listed_count;
+    empty_zones(plan);
+    if (result) touch_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
+    return result;
 }

@@ -4,6 +4,7 @@
 // have moved against each other since. Only where the bound does not tell that all features stay apart in this step are
 // they looked at. So what is found hangs on the pair's places and speeds alone, not on when it was measured.
 #include "base/clock.h"
+#include "base/error.h"
 #include "contact/touch_feature.h"
 #include "contact/touch_near.h"
 
@@ -22,6 +23,7 @@ typedef struct Opening {
     const DynamicsState *dynamics;
     const uint8_t *cell_flags;
     bool searched; ///< just now
+    bool again;    ///< the pairs' distances are already this step's
 } Opening;
 
 // ---- how cells move
@@ -205,7 +207,8 @@ static void look_at_four(const Opening *job, uint32_t first, uint32_t count, Tou
     unsigned joined = four.bridged;
     if (joined) joined &= quad_bits(touch_four_within(&four, four.a, four.b, TOUCH_CONE));
     Quad due = 1.25f * plan->thickness + 1.5f * plan->time_step * touch_four_differ(&four, TOUCH_VELOCITY);
-    Quad left = quad_max(four.distance - touch_four_differ(&four, TOUCH_WAY) - plan->noise, quad_all(0));
+    Quad left = four.distance;
+    if (!job->again) left = quad_max(left - touch_four_differ(&four, TOUCH_WAY) - plan->noise, quad_all(0));
     unsigned near = quad_bits(left <= due) & ~joined;
     for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
     for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
@@ -219,11 +222,11 @@ static void look_at_four(const Opening *job, uint32_t first, uint32_t count, Tou
 
 static void look_block(void *context, TouchList *list, int block) {
     const Opening *job = context;
-    TouchWriter writer = touch_list_begin(list);
+    TouchWriter writer = touch_list_begin(list, block);
     uint32_t first = (uint32_t)block * TOUCH_BLOCK, last = first + TOUCH_BLOCK;
     if (last > job->plan->listed_count) last = job->plan->listed_count;
     for (uint32_t k = first; k < last; k += 4) look_at_four(job, k, last - k, &writer);
-    touch_list_end(&writer, block);
+    touch_list_end(&writer);
 }
 
 // ---- what is pushed
@@ -256,31 +259,44 @@ static void open_push(void *context, const void *item, uint32_t number) {
     gather(push, job->shell->cells[pair->b], wb, -1);
 }
 
-static void open_pushes(Opening *job, Pool *pool) {
+static SingeResult open_pushes(Opening *job, Pool *pool) {
     TouchPlan *plan = job->plan;
-    int blocks = (int)((plan->listed_count + TOUCH_BLOCK - 1) / TOUCH_BLOCK);
-    uint64_t count = touch_list_write(&plan->found, pool, blocks, plan->push_capacity, look_block, job);
-    plan->push_count = (uint32_t)(count < plan->push_capacity ? count : plan->push_capacity);
+    TouchList *list = &plan->found;
+    int blocks = (int)touch_look_blocks(plan->listed_count);
+    uint64_t count = touch_list_write(list, pool, blocks, plan->sizes.push_most, look_block, job);
+    if (!touch_grow_pushes(plan, count)) return SINGE_ERROR_MEMORY;
+    job->again = true;
+    plan->push_count = touch_list_settle(list, pool, blocks, count, plan->push_capacity, look_block, job);
     plan->counters.dropped += count - plan->push_count;
-    touch_list_read(&plan->found, pool, blocks, plan->push_count, open_push, job);
+    touch_list_read(list, pool, blocks, plan->push_count, open_push, job);
+    return SINGE_OK;
 }
 
-void touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics) {
-    double start = clock_seconds();
+static SingeResult open_step(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool,
+                             const DynamicsState *dynamics) {
     bool search = !plan->searched || plan->restless || state->step < plan->step ||
                   state->step - plan->step >= plan->steps;
-    Opening job = {plan, shell, dynamics, state->ablate.cell_flags, search};
+    Opening job = {plan, shell, dynamics, state->ablate.cell_flags, search, false};
     if (search) {
         note_search(plan, state, dynamics);
-        touch_search(plan, shell, pool);
+        TRY(touch_search(plan, shell, pool));
         memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
     }
     pool_for(pool, (int)plan->cell_count, 512, measure_range, &job);
     plan->closed = false;
     if (!search) memcpy(plan->start, dynamics->position, plan->vertex_count * sizeof *plan->start);
-    open_pushes(&job, pool);
+    TRY(open_pushes(&job, pool));
     plan->counters.pairs += plan->listed_count;
+    return SINGE_OK;
+}
+
+SingeResult touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool,
+                       const DynamicsState *dynamics) {
+    double start = clock_seconds();
+    SingeResult result = open_step(plan, shell, state, pool, dynamics);
+    if (result) touch_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
+    return result;
 }
 
 // ---- for drawing

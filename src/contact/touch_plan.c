@@ -1,4 +1,5 @@
 // The plan: what it is made of, how long it is remembered.
+#include "base/error.h"
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
@@ -13,13 +14,26 @@ SingeResult touch_check(const SingeContactDef *def, SingeError *error) {
 
 static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
 
+static uint32_t most_room(uint32_t capacity) {
+    uint64_t most = (uint64_t)TOUCH_GROWTH * capacity;
+    return capped(most > TOUCH_LEAST ? most : TOUCH_LEAST);
+}
+
+TouchSizes touch_sizes(const Shell *shell) {
+    uint64_t cells = shell->cell_count;
+    TouchSizes sizes = {.entries = capped(TOUCH_ENTRIES * cells + 64), .pairs = capped(TOUCH_PAIRS * cells + 64),
+                        .pushes = capped(TOUCH_PUSHES * cells + 64)};
+    sizes.pair_most = most_room(sizes.pairs), sizes.push_most = most_room(sizes.pushes);
+    sizes.pair_budget = sizes.pairs;
+    return sizes;
+}
+
 /// Finds the sizes of lists and lengths that follow from the shell.
-static void size_plan(TouchPlan *plan, const Shell *shell) {
+static void size_plan(TouchPlan *plan, const Shell *shell, const TouchSizes *sizes) {
     uint64_t cells = shell->cell_count;
     plan->vertex_count = shell->vertex_count, plan->cell_count = shell->cell_count;
-    plan->entry_capacity = capped(TOUCH_ENTRIES * cells + 64);
-    plan->pair_capacity = capped(TOUCH_PAIRS * cells + 64);
-    plan->push_capacity = capped(TOUCH_PUSHES * cells + 64);
+    plan->sizes = *sizes;
+    plan->pair_capacity = sizes->pairs, plan->push_capacity = sizes->pushes;
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
     plan->cell_size = INFINITY;
     float far = 0;
@@ -46,7 +60,7 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
     const Array all[ARRAYS] = {
         ARRAY(thin, cells), ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells),
         ARRAY(boxes, cells), ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(owned, cells), ARRAY(owner, vertices),
-        ARRAY(entries, plan->entry_capacity), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
+        ARRAY(entries, plan->sizes.entries), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
         ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
         ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(motion, cells),
         ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
@@ -54,7 +68,7 @@ static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
         ARRAY(active, plan->pair_capacity), ARRAY(around_first, cells + 2),
         ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(strayed, cells), ARRAY(stray, cells),
         ARRAY(stray_boxes, cells),
-        ARRAY(stray_chain, plan->bucket_count), ARRAY(stray_entries, plan->entry_capacity),
+        ARRAY(stray_chain, plan->bucket_count), ARRAY(stray_entries, plan->sizes.entries),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY
@@ -69,7 +83,7 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
         if (!block) return false;
         memcpy(list[k].at, &block, sizeof block);
     }
-    uint32_t most = plan->pair_capacity, blocks = most / TOUCH_BLOCK + 1;
+    uint32_t most = plan->pair_capacity, blocks = touch_look_blocks(most);
     uint32_t buckets = plan->bucket_count / TOUCH_BUCKETS + 1, strays = plan->cell_count / TOUCH_STRAYS + 1;
     if (buckets < strays) buckets = strays;
     return touch_list_create(memory, &plan->found_pairs, sizeof(TouchPair), most, buckets) &&
@@ -108,12 +122,19 @@ static void measure_cells(TouchPlan *plan, const Shell *shell) {
 
 SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
                               TouchPlan **out) {
+    TouchSizes sizes = touch_sizes(shell);
+    return touch_plan_create_sized(memory, shell, def, time_step, &sizes, out);
+}
+
+SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                                    const TouchSizes *sizes, TouchPlan **out) {
     TouchPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
+    plan->memory = memory;
     plan->def = *def;
     plan->time_step = time_step;
-    size_plan(plan, shell);
+    size_plan(plan, shell, sizes);
     if (!allocate(memory, plan)) {
         touch_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
@@ -124,7 +145,7 @@ SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeCon
     return SINGE_OK;
 }
 
-void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
+SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
@@ -132,15 +153,16 @@ void touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
     stream_data(stream, plan->tangled, plan->cell_count);
-    if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return;
+    if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
     plan->counters.tangled = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;
     plan->closed = false;
     uint32_t restless = plan->restless;
-    touch_search(plan, shell, NULL);
+    TRY(touch_search(plan, shell, NULL));
     plan->restless = restless;
     // how far pairs have moved since is not known
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
+    return SINGE_OK;
 }
 
 // a search from a later step than the present one counts as none

@@ -11,8 +11,9 @@
 enum { TOUCH_STEPS = 10 };
 /// Buckets, pairs or cells that a thread works on together.
 enum { TOUCH_BUCKETS = 128, TOUCH_BLOCK = 256, TOUCH_STRAYS = 16 };
-/// Room for a cell, of each list.
-enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 40, TOUCH_PUSHES = 24 };
+/// Room for a cell, of each list. Lists of pairs and pushes grow where that is too little, by TOUCH_GROWTH, or to
+/// TOUCH_LEAST items where that is more.
+enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 40, TOUCH_PUSHES = 24, TOUCH_GROWTH = 8, TOUCH_LEAST = 1 << 19 };
 
 /// What meets.
 enum { TOUCH_NODE_OF_A, TOUCH_NODE_OF_B, TOUCH_EDGES };
@@ -83,8 +84,25 @@ typedef struct TouchChain {
 /// m/s, with the largest deviation of one as fourth; and its normals, as of touch_normals.
 enum { TOUCH_WAY, TOUCH_VELOCITY, TOUCH_NORMAL, TOUCH_MOTIONS };
 
+/// Items of the lists, to begin with and at most.
+typedef struct TouchSizes {
+    uint32_t entries;     ///< at least 8 a cell
+    uint32_t pairs, pair_most;   ///< at least 1 a cell
+    uint32_t pushes, push_most;
+    uint32_t pair_budget; ///< that a search is content with: where there are more it looks less far
+} TouchSizes;
+
+/// What is enough for all but crowds.
+TouchSizes touch_sizes(const Shell *shell);
+
+/// touch_plan_create with other sizes than those.
+SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                                    const TouchSizes *sizes, TouchPlan **plan);
+
 struct TouchPlan {
+    Memory *memory;
     SingeContactDef def;
+    TouchSizes sizes;
     uint32_t cell_count, vertex_count;
     float time_step;  ///< s
     float cell_size;  ///< m, of the smallest
@@ -110,13 +128,13 @@ struct TouchPlan {
     uint32_t entry_count, bucket_count, push_count;
     uint32_t listed_count;   ///< pairs of the search
     uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
-    uint32_t entry_capacity, pair_capacity, push_capacity;
+    uint32_t pair_capacity, push_capacity;
     TouchBox *boxes;         ///< [cells]
     TouchSlab *slabs;        ///< [cells]
     Quad *rest;              ///< [cells] middle at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
-    TouchEntry *entries;     ///< [entry_capacity] by bucket
+    TouchEntry *entries;     ///< [sizes.entries] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
     TouchPair *pairs;        ///< [pair_capacity]
     TouchPush *pushes;       ///< [push_count]
@@ -147,17 +165,29 @@ struct TouchPlan {
     uint32_t *stray;         ///< [cells] a list of them
     TouchStray *stray_boxes; ///< [cells] theirs
     uint32_t *stray_chain;   ///< [bucket_count] first entries
-    TouchChain *stray_entries; ///< [entry_capacity]
+    TouchChain *stray_entries; ///< [sizes.entries]
     double *partial;         ///< [pool_blocks(pair_capacity)]
     TouchCounters counters;
 };
 
-/// Finds the pairs for plan->place, speed, alive. Their distances are those at plan->place.
-void touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
+/// Finds the pairs for plan->place, speed, alive. Their distances are those at plan->place. SINGE_ERROR_MEMORY: then
+/// there are none.
+SingeResult touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
 
-/// The pairs of cells whose swept boxes meet, in touch_grid.c: sorts them into the grid, and lists those that `reach`
-/// allows. Returns how many there are, with or without room.
+/// The pairs of cells whose swept boxes meet, in touch_grid.c: sorts them into the grid, and writes plan->found_pairs,
+/// of those that `reach` allows. Returns how many there are, with or without room.
 uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool);
+
+/// Keeps the first `room` of the `count` pairs that touch_grid_pairs has found, as plan->pairs.
+void touch_grid_keep(TouchPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
+
+/// Blocks in which pairs are looked at.
+static inline uint32_t touch_look_blocks(uint32_t pairs) { return (pairs + TOUCH_BLOCK - 1) / TOUCH_BLOCK; }
+
+/// Makes room for `wanted` pairs or pushes, or as many as there may be at most; plan->found_pairs and plan->found lose
+/// what they hold. False when out of memory.
+bool touch_grow_pairs(TouchPlan *plan, uint64_t wanted);
+bool touch_grow_pushes(TouchPlan *plan, uint64_t wanted);
 
 /// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->place.
 bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *distance);
@@ -166,8 +196,9 @@ bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *dista
 uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
 /// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from
-/// plan->start to `x`.
-void touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count, const float (*x)[4]);
+/// plan->start to `x`. SINGE_ERROR_MEMORY.
+SingeResult touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count,
+                                 const float (*x)[4]);
 
 /// Marks cells that cross another: all of them at the first search, later those that have not parted since.
 void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first);

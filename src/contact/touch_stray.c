@@ -39,11 +39,22 @@ static void add_pair(const Strays *job, uint32_t a, uint32_t b, TouchWriter *wri
     if (pair) *pair = (TouchPair){.a = a, .b = b, .hit = 2, .bridge = touch_bridge(job->plan, job->shell, a, b)};
 }
 
+static void against_box(const Strays *job, uint32_t a, const TouchStray *box, uint32_t b, TouchWriter *writer) {
+    const TouchBox *other = &job->plan->boxes[b];
+    if (!job->plan->strayed[b] && quads_meet(box->low, box->high, other->swept_low, other->swept_high))
+        add_pair(job, a, b, writer);
+}
+
 /// Cells in their boxes that a strayed one may have met.
 static void against_boxes(const Strays *job, uint32_t a, const TouchStray *box, TouchWriter *writer) {
     const TouchPlan *plan = job->plan;
     float inverse = 1 / plan->edge;
     Cube first = touch_cube(box->low, inverse), last = touch_cube(box->high, inverse), at = first;
+    if (touch_cubes(first, last, plan->sizes.entries) > plan->sizes.entries) { // thrown far: more cubes than cells
+        for (uint32_t b = 0; b < plan->cell_count; b++)
+            if (plan->alive[b]) against_box(job, a, box, b, writer);
+        return;
+    }
     for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
@@ -51,10 +62,7 @@ static void against_boxes(const Strays *job, uint32_t a, const TouchStray *box, 
                 for (uint32_t k = plan->bucket_first[bucket]; k < plan->bucket_first[bucket + 1]; k++) {
                     const TouchEntry *entry = &plan->entries[k];
                     if ((entry->key & TOUCH_KEY) != key || (begun | entry->key >> 29) != 7) continue;
-                    if (plan->strayed[entry->cell]) continue;
-                    const TouchBox *other = &plan->boxes[entry->cell];
-                    if (quads_meet(box->low, box->high, other->swept_low, other->swept_high))
-                        add_pair(job, a, entry->cell, writer);
+                    against_box(job, a, box, entry->cell, writer);
                 }
             }
 }
@@ -68,8 +76,8 @@ static void chain_strays(Strays *job) {
     for (uint32_t k = job->count; k-- > 0;) {
         const TouchStray *box = &plan->stray_boxes[k];
         Cube first = touch_cube(box->low, inverse), last = touch_cube(box->high, inverse), at = first;
-        uint64_t cubes = touch_cubes(first, last, plan->entry_capacity);
-        job->crowded |= cubes > plan->entry_capacity - job->entry_count;
+        uint64_t cubes = touch_cubes(first, last, plan->sizes.entries);
+        job->crowded |= cubes > plan->sizes.entries - job->entry_count;
         if (job->crowded) return;
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
@@ -111,13 +119,13 @@ static void against_strays(const Strays *job, uint32_t k, TouchWriter *writer) {
 
 static void stray_block(void *context, TouchList *list, int block) {
     const Strays *job = context;
-    TouchWriter writer = touch_list_begin(list);
+    TouchWriter writer = touch_list_begin(list, block);
     uint32_t first = (uint32_t)block * TOUCH_STRAYS, last = first + TOUCH_STRAYS;
-    for (uint32_t k = first; k < last && k < job->count; k++) {
+    for (uint32_t k = first; k < last && k < job->count && !touch_list_is_full(&writer); k++) {
         against_boxes(job, job->plan->stray[k], &job->plan->stray_boxes[k], &writer);
         against_strays(job, k, &writer);
     }
-    touch_list_end(&writer, block);
+    touch_list_end(&writer);
 }
 
 static void keep_pair(void *context, const void *item, uint32_t number) {
@@ -125,16 +133,21 @@ static void keep_pair(void *context, const void *item, uint32_t number) {
     memcpy(&plan->pairs[plan->listed_count + number], item, sizeof(TouchPair));
 }
 
-void touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count, const float (*x)[4]) {
+SingeResult touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count,
+                                 const float (*x)[4]) {
     Strays job = {plan, shell, x, stray_count, 0, false};
-    if (stray_count == 0) return;
+    plan->pair_count = plan->listed_count;
+    if (stray_count == 0 || !(plan->edge > 0)) return SINGE_OK;
     int blocks = (int)((stray_count + TOUCH_STRAYS - 1) / TOUCH_STRAYS);
     pool_for(pool, (int)stray_count, TOUCH_STRAYS, box_range, &job);
     chain_strays(&job);
+    TouchList *list = &plan->found_pairs;
+    uint64_t count = touch_list_write(list, pool, blocks, plan->sizes.pair_most, stray_block, &job);
+    if (!touch_grow_pairs(plan, plan->listed_count + count)) return SINGE_ERROR_MEMORY;
     uint32_t room = plan->pair_capacity - plan->listed_count;
-    uint64_t count = touch_list_write(&plan->found_pairs, pool, blocks, plan->pair_capacity, stray_block, &job);
-    uint32_t kept = (uint32_t)(count < room ? count : room);
+    uint32_t kept = touch_list_settle(list, pool, blocks, count, room, stray_block, &job);
     plan->counters.dropped += count - kept;
-    touch_list_read(&plan->found_pairs, pool, blocks, kept, keep_pair, &job);
+    touch_list_read(list, pool, blocks, kept, keep_pair, &job);
     plan->pair_count = plan->listed_count + kept;
+    return SINGE_OK;
 }

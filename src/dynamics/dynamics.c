@@ -103,9 +103,9 @@ void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *sta
     if (plan->touch) touch_plan_forget(plan->touch); // cells that shared a corner may touch from now on
 }
 
-void dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
+SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
-    if (plan->touch) touch_plan_stream(plan->touch, shell, stream);
+    return plan->touch ? touch_plan_stream(plan->touch, shell, stream) : SINGE_OK;
 }
 
 TouchCounters dynamics_plan_touches(const DynamicsPlan *plan) {
@@ -171,16 +171,21 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
 }
 
 /// Limits and the guard in turn: what the guard has stopped may be too far from what it has not.
-static void dynamics_close(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
-                           DynamicsState *dynamics) {
+static SingeResult dynamics_close(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                                  DynamicsState *dynamics) {
     enum { TURNS = 8 };
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = dynamics_limit(plan, shell, state, pool, dynamics);
-        if (!plan->touch || (turn > 0 && !limited)) return;
+        if (!plan->touch || (turn > 0 && !limited)) break;
         uint64_t stops = touch_counters(plan->touch).stops;
-        touch_guard(plan->touch, shell, state, pool, h, dynamics);
-        if (touch_counters(plan->touch).stops == stops) return;
+        TRY(touch_guard(plan->touch, shell, state, pool, h, dynamics));
+        if (touch_counters(plan->touch).stops == stops) break;
     }
+    return SINGE_OK;
+}
+
+static SingeResult dynamics_touched(SingeResult result, SingeError *error) {
+    return result ? error_set(error, result, "contact", -1, "out of memory for what is near each other") : SINGE_OK;
 }
 
 SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
@@ -190,7 +195,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
-    if (plan->touch) touch_open(plan->touch, shell, state, pool, dynamics);
+    if (plan->touch) TRY(dynamics_touched(touch_open(plan->touch, shell, state, pool, dynamics), error));
     Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
@@ -217,7 +222,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     }
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    dynamics_close(plan, shell, state, pool, h, dynamics);
+    TRY(dynamics_touched(dynamics_close(plan, shell, state, pool, h, dynamics), error));
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;

@@ -192,7 +192,7 @@ static bool snapshot_objects(Stream *stream, SingeSim *sim) {
     return true;
 }
 
-static void snapshot_state(Stream *stream, SingeSim *sim) {
+static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     State *state = &sim->state;
     STREAM(stream, state->time);
     STREAM(stream, state->step);
@@ -214,11 +214,12 @@ static void snapshot_state(Stream *stream, SingeSim *sim) {
     if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again as it did
         stream->failed = state->tear.split_count > sim->shell.spare_count ||
                          !split_replay(&sim->shell, state->tear.splits, state->tear.split_count);
-    dynamics_plan_stream(sim->dynamics, &sim->shell, stream);
+    SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
     for (uint32_t i = 0; stream->mode == STREAM_READ && i < sim->shell.particle_count; i++)
         stream->failed |= state->ablate.piece[i] < -1 || state->ablate.piece[i] >= (int64_t)sim->shell.particle_count;
     stream->failed |= stream->mode == STREAM_READ && stream->offset != stream->size;
+    return result;
 }
 
 /// Walks the whole body. When reading, builds the shell once the sheets are there.
@@ -230,7 +231,7 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     ok = ok && snapshot_objects(stream, sim);
     if (ok && stream->mode == STREAM_READ)
         ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);
-    if (ok) snapshot_state(stream, sim);
+    ok = ok && snapshot_state(stream, sim) == SINGE_OK;
     if (stream->failed)
         return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
                         "the snapshot ends too soon or does not fit together");
