@@ -13,11 +13,11 @@ static inline Cube touch_cube(Quad p, float inverse_edge) {
     return whole + (__builtin_convertvector(whole, Quad) > q); // a mask is -1
 }
 
-/// Cubes from one to another, or more than `most`.
+/// Cubes from one to another; more than `most` also where two of them would have one key, or a place is not finite.
 static inline uint64_t touch_cubes(Cube first, Cube last, uint64_t most) {
     uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
     uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;
-    if (x > most || x * y > most || x * y * z > most) return most + 1;
+    if (x - 1 > 1022 || y - 1 > 1022 || z - 1 > 510 || x * y * z > most) return most + 1;
     return x * y * z;
 }
 

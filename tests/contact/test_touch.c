@@ -259,7 +259,7 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(touch_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
     for (uint32_t v = 0; v < row * row; v++)
         for (int k = 0; k < 3; k++) s->state.dynamics.velocity[v][k] = 0.5f * sinf((float)(v * (uint32_t)(k + 3)));
-    touch_open(s->plan, &s->shell, &s->state, NULL, &s->state.dynamics);
+    assert_int_equal(touch_open(s->plan, &s->shell, &s->state, NULL, &s->state.dynamics), SINGE_OK);
     free(x), free(cells);
     return s;
 }
@@ -391,9 +391,8 @@ static bool ways_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32
     return true;
 }
 
-/// Cells that are thrown out of their boxes, against brute force.
-static void strays_are_found(void **unused) {
-    (void)unused;
+/// Cells that are thrown out of their boxes, and some `far` (m) beyond all others, against brute force.
+static void check_strays(float far) {
     Searched *s = searched(30);
     TouchPlan *plan = s->plan;
     uint32_t n = plan->cell_count, count = 0, met = 0;
@@ -401,12 +400,13 @@ static void strays_are_found(void **unused) {
     memcpy(x, plan->start, plan->vertex_count * sizeof *x);
     for (uint32_t v = 0; v < plan->vertex_count; v += 17)
         for (int k = 0; k < 3; k++) x[v][k] += 4e-3f * sinf((float)(v * (uint32_t)(k + 2))); // two cells far
+    for (int k = 0; k < 3; k++) x[17 * 20][k] += far;
     for (uint32_t c = 0; c < n; c++) {
         plan->strayed[c] = 0;
         for (int i = 0; i < 4; i++) plan->strayed[c] |= s->shell.cells[c][i] % 17 == 0;
         if (plan->strayed[c]) plan->stray[count++] = c;
     }
-    touch_search_strayed(plan, &s->shell, NULL, count, (const float(*)[4])x);
+    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
     uint8_t *listed = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const TouchPair *pair = &plan->pairs[k];
@@ -421,6 +421,34 @@ static void strays_are_found(void **unused) {
         }
     assert_true(count > n / 8 && met > 10 * count && plan->pair_count > plan->listed_count + count / 8);
     free(listed), free(x);
+    searched_free(s);
+}
+
+static void strays_are_found(void **unused) {
+    (void)unused;
+    check_strays(0);
+    check_strays(1e4f); // through more cubes than can be counted
+}
+
+/// Cells of which some are thousands of cubes long, and what has no place at all.
+static void the_grid_has_bounds(void **unused) {
+    (void)unused;
+    Searched *s = searched(30);
+    TouchPlan *plan = s->plan;
+    uint32_t n = plan->cell_count, listed = plan->listed_count;
+    plan->place[500][0] += 200;
+    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_true(plan->listed_count >= listed / 2);
+    uint8_t *seen = calloc((size_t)n * n, 1);
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        uint8_t *at = &seen[plan->pairs[k].a * n + plan->pairs[k].b];
+        assert_int_equal(*at, 0); // once
+        *at = 1;
+    }
+    plan->place[500][1] = NAN, plan->speed[77][2] = INFINITY;
+    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, 3, (const float(*)[4])plan->place), SINGE_OK);
+    free(seen);
     searched_free(s);
 }
 
@@ -455,6 +483,7 @@ int main(void) {
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
         cmocka_unit_test(strays_are_found),            cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(the_grid_has_bounds),
         cmocka_unit_test(bad_values_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
