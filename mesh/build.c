@@ -254,12 +254,12 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     work->weld = options->weld > 0 ? (double)options->weld : (double)MESH_WELD * size_of(work);
     work->smallest = (double)options->smallest;
     if (!work->no_memory) mesh_weld(work);
-    if (!work->no_memory) mesh_clean(work);
-    if (!work->no_memory) mesh_shrink(work);
-    if (!work->no_memory) mesh_junctions(work);
-    if (!work->no_memory && work->faces.count == 0)
+    if (!work->no_memory) result = mesh_clean(work);
+    if (!work->no_memory && !result) result = mesh_shrink(work);
+    if (!work->no_memory && !result) result = mesh_junctions(work);
+    if (!work->no_memory && !result && work->faces.count == 0)
         return refuse(work->error, SINGE_ERROR_MESH, "mesh", -1, "%s: no face has an area", short_name(work->name));
-    if (!work->no_memory) result = mesh_manifold(work);
+    if (!work->no_memory && !result) result = mesh_manifold(work);
     if (result || work->no_memory) return result;
     bool pair = options->quads == MESH_QUADS_PAIR;
     if (pair && !all_quads(&work->faces)) pair = pair_faces(work);

@@ -1,55 +1,47 @@
-// Faces that are none: without area, there twice, or touching themselves.
-#include "mesh/work.h"
+// Faces that are none: without area, there twice, or touching themselves; and those that no middle sees.
+#include "mesh/loops.h"
 
-#include <math.h>
 #include <string.h>
 
-/// The corners of a face while it falls apart.
-typedef struct Loop {
-    uint32_t *corner;
-    uint32_t count;
-} Loop;
-
-/// Writes the loop from `from` on as a face unless it has no area. Returns whether it had.
-static bool loop_end(Work *work, const Loop *loop, uint32_t from, uint32_t origin, Faces *out) {
-    const Faces *old = &work->faces;
-    const uint32_t count = loop->count - from;
-    double longest = 0, normal[3] = {0};
-    if (count < 3) return false;
-    const double *o = work->place[old->corner[loop->corner[from]]];
-    for (uint32_t i = 0; i < count; i++) {
-        const double *a = work->place[old->corner[loop->corner[from + i]]];
-        const double *b = work->place[old->corner[loop->corner[from + (i + 1) % count]]];
-        double p[3], q[3], n[3];
-        longest = fmax(longest, distance3(a, b));
-        sub3(a, o, p), sub3(b, o, q);
-        cross3(p, q, n);
-        for (int k = 0; k < 3; k++) normal[k] += n[k];
-    }
-    if (!(sqrt(dot3(normal, normal)) > FACE_THIN * longest * longest)) return false;
-    for (uint32_t i = from; i < loop->count; i++) faces_push(out, old->corner[loop->corner[i]], old, loop->corner[i]);
+static void push_ring(Work *work, const uint32_t *ring, uint32_t n, uint32_t origin, Faces *out) {
+    if (!work_faces_room(work, out, 1, n)) return;
+    for (uint32_t i = 0; i < n; i++) faces_push(out, work->faces.corner[ring[i]], &work->faces, ring[i]);
     faces_end(out, origin);
-    return true;
 }
 
-/// Cuts a face at vertices that it names twice.
-static void clean_face(Work *work, uint32_t face, Loop *loop, Faces *out) {
-    const Faces *old = &work->faces;
-    bool whole = true;
-    loop->count = 0;
-    for (uint32_t h = old->first[face]; h < old->first[face + 1]; h++) {
-        uint32_t at = 0;
-        while (at < loop->count && old->corner[loop->corner[at]] != old->corner[h]) at++;
-        if (at < loop->count) {
-            if (loop->count - at >= 3 && !loop_end(work, loop, at, old->origin[face], out)) whole = false;
-            loop->count = at;
-        }
-        loop->corner[loop->count++] = h;
+static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t origin, Faces *out) {
+    push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
+}
+
+/// A loop as it is where its middle sees all of it, or else its triangles.
+static void push_cut_loop(Work *work, Loops *loops, uint32_t loop, uint32_t origin, Faces *out) {
+    const uint32_t first = loops->triangles[loop], end = loops->triangles[loop + 1];
+    if (first == end) return;
+    if (loops_is_star(loops, loop)) {
+        push_loop(work, loops, loop, origin, out);
+        return;
     }
-    bool repeated = loop->count < old->first[face + 1] - old->first[face];
-    whole = loop_end(work, loop, 0, old->origin[face], out) && whole;
-    if (repeated && whole && !work->shrunk) work_did(work, MESH_REPEATED, 1, work_face_name(work, old->origin[face]));
-    if (!whole && !work->shrunk) work_did(work, MESH_DEGENERATE, 1, work_face_name(work, old->origin[face]));
+    for (uint32_t t = first; t < end; t++) {
+        const uint32_t *triangle = loops->cut.triangle[t];
+        if (!loops_is_flat(loops, triangle, 3)) push_ring(work, triangle, 3, origin, out);
+    }
+}
+
+/// Copies faces that are whole; others fall apart into loops and triangles.
+static SingeResult clean_face(Work *work, uint32_t face, Loops *loops, Faces *out) {
+    const Faces *old = &work->faces;
+    const uint32_t origin = old->origin[face], name = work_face_name(work, origin);
+    const FaceKind kind = loops_find(loops, face);
+    if (kind == FACE_CROSSED) return work_refuse(work, origin, "crosses or overlaps itself: no quads cover it once");
+    if (kind == FACE_WHOLE) push_loop(work, loops, 0, origin, out);
+    if (kind == FACE_CUT)
+        for (uint32_t k = 0; k < loops->count; k++) push_cut_loop(work, loops, k, origin, out);
+    if (work->shrunk) return SINGE_OK;
+    if (kind == FACE_IDLE) work_did(work, MESH_DEGENERATE, 1, name);
+    else if (loops->repeats) work_did(work, MESH_REPEATED, 1, name);
+    else if (loops->spikes) work_did(work, MESH_SPIKE, 1, name);
+    if (kind == FACE_CUT) work_did(work, MESH_CONCAVE, 1, name);
+    return SINGE_OK;
 }
 
 static uint32_t least_corner(const Faces *faces, uint32_t face) {
@@ -92,22 +84,27 @@ static void find_duplicates(Work *work, uint8_t *gone) {
     }
 }
 
-void mesh_clean(Work *work) {
+SingeResult mesh_clean(Work *work) {
     const Faces *old = &work->faces;
-    Faces out = work_faces(work, old->corner_count / 3 + old->count, old->corner_count);
-    Loop loop = {.corner = work_new(work, old->corner_count, sizeof *loop.corner)};
-    if (work->no_memory) return;
-    for (uint32_t f = 0; f < old->count; f++) clean_face(work, f, &loop, &out);
+    Faces out = work_faces(work, old->count, old->corner_count);
+    Loops loops = {0};
+    if (work->no_memory || !loops_begin(&loops, work, old)) return SINGE_OK;
+    for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
+        SingeResult result = clean_face(work, f, &loops, &out);
+        if (result) return result;
+    }
+    if (work->no_memory) return SINGE_OK;
     work->faces = out;
     uint8_t *gone = work_new(work, out.count, 1);
     Faces last = work_faces(work, out.count, out.corner_count);
-    if (work->no_memory) return;
+    if (work->no_memory) return SINGE_OK;
     find_duplicates(work, gone);
-    if (work->no_memory) return;
+    if (work->no_memory) return SINGE_OK;
     for (uint32_t f = 0; f < out.count; f++) {
         if (gone[f]) continue;
         for (uint32_t h = out.first[f]; h < out.first[f + 1]; h++) faces_push(&last, out.corner[h], &out, h);
         faces_end(&last, out.origin[f]);
     }
     work->faces = last;
+    return SINGE_OK;
 }

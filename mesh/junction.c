@@ -130,19 +130,19 @@ static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, u
         out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
 }
 
-void mesh_junctions(Work *work) {
+SingeResult mesh_junctions(Work *work) {
     work_edges(work);
     Junctions *j = work_new(work, 1, sizeof *j);
-    if (work->no_memory) return;
+    if (work->no_memory) return SINGE_OK;
     j->work = work;
-    if (!list_open(j)) return;
+    if (!list_open(j)) return SINGE_OK;
     const Faces *old = &work->faces;
     uint32_t added = 0;
     for (int write = 0; write < 2; write++) {
         Faces out = {0};
-        if (write && !added) return;
+        if (write && !added) return SINGE_OK;
         if (write) out = work_faces(work, old->count, old->corner_count + added);
-        if (work->no_memory) return;
+        if (work->no_memory) return SINGE_OK;
         for (uint32_t f = 0; f < old->count; f++) {
             for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
                 uint32_t next = faces_next(old, work->face, h);
@@ -159,5 +159,5 @@ void mesh_junctions(Work *work) {
         }
         if (write) work->faces = out;
     }
-    mesh_clean(work); // a vertex may lie on two sides of one face
+    return mesh_clean(work); // a vertex may lie on two sides of one face
 }

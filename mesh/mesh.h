@@ -26,6 +26,8 @@ typedef enum MeshRepair {
     MESH_WELDED,     ///< vertices joined to another one at their place
     MESH_SHRUNK,     ///< very short sides whose ends became one vertex
     MESH_REPEATED,   ///< faces that named a vertex twice
+    MESH_SPIKE,      ///< faces that went out and came back the same way
+    MESH_CONCAVE,    ///< faces with a hole or a bay cut into triangles
     MESH_DEGENERATE, ///< faces without area left out
     MESH_DUPLICATE,  ///< faces left out whose corners another face has
     MESH_JUNCTION,   ///< vertices put into sides that they lie on

@@ -11,7 +11,7 @@
 // shifts pairs along a way of triangles until two that are alone meet, or one comes to the border. A pair that would be
 // no good quad (an angle above 175 degrees, a sharp fold, a seam of the uv) shares its side with a new vertex in the
 // middle, by which both triangles are quads of their own; so does a triangle at the border.
-#include "mesh/work.h"
+#include "mesh/polygon.h"
 
 #include <math.h>
 #include <string.h>
@@ -52,11 +52,10 @@ static double angle_at(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
     return DEGREES * acos(cosine_at(work, a, b, c));
 }
 
-/// How well a triangle can be cut off at corner k of a ring of n half-edges: its smallest angle, in degrees; negative
-/// where it is turned over.
-static double ear_of(const Work *work, const uint32_t *ring, uint32_t n, uint32_t k, const double normal[3]) {
-    const uint32_t *corner = work->faces.corner;
-    uint32_t a = corner[ring[(k + n - 1) % n]], b = corner[ring[k]], c = corner[ring[(k + 1) % n]];
+/// The smallest angle of a triangle, in degrees; negative where it is turned over against the normal.
+static double worth_of(const Pairs *pairs, const uint32_t half[3], const double normal[3]) {
+    const Work *work = pairs->work;
+    const uint32_t a = work->faces.corner[half[0]], b = work->faces.corner[half[1]], c = work->faces.corner[half[2]];
     double p[3], q[3], m[3];
     sub3(work->place[b], work->place[a], p), sub3(work->place[c], work->place[b], q);
     cross3(p, q, m);
@@ -75,65 +74,17 @@ static void push_triangle(Pairs *pairs, Faces *out, uint32_t a, uint32_t b, uint
     faces_end(out, origin);
 }
 
-enum { BEST_CUT_MOST = 40 };
-
-/// The triangulation of a small ring whose worst triangle is best, by parts of the ring (Klincsek, 1980).
-static void cut_best(Pairs *pairs, const uint32_t *ring, uint32_t n, const double normal[3], uint32_t origin,
-                     Faces *out) {
-    const Work *work = pairs->work;
-    double worst[BEST_CUT_MOST][BEST_CUT_MOST];
-    uint8_t apex[BEST_CUT_MOST][BEST_CUT_MOST], stack[2 * BEST_CUT_MOST][2];
-    for (uint32_t span = 1; span < n; span++)
-        for (uint32_t i = 0; i + span < n; i++) {
-            uint32_t j = i + span;
-            worst[i][j] = span == 1 ? 180 : -1e9;
-            for (uint32_t k = i + 1; k < j; k++) {
-                const uint32_t three[3] = {ring[i], ring[k], ring[j]};
-                double value = fmin(ear_of(work, three, 3, 1, normal), fmin(worst[i][k], worst[k][j]));
-                if (value > worst[i][j]) worst[i][j] = value, apex[i][j] = (uint8_t)k;
-            }
-        }
-    uint32_t depth = 1;
-    stack[0][0] = 0, stack[0][1] = (uint8_t)(n - 1);
-    while (depth) {
-        uint32_t i = stack[--depth][0], j = stack[depth][1];
-        if (j - i < 2) continue;
-        uint32_t k = apex[i][j];
-        push_triangle(pairs, out, ring[i], ring[k], ring[j], origin);
-        stack[depth][0] = (uint8_t)i, stack[depth++][1] = (uint8_t)k;
-        stack[depth][0] = (uint8_t)k, stack[depth++][1] = (uint8_t)j;
-    }
-}
-
-/// Cuts off the best corner until the ring is small.
-static void cut_polygon(Pairs *pairs, uint32_t face, uint32_t *ring, Faces *out) {
-    const Work *work = pairs->work;
-    const Faces *old = &work->faces;
-    uint32_t n = old->first[face + 1] - old->first[face];
-    double normal[3];
-    face_area(work, face, normal);
-    for (uint32_t i = 0; i < n; i++) ring[i] = old->first[face] + i;
-    for (; n > BEST_CUT_MOST; n--) {
-        uint32_t best = 0;
-        double most = -1e9;
-        for (uint32_t k = 0; k < n; k++) {
-            double value = ear_of(work, ring, n, k, normal);
-            if (value > most) most = value, best = k;
-        }
-        push_triangle(pairs, out, ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n], old->origin[face]);
-        memmove(ring + best, ring + best + 1, (n - 1 - best) * sizeof *ring);
-    }
-    cut_best(pairs, ring, n, normal, old->origin[face], out);
-}
-
 /// Cuts a quad along the diagonal that leaves the better triangles; they are a pair from the start.
 static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
     const Faces *old = &pairs->work->faces;
     const uint32_t h = old->first[face], ring[4] = {h, h + 1, h + 2, h + 3};
     double normal[3], value[2];
     face_area(pairs->work, face, normal);
-    for (uint32_t k = 0; k < 2; k++)
-        value[k] = fmin(ear_of(pairs->work, ring, 4, k, normal), ear_of(pairs->work, ring, 4, k + 2, normal));
+    for (uint32_t k = 0; k < 2; k++) {
+        const uint32_t last = ring[(k + 3) % 4], ear[3] = {last, ring[k], ring[k + 1]};
+        const uint32_t other[3] = {ring[k + 1], ring[k + 2], last};
+        value[k] = fmin(worth_of(pairs, ear, normal), worth_of(pairs, other, normal));
+    }
     uint32_t s = value[1] >= value[0] ? 0 : 1, t = out->count; // the ears are at s + 1 and s + 3
     push_triangle(pairs, out, h + s, h + s + 1, h + s + 2, old->origin[face]);
     push_triangle(pairs, out, h + s, h + s + 2, h + (s + 3) % 4, old->origin[face]);
@@ -141,25 +92,43 @@ static void cut_quad(Pairs *pairs, uint32_t face, Faces *out) {
     pairs->whole[t] = pairs->whole[t + 1] = h;
 }
 
-static void cut_faces(Pairs *pairs) {
+/// Cuts a triangle, or a polygon of more than four corners. False where that is not possible.
+static bool cut_polygon(Pairs *pairs, PolygonCut *cut, uint32_t face, uint32_t *ring, Faces *out) {
+    const Faces *old = &pairs->work->faces;
+    const uint32_t first = old->first[face], n = old->first[face + 1] - first;
+    for (uint32_t i = 0; i < n; i++) ring[i] = first + i;
+    cut->count = 0;
+    if (n == 3) push_triangle(pairs, out, ring[0], ring[1], ring[2], old->origin[face]);
+    else if (!polygon_cut(cut, ring, n)) return false;
+    for (uint32_t t = 0; t < cut->count; t++) {
+        const uint32_t *half = cut->triangle[t];
+        push_triangle(pairs, out, half[0], half[1], half[2], old->origin[face]);
+    }
+    return true;
+}
+
+/// False where some face cannot be cut.
+static bool cut_faces(Pairs *pairs) {
     Work *work = pairs->work;
     const Faces *old = &work->faces;
-    uint32_t triangles = old->corner_count - 2 * old->count;
+    const uint32_t triangles = old->corner_count - 2 * old->count;
     Faces out = work_faces(work, triangles, 3 * triangles);
     uint32_t *ring = work_new(work, old->corner_count, sizeof *ring);
+    PolygonCut cut;
     work_edges(work);
     pairs->before = *old, pairs->before_face = work->face, pairs->before_twin = work->twin;
     pairs->from = work_new(work, 3 * (size_t)triangles, sizeof *pairs->from);
     pairs->mate = work_new(work, triangles, sizeof *pairs->mate);
     pairs->whole = work_new(work, triangles, sizeof *pairs->whole);
-    if (work->no_memory) return;
+    if (work->no_memory || !polygon_begin(&cut, work, old)) return true;
     memset(pairs->mate, 0xff, triangles * sizeof *pairs->mate);
     memset(pairs->whole, 0xff, triangles * sizeof *pairs->whole);
     for (uint32_t f = 0; f < old->count; f++) {
         if (old->first[f + 1] - old->first[f] == 4) cut_quad(pairs, f, &out);
-        else cut_polygon(pairs, f, ring, &out);
+        else if (!cut_polygon(pairs, &cut, f, ring, &out)) return false;
     }
     work->faces = out;
+    return true;
 }
 
 /// The same diagonal in another triangle of its face.
@@ -460,7 +429,7 @@ bool mesh_pair(Work *work) {
     Pairs *pairs = work_new(work, 1, sizeof *pairs);
     if (!pairs) return true;
     pairs->work = work;
-    cut_faces(pairs);
+    if (!cut_faces(pairs)) return false;
     if (!work->no_memory) find_twins(pairs);
     if (!work->no_memory) cost_all(pairs);
     if (work->no_memory) return true;

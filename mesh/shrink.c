@@ -116,23 +116,23 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     }
 }
 
-void mesh_shrink(Work *work) {
+SingeResult mesh_shrink(Work *work) {
     work_edges(work);
-    if (work->no_memory || !(work->smallest > 0)) return;
+    if (work->no_memory || !(work->smallest > 0)) return SINGE_OK;
     const double least = work->smallest * median_side(work);
     uint32_t count = 0, joined = 0;
     Short *list = list_short(work, least, &count);
-    if (work->no_memory || !count) return;
+    if (work->no_memory || !count) return SINGE_OK;
     Shrink shrink = shrink_begin(work, least);
     uint8_t *several = work_new(work, work->vertex_count, 1);
     uint32_t *to = work_new(work, work->vertex_count, sizeof *to);
-    if (work->no_memory) return;
+    if (work->no_memory) return SINGE_OK;
     for (uint32_t i = 0; i < count; i++) {
         if (!join_ends(&shrink, list[i].half)) continue;
         uint32_t face = work->face[list[i].half];
         if (!joined++) work_did(work, MESH_SHRUNK, 1, work_face_name(work, work->faces.origin[face]));
     }
-    if (!joined) return;
+    if (!joined) return SINGE_OK;
     work_did(work, MESH_SHRUNK, joined - 1, 0);
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         to[v] = shrink.stays[sets_find(shrink.set, v)];
@@ -143,6 +143,7 @@ void mesh_shrink(Work *work) {
         if (several[work->faces.corner[h]]) work->faces.id[h] = work->source[work->faces.corner[h]];
     if (work->faces.uv) join_uv(&shrink, several);
     work->shrunk = true;
-    mesh_clean(work);
+    SingeResult result = mesh_clean(work);
     work->shrunk = false;
+    return result;
 }

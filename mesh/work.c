@@ -34,12 +34,28 @@ uint32_t *work_sets(Work *work, uint32_t count) {
 // ---- faces
 
 Faces work_faces(Work *work, uint32_t count, uint32_t corners) {
-    Faces faces = {.first = work_new(work, (size_t)count + 1, sizeof *faces.first),
+    Faces faces = {.capacity = count, .corner_capacity = corners,
+                   .first = work_new(work, (size_t)count + 1, sizeof *faces.first),
                    .corner = work_new(work, corners, sizeof *faces.corner),
                    .id = work_new(work, corners, sizeof *faces.id),
                    .origin = work_new(work, count, sizeof *faces.origin)};
     if (work->file->uv) faces.uv = work_new(work, corners, sizeof *faces.uv);
     return faces;
+}
+
+bool work_faces_room(Work *work, Faces *faces, uint32_t more_faces, uint32_t more_corners) {
+    const uint32_t count = faces->count + more_faces, corners = faces->corner_count + more_corners;
+    if (count <= faces->capacity && corners <= faces->corner_capacity) return true;
+    Faces larger = work_faces(work, count + count / 2, corners + corners / 2);
+    if (work->no_memory) return false;
+    larger.count = faces->count, larger.corner_count = faces->corner_count;
+    memcpy(larger.first, faces->first, ((size_t)faces->count + 1) * sizeof *faces->first);
+    memcpy(larger.origin, faces->origin, faces->count * sizeof *faces->origin);
+    memcpy(larger.corner, faces->corner, faces->corner_count * sizeof *faces->corner);
+    memcpy(larger.id, faces->id, faces->corner_count * sizeof *faces->id);
+    if (faces->uv) memcpy(larger.uv, faces->uv, faces->corner_count * sizeof *faces->uv);
+    *faces = larger;
+    return true;
 }
 
 void faces_push_between(Faces *faces, uint32_t vertex, const Faces *old, uint32_t a, uint32_t b) {

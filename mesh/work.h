@@ -17,6 +17,7 @@ typedef struct WorkBlock {
 /// Faces, whose corners lie one after the other. A half-edge has the number of the corner that it leaves.
 typedef struct Faces {
     uint32_t count, corner_count;
+    uint32_t capacity, corner_capacity;
     uint32_t *first;   ///< [count + 1]
     uint32_t *corner;  ///< [corner_count] vertex
     float (*uv)[2];    ///< [corner_count] or NULL
@@ -50,6 +51,8 @@ void work_free(Work *work);
 
 /// Empty faces with room; their uv only where the mesh has it.
 Faces work_faces(Work *work, uint32_t faces, uint32_t corners);
+/// Makes room for more faces and corners. False without memory.
+bool work_faces_room(Work *work, Faces *faces, uint32_t more_faces, uint32_t more_corners);
 /// Appends a corner to the face that is being made, with the uv of corner `from` of `old`.
 void faces_push(Faces *faces, uint32_t vertex, const Faces *old, uint32_t from);
 /// Appends a corner of a new vertex, with the uv between those of corners `a` and `b` of `old`.
@@ -130,11 +133,12 @@ uint32_t places_slot(const Places *places, const int64_t box[3]);
 /// Joins vertices on open edges that are as near as work->weld (weld.c).
 void mesh_weld(Work *work);
 /// Makes one of the ends of very short sides; work->smallest is a share of the median side (shrink.c).
-void mesh_shrink(Work *work);
-/// Leaves out what has no area and what is there twice; faces that touch themselves fall apart (clean.c).
-void mesh_clean(Work *work);
+SingeResult mesh_shrink(Work *work);
+/// Leaves out what has no area and what is there twice; faces that touch themselves, or that are not seen from their
+/// middle, fall apart (clean.c).
+SingeResult mesh_clean(Work *work);
 /// Puts vertices into the open sides that they lie on (junction.c).
-void mesh_junctions(Work *work);
+SingeResult mesh_junctions(Work *work);
 /// Cuts edges of more than two faces, turns faces one way, closed surfaces outside out, and gives every fan of faces a
 /// vertex of its own (manifold.c).
 SingeResult mesh_manifold(Work *work);
