@@ -259,7 +259,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     if (!work->no_memory && !result) result = mesh_junctions(work);
     if (!work->no_memory && !result && work->faces.count == 0)
         return refuse(work->error, SINGE_ERROR_MESH, "mesh", -1, "%s: no face has an area", short_name(work->name));
-    if (!work->no_memory && !result) result = mesh_manifold(work);
+    if (!work->no_memory && !result) mesh_manifold(work);
     if (result || work->no_memory) return result;
     bool pair = options->quads == MESH_QUADS_PAIR;
     if (pair && !all_quads(&work->faces)) pair = pair_faces(work);

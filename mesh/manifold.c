@@ -10,82 +10,11 @@ typedef struct Turn {
     uint32_t *queue;      ///< [faces] a component's faces lie in a row
 } Turn;
 
-/// Faces joined by edges that only they have.
-static uint32_t *plain_components(Work *work, const uint32_t *order) {
-    uint32_t *set = work_sets(work, work->faces.count);
-    for (uint32_t k = 0, size; set && k < work->faces.corner_count; k += size) {
-        size = work_edge_size(work, order, k);
-        if (size == 2) sets_join(set, work->face[order[k]], work->face[order[k + 1]]);
-    }
-    return set;
-}
-
-/// The unit direction in a face away from a side of it.
-static void away_from(const Work *work, uint32_t half, double out[3]) {
-    const Faces *faces = &work->faces;
-    const uint32_t face = work->face[half], first = faces->first[face], end = faces->first[face + 1];
-    const double *a = work->place[faces->corner[half]];
-    const double *b = work->place[faces->corner[faces_next(faces, work->face, half)]];
-    double middle[3] = {0}, side[3];
-    for (uint32_t h = first; h < end; h++)
-        for (int k = 0; k < 3; k++) middle[k] += work->place[faces->corner[h]][k] / (end - first);
-    sub3(b, a, side), sub3(middle, a, out);
-    double along = dot3(out, side) / dot3(side, side);
-    for (int k = 0; k < 3; k++) out[k] -= along * side[k];
-    double length = sqrt(dot3(out, out));
-    for (int k = 0; k < 3; k++) out[k] /= length > 0 ? length : 1;
-}
-
-/// Joins the two faces that have no mate at an edge and go on into each other most nearly, if they are flat enough.
-static void join_flattest(Work *work, const uint32_t *halves, uint32_t size) {
-    double flattest = -0.5; // cosine: within 60 degrees of flat
-    uint32_t a = MESH_NONE, b = MESH_NONE;
-    for (uint32_t i = 0; i < size; i++)
-        for (uint32_t k = 0; k < i; k++) {
-            double p[3], q[3];
-            if (work->twin[halves[i]] != MESH_NONE || work->twin[halves[k]] != MESH_NONE) continue;
-            away_from(work, halves[i], p), away_from(work, halves[k], q);
-            if (dot3(p, q) < flattest) flattest = dot3(p, q), a = halves[k], b = halves[i];
-        }
-    if (a != MESH_NONE) work->twin[a] = b, work->twin[b] = a;
-}
-
-/// Parts the faces at an edge of more than two: two that hang together elsewhere stay together, and of the others those
-/// that go on into each other.
-static SingeResult cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t *set) {
-    for (uint32_t i = 0; i < size; i++) {
-        uint32_t mate = MESH_NONE, mates = 0, own = sets_find(set, work->face[halves[i]]);
-        for (uint32_t k = 0; k < size; k++)
-            if (k != i && sets_find(set, work->face[halves[k]]) == own) mate = halves[k], mates++;
-        if (mates > 1)
-            return work_refuse(work, work->faces.origin[work->face[halves[i]]],
-                               "has a side that is a side of two other faces of the same sheet, too");
-        work->twin[halves[i]] = mate;
-    }
-    join_flattest(work, halves, size);
-    work_did(work, MESH_CUT, 1, work_face_name(work, work->faces.origin[work->face[halves[0]]]));
-    return SINGE_OK;
-}
-
-static SingeResult join_edges(Work *work) {
-    const uint32_t count = work->faces.corner_count;
-    uint32_t *order = work_sorted_edges(work);
-    work->twin = work_new(work, count, sizeof *work->twin);
-    uint32_t *set = work->no_memory ? NULL : plain_components(work, order);
-    SingeResult result = SINGE_OK;
-    for (uint32_t k = 0, size; set && k < count && !result; k += size) {
-        size = work_edge_size(work, order, k);
-        work->twin[order[k]] = size == 2 ? order[k + 1] : MESH_NONE;
-        if (size == 2) work->twin[order[k + 1]] = order[k];
-        if (size > 2) result = cut_edge(work, order + k, size, set);
-    }
-    return result;
-}
-
 // ---- the same way round
 
-/// Turns the faces of a component as its first one is. Returns how many there are, from `begin` in the queue.
-static SingeResult spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
+/// Turns the faces of a component as its first one is; they lie from `begin` to `end` in the queue. Where it comes back
+/// to itself the other way round, as on a Moebius strip, it is cut.
+static void spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
     const Faces *faces = &work->faces;
     for (uint32_t i = begin; i < *end; i++) {
         uint32_t f = turn->queue[i];
@@ -95,12 +24,12 @@ static SingeResult spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end)
             uint32_t g = work->face[t];
             uint8_t flip = turn->flip[f] ^ (faces->corner[h] == faces->corner[t]);
             if (!turn->seen[g]) turn->seen[g] = 1, turn->flip[g] = flip, turn->queue[(*end)++] = g;
-            else if (turn->flip[g] != flip)
-                return work_refuse(work, faces->origin[g],
-                                   "closes a surface that has only one side, as a Moebius strip; cut it there");
+            else if (turn->flip[g] != flip) {
+                work->twin[h] = work->twin[t] = MESH_NONE;
+                work_did(work, MESH_ONE_SIDED, 1, work_face_name(work, faces->origin[g]));
+            }
         }
     }
-    return SINGE_OK;
 }
 
 /// Six times the volume under the faces, as they are turned.
@@ -165,23 +94,21 @@ static void turn_over(Work *work, const Turn *turn) {
     faces->corner = corner, faces->id = id, faces->uv = uv, work->twin = twin;
 }
 
-static SingeResult turn_faces(Work *work) {
+static void turn_faces(Work *work) {
     const uint32_t count = work->faces.count;
     Turn turn = {work_new(work, count, 1), work_new(work, count, 1), work_new(work, count, sizeof *turn.queue)};
-    if (work->no_memory) return SINGE_OK;
+    if (work->no_memory) return;
     uint32_t end = 0;
     for (uint32_t f = 0; f < count; f++) {
         if (turn.seen[f]) continue;
         uint32_t begin = end;
         turn.seen[f] = 1;
         turn.queue[end++] = f;
-        SingeResult result = spread(work, &turn, begin, &end);
-        if (result) return result;
+        spread(work, &turn, begin, &end);
         decide(work, &turn, begin, end);
         work->report->components++;
     }
     turn_over(work, &turn);
-    return SINGE_OK;
 }
 
 // ---- one fan a vertex
@@ -227,7 +154,7 @@ static void part_fans(Work *work) {
         uint32_t v = faces->corner[h], root = sets_find(set, h);
         if (root == h) {
             vertex[h] = owner[v] == MESH_NONE ? v : work_copy(work, v);
-            if (vertex[h] != v && !work->report->count[MESH_CUT])
+            if (vertex[h] != v && !work->report->count[MESH_CUT] && !work->report->count[MESH_ONE_SIDED])
                 work_did(work, MESH_BOW_TIE, 1, work_face_name(work, faces->origin[work->face[h]]));
             owner[v] = h;
         }
@@ -237,23 +164,9 @@ static void part_fans(Work *work) {
     draw_back(work, vertices);
 }
 
-/// Whether parting has left an edge with more than two faces, or faces along it the same way.
-static SingeResult check_edges(Work *work) {
-    const Faces *faces = &work->faces;
-    uint32_t *order = work_sorted_edges(work);
-    for (uint32_t k = 0, size; order && k < faces->corner_count; k += size) {
-        size = work_edge_size(work, order, k);
-        bool same = size == 2 && faces->corner[order[k]] == faces->corner[order[k + 1]];
-        if (size > 2 || same)
-            return work_refuse(work, faces->origin[work->face[order[k]]], "has a side that too many faces have");
-    }
-    return SINGE_OK;
-}
-
-SingeResult mesh_manifold(Work *work) {
-    SingeResult result = join_edges(work);
-    if (!result && !work->no_memory) result = turn_faces(work);
-    if (!result && !work->no_memory) part_fans(work);
-    if (!result && !work->no_memory) result = check_edges(work);
-    return result;
+void mesh_manifold(Work *work) {
+    mesh_join_sides(work);
+    if (!work->no_memory) turn_faces(work);
+    if (!work->no_memory) part_fans(work);
+    if (!work->no_memory) mesh_part_sides(work);
 }

@@ -34,6 +34,7 @@ typedef enum MeshRepair {
     MESH_TURNED,     ///< faces wound against their neighbours turned over
     MESH_INSIDE_OUT, ///< closed surfaces turned inside out
     MESH_CUT,        ///< sides of more than two faces cut apart
+    MESH_ONE_SIDED,  ///< sides at which a surface came back to itself the other way round cut apart
     MESH_BOW_TIE,    ///< copies of vertices whose faces met in that point alone
     MESH_PAIRED,     ///< pairs of triangles that became a quad
     MESH_HALVED,     ///< sides that got a vertex in their middle so that the triangles at them became quads

@@ -21,6 +21,8 @@ static const RepairText texts[MESH_REPAIRS] = {
     [MESH_TURNED] = {"face turned over, as its neighbours are", "faces turned over, as their neighbours are", "face"},
     [MESH_INSIDE_OUT] = {"closed surface turned inside out", "closed surfaces turned inside out", "face"},
     [MESH_CUT] = {"side of more than two faces cut apart", "sides of more than two faces cut apart", "face"},
+    [MESH_ONE_SIDED] = {"side cut apart at which the surface had one side only",
+                        "sides cut apart at which the surface had one side only", "face"},
     [MESH_BOW_TIE] = {"vertex doubled whose faces met only there", "vertices doubled whose faces met only there",
                       "face"},
     [MESH_PAIRED] = {"pair of triangles made a quad", "pairs of triangles made quads", NULL},

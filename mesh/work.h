@@ -141,7 +141,11 @@ SingeResult mesh_clean(Work *work);
 SingeResult mesh_junctions(Work *work);
 /// Cuts edges of more than two faces, turns faces one way, closed surfaces outside out, and gives every fan of faces a
 /// vertex of its own (manifold.c).
-SingeResult mesh_manifold(Work *work);
+void mesh_manifold(Work *work);
+/// Fills work->face and twin, with two faces at a side at most (sides.c).
+void mesh_join_sides(Work *work);
+/// Gives sides that lie between the same vertices, though they are not one, corners of their own (sides.c).
+void mesh_part_sides(Work *work);
 /// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False when some triangle stays alone.
 bool mesh_pair(Work *work);
 /// Every face of n corners into n quads (split.c).

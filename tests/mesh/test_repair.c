@@ -188,19 +188,119 @@ static void bow_ties_are_parted(void **state) {
     mesh_free(&made.mesh);
 }
 
+typedef struct Side {
+    uint32_t low, high;
+    bool up;
+} Side;
+
+static int by_ends(const void *a, const void *b) {
+    const Side *x = a, *y = b;
+    if (x->low != y->low) return x->low < y->low ? -1 : 1;
+    return (x->high > y->high) - (x->high < y->high);
+}
+
+/// Every side has one cell, or two that run along it in opposite ways. Returns the open ones.
+static uint32_t assert_manifold(const Mesh *mesh) {
+    const uint32_t count = 4 * mesh->cell_count;
+    uint32_t open = 0;
+    Side *sides = calloc(count, sizeof *sides);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t a = mesh->cells[i], b = mesh->cells[i / 4 * 4 + (i + 1) % 4];
+        sides[i] = (Side){a < b ? a : b, a < b ? b : a, a < b};
+    }
+    qsort(sides, count, sizeof *sides, by_ends);
+    for (uint32_t i = 0, size; i < count; i += size) {
+        for (size = 1; i + size < count && by_ends(&sides[i], &sides[i + size]) == 0; size++) {}
+        assert_true(size <= 2);
+        assert_true(size == 1 || sides[i].up != sides[i + 1].up);
+        open += size == 1;
+    }
+    free(sides);
+    return open;
+}
+
+// A surface that comes back to itself the other way round is cut across, once.
+static void one_sided_surfaces_are_cut(void **state) {
+    (void)state;
+    enum { AROUND = 40 };
+    text.size = 0;
+    for (int i = 0; i < AROUND; i++)
+        for (int k = -1; k <= 1; k++) {
+            double a = 6.283185307179586 * i / AROUND, r = 1 + 0.2 * k * cos(a / 2);
+            text_add(&text, "v %.9g %.9g %.9g\n", r * cos(a), r * sin(a), 0.2 * k * sin(a / 2));
+        }
+    for (int i = 0; i < AROUND; i++)
+        for (int k = 0; k < 2; k++) {
+            int a = 3 * i + k + 1, b = a + 1, c = a + 4, d = a + 3;
+            if (i + 1 == AROUND) c = 2 - k, d = 3 - k; // the other way round
+            text_add(&text, "f %d %d %d %d\n", a, b, c, d);
+        }
+    Made made = make(&text);
+    const uint32_t cut = made.report.count[MESH_ONE_SIDED];
+    assert_in_range(cut, 2, 4);
+    assert_int_equal(made.mesh.cell_count, 2 * AROUND);
+    assert_int_equal(assert_manifold(&made.mesh), 2 * AROUND + 2 * cut);
+    mesh_free(&made.mesh);
+    text.size = 0; // the one of five triangles
+    text_add(&text, "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
+                    "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
+    made = make(&text);
+    assert_manifold(&made.mesh);
+    mesh_free(&made.mesh);
+}
+
+// Sides of three faces and more of one sheet, which hang together elsewhere as well.
+static void sheets_that_meet_themselves_are_cut(void **state) {
+    (void)state;
+    text.size = 0; // a tent on a sheet, whose feet are two of the sheet's rows: each row has three faces
+    text_grid(&text, 4, 4);
+    for (int j = 0; j <= 4; j++) text_add(&text, "v .02 %.6g .01\n", 0.01 * j);
+    text_cells(&text, 4, 4, WHOLE);
+    for (int j = 0; j < 4; j++)
+        text_add(&text, "f %d %d %d %d\nf %d %d %d %d\n", 5 * j + 2, 5 * j + 7, 27 + j, 26 + j, 26 + j, 27 + j,
+                 5 * j + 9, 5 * j + 4);
+    Made made = make(&text);
+    assert_int_equal(made.report.count[MESH_CUT], 8);
+    assert_int_equal(made.mesh.cell_count, 24);
+    assert_manifold(&made.mesh);
+    mesh_free(&made.mesh);
+    // a sheet with a loop that is pinched shut at one side, which has four faces that hang together all around
+    static const double x[] = {-2, -1, -0.2, -0.5, 0.5, 0.2, 1, 2}, z[] = {0, 0, 0, 1, 1, 0, 0, 0};
+    text.size = 0;
+    for (int j = 0; j < 6; j++)
+        for (int i = 0; i < 8; i++) text_add(&text, "v %g %d %g\n", x[i], j, z[i]);
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 7; i++) {
+            const int at[4] = {j * 8 + i, j * 8 + i + 1, j * 8 + i + 9, j * 8 + i + 8};
+            text_add(&text, "f");
+            for (int k = 0; k < 4; k++) text_add(&text, " %d", (at[k] == 21 ? 18 : at[k] == 29 ? 26 : at[k]) + 1);
+            text_add(&text, "\n");
+        }
+    made = make(&text);
+    assert_true(made.report.count[MESH_CUT] >= 1);
+    assert_manifold(&made.mesh);
+    mesh_free(&made.mesh);
+}
+
+// Two sheets that lie between the same two vertices, each with its own side there, which no vertex tells apart.
+static void sides_between_the_same_vertices_are_parted(void **state) {
+    (void)state;
+    text.size = 0; // six triangles at a side, three sheets that join in its two ends
+    text_add(&text, "v 0 0 0\nv 0 0 1\n");
+    for (int i = 0; i < 6; i++) text_add(&text, "v %.9g %.9g .5\n", cos(1.0471975512 * i), sin(1.0471975512 * i));
+    for (int i = 0; i < 6; i++) text_add(&text, i % 2 ? "f 2 1 %d\n" : "f 1 2 %d\n", i + 3);
+    for (int i = 0; i < 6; i++) text_add(&text, "f %d %d %d\n", 1 + i % 2, i + 3, (i + 1) % 6 + 3);
+    Made made = make(&text);
+    assert_true(made.report.count[MESH_CUT] >= 1);
+    assert_manifold(&made.mesh);
+    mesh_free(&made.mesh);
+}
+
 static void what_cannot_be_repaired_is_refused(void **state) {
     (void)state;
     text.size = 0;
-    text_add(&text, "v 1 0 0\nv 0.3 0.9 0.1\nv -0.8 0.6 0.4\nv -0.8 -0.6 0\nv 0.3 -0.9 0.3\n"
-                    "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
-    Made made = make_with(&text, mesh_default_options());
-    assert_int_equal(made.result, SINGE_ERROR_MESH);
-    assert_non_null(strstr(made.error.message, "a.obj:"));
-    assert_non_null(strstr(made.error.message, "Moebius"));
-    assert_null(made.mesh.positions);
-    text.size = 0;
     text_add(&text, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    made = make_with(&text, mesh_default_options());
+    Made made = make_with(&text, mesh_default_options());
     assert_int_equal(made.result, SINGE_ERROR_MESH);
     assert_non_null(strstr(made.error.message, "no face has an area"));
 }
@@ -247,6 +347,9 @@ int main(void) {
         cmocka_unit_test(closed_surfaces_have_their_front_outside),
         cmocka_unit_test(edges_of_many_faces_are_cut),
         cmocka_unit_test(bow_ties_are_parted),
+        cmocka_unit_test(one_sided_surfaces_are_cut),
+        cmocka_unit_test(sheets_that_meet_themselves_are_cut),
+        cmocka_unit_test(sides_between_the_same_vertices_are_parted),
         cmocka_unit_test(what_cannot_be_repaired_is_refused),
         cmocka_unit_test(short_sides_shrink),
     };
