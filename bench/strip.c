@@ -36,6 +36,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
     for (uint32_t v = 0; v < vertices; v++) {
         float *x = strip->positions + (size_t)3 * v;
         x[0] = (float)(v % row) * cell, x[1] = (float)(v / row) * cell, x[2] = 0;
+        if (setup->shape) setup->shape(x, v % row, v / row, cell);
         strip->lit[v] = (double)x[0] < strip_lit;
     }
     for (uint32_t c = 0; c < count; c++) {
@@ -54,8 +55,7 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
         &material.ignition_temperature, &material.heat_of_combustion, &material.heat_share, &material.mass_rate,
         &material.rate_ceiling, &material.ash_exponent, &material.mass_min, &material.mass_loss, &material.ash_density,
         &material.shrink_front, &material.shrink_back, &material.char_weight, &material.drag, &material.damping,
-        &material.crease_radius, &material.crease_share, &material.strength, &material.char_strength,
-        &material.pre_exponential, &material.activation_energy, &material.curvature_max};
+        &material.strength, &material.char_strength, &material.pre_exponential, &material.activation_energy};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)

@@ -15,6 +15,8 @@ typedef struct StripSetup {
     float gas_cell;            ///< m, 0: as it comes
     int threads;
     int steps_most;            ///< when they are over the fire has gone out
+    /// Moves a vertex from its place on the grid; NULL: none.
+    void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
 } StripSetup;
 
 typedef struct StripResult {

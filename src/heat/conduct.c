@@ -17,6 +17,8 @@
 // digit would lose it, always on the same side; rounding up or down at random, with the odds of the digits
 // cut off, loses nothing in the mean. The random numbers depend on particle and step alone.
 //
+// Where the residual is too much for that, and T would leave the range of T*, bound.c ends the step in another way.
+//
 // The umbrella keeps sum D T, not the heat sum C T. The difference, sum C_i dt (L T)_i / D_i, is heat that the operator
 // itself makes or destroys; it is counted as heat brought in, so that the ledger tells the truth about eq 3.
 #include <math.h>
@@ -25,7 +27,7 @@
 #include "base/random.h"
 #include "heat/plan.h"
 
-enum { CONDUCT_ITERATIONS = 200, CONDUCT_SEED = 0x68656174 };
+enum { CONDUCT_ITERATIONS = 200 };
 
 /// A number for each row of a slice; gcc's and clang's vectors, which every processor has in some way.
 typedef float HeatLanes __attribute__((vector_size(HEAT_ROWS * sizeof(float))));
@@ -54,8 +56,7 @@ static inline uint32_t conduct_slice_end(uint32_t i, uint32_t last) {
     return last - i < HEAT_ROWS ? last : i + HEAT_ROWS;
 }
 
-
-static void conduct_start_group(const HeatPass *pass, uint32_t group, double *residual, double *whole) {
+static void conduct_start_group(const HeatPass *pass, uint32_t group, double sums[4]) {
     HeatPlan *plan = pass->plan;
     float ambient = plan->settings.ambient_temperature;
     uint32_t last = heat_group_last(plan, group), next;
@@ -66,24 +67,26 @@ static void conduct_start_group(const HeatPass *pass, uint32_t group, double *re
             float r = plan->residual[i] = pass->dt * inflow[row];
             float b = plan->measure[i] * (plan->star[i] - ambient), inverse = plan->matrix.inverse[i];
             plan->correction[i] = plan->search[i] = 0;
-            *residual += (double)r * r * inverse;
-            *whole += (double)b * b * inverse;
+            sums[0] += (double)r * r * inverse;
+            sums[1] += (double)b * b * inverse;
+            if (!plan->alive[i]) continue;
+            sums[2] = fmin(sums[2], (double)plan->star[i]), sums[3] = fmax(sums[3], (double)plan->star[i]);
         }
     }
 }
 
+/// Residual, right-hand side, and the range of T*.
 static void conduct_start(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
-        double residual = 0, whole = 0;
+        double *sums = plan->partial[block];
+        sums[0] = sums[1] = 0, sums[2] = INFINITY, sums[3] = 0;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             plan->rest.awake[0][g] = heat_rest_reaches(&plan->rest, plan->rest.warm, g);
             if (!plan->rest.awake[0][g]) continue;
-            conduct_start_group(pass, g, &residual, &whole);
+            conduct_start_group(pass, g, sums);
         }
-        plan->partial[block][0] = residual;
-        plan->partial[block][1] = whole;
     }
 }
 
@@ -157,65 +160,49 @@ static void conduct_settle(void *context, int begin, int end) {
     }
 }
 
-/// A float next to x, the upper or the lower with the odds that make it right in the mean.
-static inline float conduct_round(double x, uint32_t hash) {
-    float near = (float)x;
-    if ((double)near == x || !(x > 1e-30 && x < 1e30)) return near;
-    uint32_t bits;
-    memcpy(&bits, &near, sizeof bits);
-    bits = (bits & 0x7f800000u) - (23u << 23); // one unit of the last digit
-    float unit;
-    memcpy(&unit, &bits, sizeof unit);
-    return (float)(x + unit * (((double)(hash >> 8) + 0.5) / 16777216.0 - 0.5));
-}
-
-/// The new temperatures of a group; adds the heat made there, and returns the first particle at fault or -1.
-static double conduct_finish_group(const HeatPass *pass, uint32_t group, double *made) {
+/// The new temperatures of a group; adds the heat made there, and returns whether all are within the range of T*.
+static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *made) {
     HeatPlan *plan = pass->plan;
     const float *temperature = pass->state->heat.temperature;
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
-    double bad = -1;
+    bool within = true;
+    double least = (double)pass->least - pass->slack, most = (double)pass->most + pass->slack;
     HeatLanes inflow = {0};
     for (uint32_t i = group * HEAT_GROUP; i < heat_group_last(plan, group); i++) {
         if (i % HEAT_ROWS == 0) inflow = conduct_inflow(&plan->matrix, plan->star, i);
         plan->next[i] = temperature[i];
         bool changes = inflow[i % HEAT_ROWS] != 0 || plan->delta[i] != 0;
-        if (bad < 0 && !changes && plan->alive[i] && !(temperature[i] > 0 && temperature[i] < INFINITY)) bad = i;
         if (!changes || !plan->alive[i]) continue;
         double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];
         double change = plan->delta[i] + rise;
         if (change != 0)
-            plan->next[i] = conduct_round(temperature[i] + change, random_hash(i, low, high, CONDUCT_SEED));
-        if (bad < 0 && !(plan->next[i] > 0 && plan->next[i] < INFINITY)) bad = i;
+            plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
+        within &= (double)plan->next[i] >= least && (double)plan->next[i] <= most;
         if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
             *made += matter->capacity[i] * rise;
     }
-    return bad;
+    return within;
 }
 
 static void conduct_finish(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
-        double made = 0, bad = -1;
+        double made = 0;
+        bool within = true;
         for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
             if (!plan->rest.awake[pass->turn][g]) continue;
-            double fault = conduct_finish_group(pass, g, &made);
-            if (bad < 0) bad = fault;
+            within &= conduct_finish_group(pass, g, &made);
         }
         plan->partial[block][0] = made;
-        plan->partial[block][1] = bad;
+        plan->partial[block][1] = !within;
     }
 }
 
-SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error) {
+/// Conjugate gradients for the correction. Returns whether they came to the tolerance.
+static bool conduct_solve(HeatPass *pass, double residual, double enough, HeatCounters *counters) {
     HeatPlan *plan = pass->plan;
-    heat_blocks(pass, conduct_start);
-    double residual = heat_sum(plan, 0), tolerance = plan->settings.tolerance;
-    double enough = tolerance * tolerance * heat_sum(plan, 1);
-    pass->direction = 0;
-    pass->turn = 0;
     for (int k = 0; k < CONDUCT_ITERATIONS && residual > enough; k++) {
         pass->turn = !pass->turn;
         heat_blocks(pass, conduct_direction);
@@ -229,15 +216,39 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
         pass->direction = (float)(residual / before);
         counters->iterations++;
     }
-    counters->unconverged += residual > enough;
+    return residual <= enough;
+}
+
+/// The first particle whose T* is no temperature, or -1.
+static int64_t conduct_fault(const HeatPlan *plan) {
+    for (uint32_t i = 0; i < plan->particles; i++)
+        if (plan->alive[i] && !(plan->star[i] > 0 && plan->star[i] < INFINITY)) return i;
+    return -1;
+}
+
+SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error) {
+    HeatPlan *plan = pass->plan;
+    heat_blocks(pass, conduct_start);
+    double residual = heat_sum(plan, 0), whole = heat_sum(plan, 1), tolerance = plan->settings.tolerance;
+    double least = INFINITY, most = 0;
+    for (int block = 0; block < plan->blocks; block++)
+        least = fmin(least, plan->partial[block][2]), most = fmax(most, plan->partial[block][3]);
+    if (!(least > 0 && most < INFINITY) || !isfinite(residual + whole)) {
+        int64_t fault = conduct_fault(plan);
+        if (fault >= 0)
+            return error_set(error, SINGE_ERROR_DIVERGED, "heat", fault,
+                             "the temperature of particle %lld is not a positive finite number", (long long)fault);
+    }
+    pass->least = (float)least, pass->most = (float)most;
+    pass->slack = most > least ? tolerance * (most - least) + 1e-6 * most : INFINITY; // what was asked for; rounding
+    pass->direction = 0;
+    pass->turn = 0;
+    bool converged = conduct_solve(pass, residual, tolerance * tolerance * whole, counters), within = true;
     heat_blocks(pass, conduct_settle);
     heat_blocks(pass, conduct_finish);
-    *made = heat_sum(plan, 0);
-    for (int block = 0; block < plan->blocks; block++) {
-        double bad = plan->partial[block][1];
-        if (bad >= 0)
-            return error_set(error, SINGE_ERROR_DIVERGED, "heat", (int64_t)bad,
-                             "the temperature of particle %lld is not a positive finite number", (long long)bad);
-    }
+    for (int block = 0; block < plan->blocks; block++) within &= plan->partial[block][1] == 0;
+    *made = within ? heat_sum(plan, 0) : heat_bound(pass);
+    counters->unconverged += !converged;
+    counters->bounded += !within;
     return SINGE_OK;
 }

@@ -60,6 +60,7 @@ float heat_thickening_for(float thickening, const FrontMatter *front, float ambi
 typedef struct HeatCounters {
     uint64_t iterations;  ///< of the diffusion's solver
     uint64_t unconverged; ///< steps that ended above the tolerance
+    uint64_t bounded;     ///< steps whose temperatures had to be held within the range of conduction
 } HeatCounters;
 
 /// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is

@@ -27,8 +27,19 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
         }
 }
 
+/// Room for the springs of a cell that conduct nothing till a tear changes what it gives them.
+static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32_t cell, uint32_t *length) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    const float *blue = plan->conductance + plan->spring_first[SINGE_BLUE];
+    const float *yellow = plan->conductance + plan->spring_first[SINGE_YELLOW];
+    if (!heat_operator_may_change(shell, cell)) return;
+    for (int k = 0; k < 4; k++)
+        length[shell->cells[cell][k]] += (blue[springs->blue[k]] == 0) + (blue[springs->blue[(k + 3) & 3]] == 0) +
+                                         (yellow[springs->yellow[k & 1]] == 0);
+}
+
 /// Room for what tears may bring: a second lip of an edge at every vertex, and all that a spare vertex may get.
-static void matrix_reserve(const Shell *shell, uint32_t *length) {
+static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *length) {
     enum { SPARE = 16 };
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
@@ -38,6 +49,9 @@ static void matrix_reserve(const Shell *shell, uint32_t *length) {
             if (v < ordinary) ++*room;
             else *room = SPARE;
         }
+        bool surface = sheet->material.heat_operator == SINGE_HEAT_SURFACE;
+        for (uint32_t c = 0; c < sheet->cell_count && sheet->spare_count && surface; c++)
+            matrix_reserve_cell(plan, shell, sheet->cell_first + c, length);
     }
 }
 
@@ -108,7 +122,7 @@ SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shel
               NEW(memory, length, n);
     if (ok) {
         matrix_scatter(plan, shell, length, false);
-        matrix_reserve(shell, length);
+        matrix_reserve(plan, shell, length);
         matrix_lay_out(matrix, n, length);
         ok = NEW(memory, matrix->column, matrix->entries) && NEW(memory, matrix->value, matrix->entries);
     }
@@ -181,19 +195,9 @@ static const uint32_t *matrix_ends(const HeatPlan *plan, const Shell *shell, uin
     return shell->springs[colour].ends[spring - plan->spring_first[colour]];
 }
 
-/// Whether a particle is not alive, or has lost a spring: then nothing negative is left to it (matrix_cut_unsafe).
-static bool matrix_is_unsafe(const HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
-    uint32_t count = matrix_springs(plan, shell, row, list);
-    bool unsafe = !plan->alive[row];
-    for (uint32_t k = 0; k < count; k++) unsafe |= !plan->spring_alive[list[k]];
-    return unsafe;
-}
-
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list) {
     HeatMatrix *matrix = &plan->matrix;
     uint32_t count = matrix_springs(plan, shell, row, list), width = heat_row_width(matrix, row), filled = 0;
-    uint32_t *other_list = list + count;
-    bool unsafe = matrix_is_unsafe(plan, shell, row, other_list);
     for (uint32_t k = 0; k < count; k++) {
         float conductance = plan->conductance[list[k]];
         if (conductance == 0) continue;
@@ -201,7 +205,6 @@ bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t 
         const uint32_t *ends = matrix_ends(plan, shell, list[k]);
         uint32_t other = ends[ends[0] == row], entry = heat_entry(matrix, row, filled++);
         bool conducts = plan->spring_alive[list[k]] && plan->alive[row] && plan->alive[other];
-        if (conducts && conductance < 0) conducts = !unsafe && !matrix_is_unsafe(plan, shell, other, other_list);
         matrix->column[entry] = other;
         matrix->value[entry] = conducts ? conductance : 0;
     }
@@ -244,18 +247,15 @@ static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32
     }
 }
 
-/// Where an obtuse angle makes a conductance negative, it is safe only in the company of all the others at its ends: it
-/// goes with the first of them. What a dead particle still has goes as well.
-static void matrix_cut_unsafe(HeatPlan *plan, uint32_t row) {
+/// Empties all that a dead particle still has.
+static void matrix_cut_dead(HeatPlan *plan, uint32_t row) {
     HeatMatrix *matrix = &plan->matrix;
-    bool alive = plan->alive[row];
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {
         uint32_t entry = heat_entry(matrix, row, k), other = matrix->column[entry];
-        if (matrix->value[entry] >= 0 && alive) continue;
         matrix->value[entry] = 0;
         for (uint32_t j = 0; j < heat_row_width(matrix, other); j++) {
             uint32_t back = heat_entry(matrix, other, j);
-            if (matrix->column[back] == row && (matrix->value[back] < 0 || !alive)) matrix->value[back] = 0;
+            if (matrix->column[back] == row) matrix->value[back] = 0;
         }
         matrix_invert(plan, other);
     }
@@ -266,7 +266,7 @@ static void matrix_lose_spring(HeatPlan *plan, const uint32_t ends[2], uint32_t 
     plan->spring_alive[spring] = 0;
     if (ends[0] == ends[1]) return; // a spare one
     for (int end = 0; end < 2; end++) matrix_cut(&plan->matrix, ends[end], ends[!end], spring);
-    for (int end = 0; end < 2; end++) matrix_cut_unsafe(plan, ends[end]);
+    for (int end = 0; end < 2; end++) matrix_invert(plan, ends[end]);
 }
 
 /// Whether any of particles [first, last) has died since.
@@ -289,7 +289,7 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
         for (uint32_t i = first; i < last; i++) {
             if (!plan->alive[i] || ablate->particle_flags[i] & SINGE_ALIVE) continue;
             plan->alive[i] = 0;
-            matrix_cut_unsafe(plan, i);
+            matrix_cut_dead(plan, i);
         }
     }
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {

@@ -10,10 +10,9 @@
 //            do not vary. What is conducted is heat, k grad T with k = alpha C'', so D holds r too: sum D T is the heat
 //
 // `surface`: finite volumes in each layer, lumped (D = r times the area of the particle in its own layer).
-//   Corner layer: linear finite elements on triangles, averaged over both ways to split each quad; on an
-//   edge, c = a (cot A + cot B)/2 with the angles opposite to it (MacNeal 1949; Pinkall & Polthier 1993).
-//   Exact for linear T on flat meshes; on rectangles the diagonals drop out and the five-point Laplacian
-//   remains, for any dx : dy.
+//   Corner layer: linear finite elements on triangles, exact for linear T on flat meshes, and on cells whose angles
+//   would make a conductance negative, something positive in their place (weights.c). On rectangles the diagonals
+//   drop out and the five-point Laplacian remains, for any dx : dy.
 //   Centre layer: two-point fluxes through the edge e that two cells share, their centres d apart,
 //   c = a |e x d|/|d|^2. On rectangles |e|/|d|, exact. On skewed cells the trace of the diffusion tensor is
 //   right, but what one sees of the skew is lost: the error is a factor 1 -+ cos(skew) along the diagonals.
@@ -24,6 +23,7 @@
 //   a side of length dx like a further X dx^2/16. So much is taken from blue (X S/32 for each cell beside the
 //   spring) and green (X/32 times the areas of both cells), which makes the sum exact on parallelograms; at most
 //   nine tenths of a spring's conductance, which is reached where X dx^2 > 14 a.
+//   No conductance is negative, on any mesh: (D + dt L) is an M-matrix, and stays one when springs go.
 //
 // `umbrella`: eq 3 as printed, over all springs with their initial lengths d_ij:
 //   L(T_i) = (2/E_i) sum (T_j - T_i)/d_ij, E_i = sum d_ij; so D_i = E_i/2 and c = a/d_ij.
@@ -37,40 +37,8 @@
 
 #include "heat/plan.h"
 
-/// |(b - a) x (c - a)| signed along `normal`, and the cotangent of the angle at a.
-static double operator_cot(Vec a, Vec b, Vec c) {
-    Vec u = vec_sub(b, a), v = vec_sub(c, a);
-    double area = vec_length(vec_cross(u, v)), cot = area > 0 ? vec_dot(u, v) / area : 0;
-    return fmin(fmax(cot, -50), 50);
-}
-
 static double operator_triangle(Vec a, Vec b, Vec c, Vec normal) {
     return vec_dot(vec_cross(vec_sub(b, a), vec_sub(c, a)), normal);
-}
-
-/// Adds a cell's cotangents to its sides' and diagonals' weights. A split that turns a triangle over, or leaves one
-/// without area, is left out (arrow-shaped cells, three corners in line).
-static void operator_cotangents(const Vec x[4], double side[4], double diagonal[2]) {
-    Vec normal = vec_unit(vec_cross(vec_sub(x[2], x[0]), vec_sub(x[3], x[1])));
-    double least[2], total = 0, share[2];
-    for (int split = 0; split < 2; split++) {
-        int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
-        double one = operator_triangle(x[a], x[b], x[c], normal), two = operator_triangle(x[a], x[c], x[d], normal);
-        least[split] = fmin(one, two);
-        total = fmax(total, one + two);
-    }
-    bool good[2] = {least[0] > 1e-3 * total, least[1] > 1e-3 * total};
-    for (int split = 0; split < 2; split++) share[split] = good[0] == good[1] ? 0.5 : good[split];
-    for (int split = 0; split < 2; split++) {
-        // triangles (a, b, c) and (a, c, d); sides are numbered by their first corner
-        int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
-        double half = share[split] / 2;
-        side[a] += half * operator_cot(x[c], x[a], x[b]);
-        side[b] += half * operator_cot(x[a], x[b], x[c]);
-        side[c] += half * operator_cot(x[a], x[c], x[d]);
-        side[d] += half * operator_cot(x[c], x[d], x[a]);
-        diagonal[split] += half * (operator_cot(x[b], x[c], x[a]) + operator_cot(x[d], x[a], x[c]));
-    }
 }
 
 /// Diffusivity of a spring with F and r, m2/s.
@@ -98,8 +66,44 @@ static double operator_less(double weight, double leak, float diffusivity) {
     return weight > 0 && diffusivity > 0 ? fmax(0.1 * weight, weight - leak / (double)diffusivity) : weight;
 }
 
-static void operator_corners(const Shell *shell, uint32_t cell, Vec x[4]) {
-    for (int k = 0; k < 4; k++) x[k] = vec_load(shell->rest_position[shell->cells[cell][k]]);
+/// The power of two that a cell's sides are as long as, m: what divides by it is the same to the bit, and its products
+/// fit a float, however large or small the cell is.
+static int operator_scale(const Shell *shell, uint32_t cell) {
+    float longest = 0;
+    for (int k = 0; k < 4; k++)
+        longest = fmaxf(longest, shell->springs[SINGE_BLUE].rest[shell->cell_springs[cell].blue[k]]);
+    return ilogbf(longest);
+}
+
+static void operator_corners(const Shell *shell, uint32_t cell, int scale, Vec x[4]) {
+    for (int k = 0; k < 4; k++) {
+        const float *place = shell->rest_position[shell->cells[cell][k]];
+        x[k] = vec(ldexpf(place[0], -scale), ldexpf(place[1], -scale), ldexpf(place[2], -scale));
+    }
+}
+
+/// Linear elements' weights of a cell; false where it cannot do with them alone.
+static bool operator_linear(const Shell *shell, uint32_t cell, Vec x[4], double w[6]) {
+    operator_corners(shell, cell, operator_scale(shell, cell), x);
+    bool good = heat_cell_linear(x, w);
+    for (int k = 0; k < 6; k++) good &= w[k] >= 0;
+    return good;
+}
+
+/// Weights of a cell's sides and diagonals.
+static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
+    const CellSprings *springs = &shell->cell_springs[cell];
+    double across[4] = {0}, there[6];
+    Vec x[4], y[4];
+    if (operator_linear(shell, cell, x, w)) return;
+    for (int k = 0; k < 4; k++) {
+        uint32_t other = shell_neighbour(shell, cell, k);
+        if (other == SHELL_NONE) continue;
+        operator_linear(shell, other, y, there);
+        for (int j = 0; j < 4; j++)
+            if (shell->cell_springs[other].blue[j] == springs->blue[k]) across[k] += there[j];
+    }
+    heat_cell_weights(x, across, w);
 }
 
 /// What a cell whose side has the weight gives to the spring along it.
@@ -110,39 +114,40 @@ static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t ce
     return (float)operator_less(weight, lean * area, diffusivity);
 }
 
+/// Two-point flux through the side that two cells share: its weight, without diffusivity and F.
+static double operator_flux(const Shell *shell, uint32_t cell, int side, uint32_t other) {
+    Vec x[4], y[4];
+    int scale = operator_scale(shell, cell);
+    operator_corners(shell, cell, scale, x);
+    operator_corners(shell, other, scale, y);
+    Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
+    Vec d = vec_sub(vec_scale(vec_add(vec_add(y[0], y[1]), vec_add(y[2], y[3])), 0.25f), middle);
+    float square = vec_dot(d, d);
+    float face = vec_length(vec_cross(vec_sub(x[(side + 1) % 4], x[side]), d));
+    return square > 0 ? (double)(face / square) : 0;
+}
+
 /// The geometry of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
     float *conductance = plan->conductance;
-    Vec x[4], y[4];
-    operator_corners(shell, cell, x);
-    double side[4] = {0}, diagonal[2] = {0}, largest = 0;
+    double w[6];
     uint32_t centre = shell_centre(shell, cell);
     double area = (double)shell->matter.area[centre];
-    operator_cotangents(x, side, diagonal);
-    for (int k = 0; k < 4; k++) {
-        conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, side[k]);
-        largest = fmax(largest, fabs(side[k]));
-    }
-    // what rounding leaves of a right angle needs no entry in the matrix
-    for (int k = 0; k < 2; k++)
-        if (fabs(diagonal[k]) > 3e-5 * largest)
-            conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)diagonal[k];
-    Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
+    operator_weights(shell, cell, w);
+    for (int k = 0; k < 4; k++)
+        conductance[first[SINGE_BLUE] + springs->blue[k]] += operator_side(plan, shell, cell, k, w[k]);
+    for (int k = 0; k < 2; k++) conductance[first[SINGE_YELLOW] + springs->yellow[k]] = (float)w[4 + k];
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
         if (other == SHELL_NONE || springs->green[k] == SHELL_NONE) continue;
-        operator_corners(shell, other, y);
-        Vec d = vec_sub(vec_scale(vec_add(vec_add(y[0], y[1]), vec_add(y[2], y[3])), 0.25f), middle);
-        float square = vec_dot(d, d);
-        float face = vec_length(vec_cross(vec_sub(x[(k + 1) % 4], x[k]), d));
         uint32_t beyond = shell_centre(shell, other);
         double both = (double)operator_rate(plan, shell, centre, beyond) / 32;
         double leak = both * (area + (double)shell->matter.area[beyond]);
         float diffusivity = operator_spring(plan, shell, SINGE_GREEN, springs->green[k]);
         conductance[first[SINGE_GREEN] + springs->green[k]] =
-            square > 0 ? (float)operator_less((double)(face / square), leak, diffusivity) : 0;
+            (float)operator_less(operator_flux(shell, cell, k, other), leak, diffusivity);
     }
 }
 
@@ -152,12 +157,13 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     uint32_t centre = shell_centre(shell, cell);
     float area = shell->matter.area[centre];
     Vec x[4];
-    operator_corners(shell, cell, x);
+    int scale = operator_scale(shell, cell);
+    operator_corners(shell, cell, scale, x);
     Vec normal = vec_unit(vec_cross(vec_sub(x[2], x[0]), vec_sub(x[3], x[1])));
     Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
     double triangle[4];
     bool even = false;
-    for (int k = 0; k < 4; k++) triangle[k] = operator_triangle(x[k], x[(k + 1) % 4], middle, normal) / 2;
+    for (int k = 0; k < 4; k++) triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], middle, normal) / 2, 2 * scale);
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
@@ -179,13 +185,20 @@ static void operator_umbrella(HeatPlan *plan, const Shell *shell, uint32_t sheet
     }
 }
 
+/// A weight times alpha F. What two cells give is 0 or more, but for what mixing one of them takes from the other.
+static float operator_conductance(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
+                                  float weight) {
+    return weight > 0 ? weight * operator_spring(plan, shell, colour, spring) : 0;
+}
+
 /// Multiplies by alpha F what is not an exchange rate already.
 static void operator_diffusivity(HeatPlan *plan, const Shell *shell) {
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         for (uint32_t k = 0; k < shell->springs[c].count; k++) {
             uint32_t sheet = shell->matter.sheet[shell->springs[c].ends[k][0]];
             if (c == SINGE_RED && shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE) continue;
-            plan->conductance[plan->spring_first[c] + k] *= operator_spring(plan, shell, (SingeColour)c, k);
+            float *conductance = &plan->conductance[plan->spring_first[c] + k];
+            *conductance = operator_conductance(plan, shell, (SingeColour)c, k, *conductance);
         }
 }
 
@@ -207,26 +220,30 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
     operator_diffusivity(plan, shell);
 }
 
-/// A cell's part of the conductance along a side, without diffusivity and F.
-static float operator_part(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side) {
-    double weight[4] = {0}, diagonal[2] = {0};
-    Vec x[4];
-    operator_corners(shell, cell, x);
-    operator_cotangents(x, weight, diagonal);
-    return operator_side(plan, shell, cell, side, weight[side]);
+void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    plan->measure[vertex] = shell->matter.area[vertex] * field_at(shell->matter.capacity_ratio, vertex);
 }
 
-void heat_operator_torn(HeatPlan *plan, const Shell *shell, uint32_t cell, int corner) {
+void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     const CellSprings *springs = &shell->cell_springs[cell];
-    uint32_t vertex = shell->cells[cell][corner];
-    plan->measure[vertex] = shell->matter.area[vertex] * field_at(shell->matter.capacity_ratio, vertex);
-    for (int turn = 0; turn < 2; turn++) {
-        int side = turn ? (corner + 3) & 3 : corner;
+    const uint32_t *first = plan->spring_first;
+    double w[6], there[6];
+    operator_weights(shell, cell, w);
+    for (int side = 0; side < 4; side++) {
         uint32_t spring = springs->blue[side], other = shell_neighbour(shell, cell, side);
-        float sum = operator_part(plan, shell, cell, side);
+        float sum = operator_side(plan, shell, cell, side, w[side]);
+        if (other != SHELL_NONE) operator_weights(shell, other, there);
         for (int k = 0; other != SHELL_NONE && k < 4; k++)
-            if (shell->cell_springs[other].blue[k] == spring) sum += operator_part(plan, shell, other, k);
-        plan->conductance[plan->spring_first[SINGE_BLUE] + spring] =
-            sum * operator_spring(plan, shell, SINGE_BLUE, spring);
+            if (shell->cell_springs[other].blue[k] == spring) sum += operator_side(plan, shell, other, k, there[k]);
+        plan->conductance[first[SINGE_BLUE] + spring] = operator_conductance(plan, shell, SINGE_BLUE, spring, sum);
     }
+    for (int k = 0; k < 2; k++)
+        plan->conductance[first[SINGE_YELLOW] + springs->yellow[k]] =
+            operator_conductance(plan, shell, SINGE_YELLOW, springs->yellow[k], (float)w[4 + k]);
+}
+
+bool heat_operator_may_change(const Shell *shell, uint32_t cell) {
+    double w[6];
+    Vec x[4];
+    return !operator_linear(shell, cell, x, w);
 }

@@ -98,14 +98,13 @@ static void plan_rebuild(HeatPlan *plan, const Shell *shell) {
     heat_rest_rebuild(plan, plan->scratch);
 }
 
-/// Around a vertex that was split, or is new: what conducts along the sides there.
+/// Around a vertex that was split, or is new: what the cells there conduct.
 static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     uint32_t ordinary = shell->springs[SINGE_BLUE].count - shell->edge_spare_count;
+    heat_operator_torn_vertex(plan, shell, vertex);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
         uint32_t cell = shell->fan[f];
-        int corner = 0;
-        while (shell->cells[cell][corner] != vertex) corner++;
-        heat_operator_torn(plan, shell, cell, corner);
+        heat_operator_torn_cell(plan, shell, cell);
         // what was spare till now, and counted as gone, lives; if it does not, heat_matrix_follow will find out
         for (int k = 0; k < 4; k++)
             if (shell->cell_springs[cell].blue[k] >= ordinary)

@@ -2,6 +2,9 @@
 #ifndef HEAT_PLAN_H
 #define HEAT_PLAN_H
 
+#include <string.h>
+
+#include "base/vec.h"
 #include "heat/heat.h"
 
 /// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
@@ -95,21 +98,35 @@ typedef struct HeatPass {
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
     int turn;          ///< which of rest.awake holds
+    float least, most; ///< K, the range of T*
+    double slack;      ///< K, beyond it, before a step ends by bound.c
+    double share;      ///< of what is missing to the range's end, in bound.c
 } HeatPass;
 
 /// Makes operator and matrix follow a shell that has torn since the last call (plan.c).
 void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state);
 
+/// What one cell gives to the springs along its four sides and two diagonals by linear elements, without diffusivity
+/// and F. Sides opposite to obtuse angles are negative. False, and zeros, where it cannot be cut into two triangles
+/// (weights.c).
+bool heat_cell_linear(const Vec corners[4], double weights[6]);
+/// The same, so that no side is negative once what the cell `across` it gives by linear elements (0 at a border) is
+/// added, and no diagonal.
+void heat_cell_weights(const Vec corners[4], const double across[4], double weights[6]);
+
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);
-/// The same of the sides of a cell at a corner that a tear has split, and of that vertex; not for the umbrella.
-void heat_operator_torn(HeatPlan *plan, const Shell *shell, uint32_t cell, int corner);
+/// The same of one cell's sides and diagonals, and of a vertex, where a tear has come by; not for the umbrella.
+void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
+void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
+/// Whether a tear may change what the cell gives to springs that are not torn.
+bool heat_operator_may_change(const Shell *shell, uint32_t cell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
 /// Writes it anew for a shell that has torn; `length` and `fill`, [particles], are scratch.
 void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
-/// Writes a row anew, for springs that tears have changed; `list` is scratch for the springs of it and of another one.
+/// Writes a row anew, for springs that tears have changed; `list` is scratch for the springs of it.
 /// False where it has no room for all.
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
@@ -131,6 +148,23 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
 /// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
 /// the umbrella made.
 SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error);
+
+/// Leaves new temperatures in plan->next that keep to the range of T*, and returns the heat that the umbrella made, for
+/// plan->star as the solver left it (bound.c).
+double heat_bound(HeatPass *pass);
+
+enum { HEAT_SEED = 0x68656174 };
+/// A float next to x, the upper or the lower with the odds that make it right in the mean.
+static inline float heat_round(double x, uint32_t hash) {
+    float near = (float)x;
+    if ((double)near == x || !(x > 1e-30 && x < 1e30)) return near;
+    uint32_t bits;
+    memcpy(&bits, &near, sizeof bits);
+    bits = (bits & 0x7f800000u) - (23u << 23); // one unit of the last digit
+    float unit;
+    memcpy(&unit, &bits, sizeof unit);
+    return (float)(x + (double)unit * (((double)(hash >> 8) + 0.5) / 16777216.0 - 0.5));
+}
 
 /// Calls run over [0, blocks) through the pool and adds up column c of plan->partial in order.
 void heat_blocks(HeatPass *pass, SingeTaskFn *run);

@@ -83,10 +83,9 @@ void sim_log_short_of_spares(SingeSim *sim) {
 void sim_log_unconverged(SingeSim *sim) {
     if (sim->heat_warned) return;
     sim->heat_warned = true;
-    sim_log(
-        sim, SINGE_LOG_WARNING,
-        "heat: conduction ran out of iterations before it came to heat_tolerance; a smaller time_step or pace, or a "
-        "larger tolerance, helps (said once)");
+    sim_log(sim, SINGE_LOG_WARNING,
+            "heat: steps are too long for conduction to come to heat_tolerance; a smaller time_step or pace, or a "
+            "larger tolerance, helps (said once)");
 }
 
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {

@@ -62,10 +62,10 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->events.count = 0;
 
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
-    HeatCounters heat = {0, 0};
+    HeatCounters heat = {0};
     TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat, &heat,
                   error));
-    if (heat.unconverged) sim_log_unconverged(sim);
+    if (heat.unconverged || heat.bounded) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)

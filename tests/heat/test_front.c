@@ -76,6 +76,55 @@ static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
     assert_true(burn_strip(0.001f, 0.002f, &stated).speed > office.speed);
 }
 
+static void moved(float x[3], uint32_t column, uint32_t row, float cell) {
+    x[0] += 0.8f * cell * (rig_random(column, 2 * row) - 0.5f);
+    x[1] += 0.8f * cell * (rig_random(column, 2 * row + 1) - 0.5f);
+}
+
+static void leaning(float x[3], uint32_t column, uint32_t row, float cell) {
+    (void)column, (void)row, (void)cell;
+    x[0] += x[1];
+}
+
+/// Cells of 4 : 1, with vertices moved by a seventh of each side: their short sides lean.
+static void long_across(float x[3], uint32_t column, uint32_t row, float cell) {
+    x[0] += 0.3f * cell * (rig_random(column, 2 * row) - 0.5f);
+    x[1] += 0.3f * cell * (rig_random(column, 2 * row + 1) - 0.5f);
+    x[1] *= 4;
+}
+
+static void narrow(float x[3], uint32_t column, uint32_t row, float cell) {
+    (void)row;
+    if (column % 4 == 1) x[0] -= 0.95f * cell;
+    x[0] += 0.02f * cell * (rig_random(column, 2 * row) - 0.5f);
+}
+
+/// Bad cells burn at the pace of good ones, about.
+static void bad_cells_do_not_hold_a_front_up(void **unused) {
+    (void)unused;
+    static const struct {
+        const char *name;
+        void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
+        double off;
+    } cases[] = {{"moved by 0.4", moved, 0.05}, {"leaning", leaning, 0.2}, {"long across", long_across, 0.1},
+                 {"narrow", narrow, 0.1}};
+    SingeMaterialDef material = singe_default_material();
+    material.thickening = 2.4f; // enough for the longest sides
+    StripSetup setup = strip_setup(&material);
+    SingeError error = {0};
+    StripResult good = {0};
+    setup.length = 0.06f;
+    if (strip_burn(&setup, &good, &error)) fail_msg("%s", error.message);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        StripResult bad = {0};
+        setup.shape = cases[k].shape;
+        if (strip_burn(&setup, &bad, &error)) fail_msg("%s: %s", cases[k].name, error.message);
+        print_message("%s: front %.3f mm/s, on squares %.3f mm/s; hottest %.0f C, on squares %.0f C\n", cases[k].name,
+                      bad.speed * 1e3, good.speed * 1e3, bad.hottest - 273.15, good.hottest - 273.15);
+        if (!(fabs(bad.speed / good.speed - 1) < cases[k].off)) fail_msg("%s", cases[k].name);
+    }
+}
+
 static void thickening_by_hand_and_its_limits(void **unused) {
     (void)unused;
     FrontMatter front = {.diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513,
@@ -121,6 +170,7 @@ int main(void) {
         cmocka_unit_test(front_speed_does_not_depend_on_cells),
         cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
         cmocka_unit_test(speed_is_in_proportion_to_one_over_grammage),
+        cmocka_unit_test(bad_cells_do_not_hold_a_front_up),
         cmocka_unit_test(thickening_by_hand_and_its_limits),
         cmocka_unit_test(thickening_goes_by_the_means),
     };

@@ -22,7 +22,7 @@ static uint32_t any(Torn *t, uint32_t count) {
     return (uint32_t)((uint64_t)(t->random >> 8) * count >> 24);
 }
 
-/// Leaning cells off the grid, so that some conductances are negative.
+/// Leaning cells off the grid, so that some do not go by linear elements alone.
 static void make(Torn *t) {
     float positions[3 * VERTICES] = {0};
     uint32_t cells[4 * CELLS];
@@ -80,7 +80,7 @@ static void check_alike(const HeatPlan *a, const HeatPlan *b) {
     assert_memory_equal(a->alive, b->alive, a->particles);
     assert_memory_equal(m->column, n->column, m->entries * sizeof *m->column);
     assert_memory_equal(m->inverse, n->inverse, a->particles * sizeof *m->inverse);
-    for (uint32_t e = 0; e < m->entries; e++) assert_true(m->value[e] == n->value[e]);
+    for (uint32_t e = 0; e < m->entries; e++) assert_true(m->value[e] == n->value[e] && m->value[e] >= 0);
     assert_memory_equal(a->rest.near_count, b->rest.near_count, a->rest.groups);
     for (uint32_t g = 0; g < a->rest.groups; g++)
         assert_memory_equal(a->rest.near[g], b->rest.near[g], a->rest.near_count[g] * sizeof a->rest.near[g][0]);
@@ -91,10 +91,10 @@ static void rows_are_as_if_built_anew(void **unused) {
     uint32_t by_rows = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         Torn t = {.random = seed};
-        uint32_t negative = 0;
+        uint32_t mixed = 0;
         make(&t);
-        for (uint32_t e = 0; e < t.anew->matrix.entries; e++) negative += t.anew->matrix.value[e] < 0;
-        assert_true(negative > 50);
+        for (uint32_t c = 0; c < CELLS; c++) mixed += heat_operator_may_change(&t.shell, c);
+        assert_true(mixed > 10);
         heat_matrix_follow(t.by_rows, &t.shell, &t.state.ablate, 1e-3f);
         heat_matrix_follow(t.anew, &t.shell, &t.state.ablate, 1e-3f);
         for (int step = 0; step < 60; step++) {

@@ -1,0 +1,98 @@
+// The range of conduction: T stays within that of T*, however far the solver got.
+//
+// (D + dt L) T = D T* has an M-matrix, so that its T lies between the least and the largest T*. What the solver leaves of
+// a residual r, conduct.c adds as r/D to keep all heat: nothing to speak of, but where a step is very long for a
+// particle, dt sum c_ij >> D, a float's last digit is already too much. Then the step ends as follows.
+//
+//   x_j = the solver's T_j, within the range
+//   T_i = T*_i + dt sum c_ij (x_j - T*_i)/(D_i + dt sum c_ij)        a mean of numbers within the range
+//
+// The heat that these lack or have too much of, as little as the residual, comes from all that conduct alike: by a share
+// of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of the
+// umbrella, which does not keep heat, it is counted as made.
+#include <math.h>
+
+#include "base/random.h"
+#include "heat/plan.h"
+
+static double bound_within(const HeatPass *pass, double T) {
+    return T > (double)pass->least ? fmin(T, (double)pass->most) : (double)pass->least;
+}
+
+static bool bound_of_surface(const HeatPass *pass, uint32_t i) {
+    uint32_t sheet = pass->shell->matter.sheet[i];
+    return pass->shell->sheets[sheet].material.heat_operator == SINGE_HEAT_SURFACE;
+}
+
+/// T* of a particle, K.
+static double bound_star(const HeatPass *pass, uint32_t i) {
+    return bound_within(pass, (double)pass->state->heat.temperature[i] + (double)pass->plan->delta[i]);
+}
+
+static double bound_mean(const HeatPass *pass, uint32_t i) {
+    const HeatPlan *plan = pass->plan;
+    const HeatMatrix *matrix = &plan->matrix;
+    double star = bound_star(pass, i), inflow = 0, sum = 0;
+    for (uint32_t k = 0; k < heat_row_width(matrix, i); k++) {
+        uint32_t entry = heat_entry(matrix, i, k);
+        double conductance = (double)matrix->value[entry];
+        inflow += conductance * (bound_within(pass, (double)plan->star[matrix->column[entry]]) - star);
+        sum += conductance;
+    }
+    double dt = (double)pass->dt, all = (double)plan->measure[i] + dt * sum;
+    return all > 0 ? bound_within(pass, star + dt * inflow / all) : star;
+}
+
+static void bound_means(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    const float *capacity = pass->shell->matter.capacity;
+    for (int block = begin; block < end; block++) {
+        double lacking = 0, above = 0, below = 0;
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            if (!plan->rest.awake[pass->turn][g]) continue;
+            for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
+                if (!plan->alive[i]) continue;
+                plan->next[i] = (float)bound_mean(pass, i);
+                if (!bound_of_surface(pass, i)) continue;
+                lacking += (double)capacity[i] * (bound_star(pass, i) - (double)plan->next[i]);
+                above += (double)capacity[i] * ((double)pass->most - (double)plan->next[i]);
+                below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->least);
+            }
+        }
+        plan->partial[block][0] = lacking, plan->partial[block][1] = above, plan->partial[block][2] = below;
+    }
+}
+
+static void bound_shares(void *context, int begin, int end) {
+    const HeatPass *pass = context;
+    HeatPlan *plan = pass->plan;
+    double towards = pass->share > 0 ? (double)pass->most : (double)pass->least, share = fabs(pass->share);
+    uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
+    for (int block = begin; block < end; block++) {
+        double made = 0;
+        for (uint32_t g = heat_group_first(block); g < heat_group_end(plan, block); g++) {
+            if (!plan->rest.awake[pass->turn][g]) continue;
+            for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
+                if (!plan->alive[i]) {
+                    plan->next[i] = pass->state->heat.temperature[i];
+                    continue;
+                }
+                double T = (double)plan->next[i];
+                if (bound_of_surface(pass, i)) T += share * (towards - T);
+                else made += (double)pass->shell->matter.capacity[i] * (T - bound_star(pass, i));
+                plan->next[i] = heat_round(T, random_hash(i, low, high, HEAT_SEED));
+            }
+        }
+        plan->partial[block][0] = made;
+    }
+}
+
+double heat_bound(HeatPass *pass) {
+    HeatPlan *plan = pass->plan;
+    heat_blocks(pass, bound_means);
+    double lacking = heat_sum(plan, 0), room = heat_sum(plan, lacking > 0 ? 1 : 2);
+    pass->share = room > 0 ? fmin(fmax(lacking / room, -1), 1) : 0;
+    heat_blocks(pass, bound_shares);
+    return heat_sum(plan, 0);
+}

@@ -1,0 +1,181 @@
+// What one cell conducts along its sides and diagonals: the weights of its part of the `surface` operator.
+//
+//   energy of the cell   sum over its six springs e of c_e (T_j - T_i)^2/2
+//   right for linear T   sum of c_e p_e p_e' = A 1                                             (1)
+//
+// p   m   the spring, in the plane of the cell
+// A   m2  the cell's area in that plane
+// c       conductance over a
+//
+// Linear elements on two triangles fulfil (1), and more: a linear T is steady. c = cot/2 of the angle opposite to each
+// side (MacNeal 1949; Pinkall & Polthier 1993). Of the two ways to split the cell, the one is taken whose diagonal
+// conducts what is not negative (Delaunay's; on rectangles both are the same, and the diagonal drops out).
+//
+// A side that lies opposite to an obtuse angle is negative still. Most often the cell across it makes up for that, and
+// nothing is done. Where it does not, these weights c1 are mixed with positive ones c2 that fulfil (1) where anything
+// positive does,
+//
+//   c = c1 + s (c2 - c1),   with the smallest s for which no side, with the cell across it, is negative
+//
+// which keeps (1), and a linear T as steady as s is small. So every conductance is 0 or more, and the matrix is an
+// M-matrix: T never leaves the range that it has. Removal takes whole springs, which leaves it one. A tear parts the two
+// cells of a side; each then has to do without the other, and is mixed anew.
+//
+// c2: with k = c p^2 and z = (cos, sin) of twice the angle of p, (1) is a balance of directions,
+//
+//   sum of k = 2 A,   sum of k z = 0
+//
+// and of all that fulfil it those of most entropy are taken, which all springs have a part in: k in proportion to
+// exp(lambda z), lambda by Newton's method. Where all springs of a cell run within a quarter turn (needles that lean),
+// no positive k balances. lambda, held to a length of 5, then makes the most of the springs that are farthest apart; the
+// cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as the
+// sum of k makes one as much too large as the other too small. So a front is faster along such cells and slower
+// across, and stops nowhere.
+#include <float.h>
+#include <math.h>
+
+#include "heat/plan.h"
+
+enum { SIDES = 4, SPRINGS = 6, ITERATIONS = 50, STEEPEST = 5 };
+
+/// The cotangent of the angle at a, or 0 where there is no angle.
+static double weights_cot(Vec a, Vec b, Vec c) {
+    Vec u = vec_sub(b, a), v = vec_sub(c, a);
+    double area = vec_length(vec_cross(u, v));
+    return area > 0 ? vec_dot(u, v) / area : 0;
+}
+
+/// Linear elements on triangles (a, b, c) and (a, c, d), a = split; sides are numbered by their first corner.
+static void weights_linear(const Vec x[4], int split, double share, double w[SPRINGS]) {
+    int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
+    double half = share / 2;
+    w[a] += half * weights_cot(x[c], x[a], x[b]);
+    w[b] += half * weights_cot(x[a], x[b], x[c]);
+    w[c] += half * weights_cot(x[a], x[c], x[d]);
+    w[d] += half * weights_cot(x[c], x[d], x[a]);
+    w[SIDES + split] += half * (weights_cot(x[b], x[c], x[a]) + weights_cot(x[d], x[a], x[c]));
+}
+
+/// Whether a split leaves both triangles an area, and turns none over (arrow-shaped cells, three corners in line).
+static void weights_good(const Vec x[4], bool good[2]) {
+    Vec normal = vec_unit(vec_cross(vec_sub(x[2], x[0]), vec_sub(x[3], x[1])));
+    double least[2], total = 0;
+    for (int split = 0; split < 2; split++) {
+        int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
+        double one = vec_dot(vec_cross(vec_sub(x[b], x[a]), vec_sub(x[c], x[a])), normal);
+        double two = vec_dot(vec_cross(vec_sub(x[c], x[a]), vec_sub(x[d], x[a])), normal);
+        least[split] = fmin(one, two);
+        total = fmax(total, one + two);
+    }
+    for (int split = 0; split < 2; split++) good[split] = least[split] > 1e-3 * total;
+}
+
+bool heat_cell_linear(const Vec x[4], double w[6]) {
+    bool good[2];
+    double each[2][SPRINGS] = {{0}, {0}}, largest = 0;
+    for (int k = 0; k < SPRINGS; k++) w[k] = 0;
+    weights_good(x, good);
+    if (!good[0] && !good[1]) return false;
+    for (int split = 0; split < 2; split++) {
+        if (good[split]) weights_linear(x, split, 1, each[split]);
+        for (int k = 0; k < SIDES; k++) largest = fmax(largest, fabs(each[split][k]));
+    }
+    double one = each[0][SIDES], two = each[1][SIDES + 1];
+    // what rounding leaves of a right angle needs no entry in the matrix
+    bool square = good[0] && good[1] && fmax(fabs(one), fabs(two)) <= 6e-5 * largest;
+    if (good[0] && good[1] && !square) good[one < two ? 0 : 1] = false;
+    for (int split = 0; split < 2; split++)
+        if (good[split]) weights_linear(x, split, square ? 0.5 : 1, w);
+    if (square) w[SIDES] = w[SIDES + 1] = 0;
+    return true;
+}
+
+/// A spring in the plane of the cell.
+typedef struct WeightSpring {
+    double square; ///< p^2, 0: it stands upright
+    double z[2];
+} WeightSpring;
+
+static double weights_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The cell's springs and twice its area, in its plane.
+static double weights_plane(const Vec x[4], WeightSpring springs[SPRINGS]) {
+    double p[SPRINGS][3], normal[3], across[3];
+    for (int k = 0; k < SPRINGS; k++) {
+        Vec a = x[k % 4], b = k < SIDES ? x[(k + 1) % 4] : x[k - SIDES + 2];
+        p[k][0] = (double)b.x - (double)a.x, p[k][1] = (double)b.y - (double)a.y, p[k][2] = (double)b.z - (double)a.z;
+    }
+    const double *d = p[SIDES], *e = p[SIDES + 1];
+    for (int k = 0; k < 3; k++) normal[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
+    double area = sqrt(weights_dot(normal, normal)), length = sqrt(weights_dot(d, d));
+    if (!(area > 0)) return 0;
+    for (int k = 0; k < 3; k++)
+        across[k] = (normal[(k + 1) % 3] * d[(k + 2) % 3] - normal[(k + 2) % 3] * d[(k + 1) % 3]) / (area * length);
+    for (int k = 0; k < SPRINGS; k++) {
+        double u = weights_dot(p[k], d) / length, v = weights_dot(p[k], across), square = u * u + v * v;
+        springs[k] = (WeightSpring){square, {0, 0}};
+        if (square > 0) springs[k].z[0] = (u * u - v * v) / square, springs[k].z[1] = 2 * u * v / square;
+    }
+    return area;
+}
+
+/// k of a given lambda, with a sum of 1: their mean of z, and its derivatives by lambda.
+static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], double k[SPRINGS], double mean[2],
+                         double slope[3]) {
+    double total = 0;
+    mean[0] = mean[1] = slope[0] = slope[1] = slope[2] = 0;
+    for (int e = 0; e < SPRINGS; e++) {
+        k[e] = s[e].square > 0 ? exp(lambda[0] * s[e].z[0] + lambda[1] * s[e].z[1]) : 0;
+        total += k[e];
+    }
+    for (int e = 0; e < SPRINGS; e++) {
+        k[e] /= total;
+        mean[0] += k[e] * s[e].z[0], mean[1] += k[e] * s[e].z[1];
+        slope[0] += k[e] * s[e].z[0] * s[e].z[0], slope[1] += k[e] * s[e].z[0] * s[e].z[1];
+        slope[2] += k[e] * s[e].z[1] * s[e].z[1];
+    }
+    slope[0] -= mean[0] * mean[0], slope[1] -= mean[0] * mean[1], slope[2] -= mean[1] * mean[1];
+}
+
+/// k of most entropy, with a sum of 1. Returns sqrt(1 - r^2).
+static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) {
+    double lambda[2] = {0}, mean[2], slope[3];
+    weights_mean(s, lambda, k, mean, slope);
+    for (int n = 0; n < ITERATIONS && hypot(mean[0], mean[1]) > 1e-12; n++) {
+        // Newton's step, at most 1 long: the mean is the gradient of a convex function of lambda
+        double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
+        double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
+        double shorter = fmax(hypot(u, v), 1);
+        lambda[0] += u / shorter, lambda[1] += v / shorter;
+        double steep = fmax(hypot(lambda[0], lambda[1]) / STEEPEST, 1);
+        lambda[0] /= steep, lambda[1] /= steep;
+        weights_mean(s, lambda, k, mean, slope);
+    }
+    return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
+}
+
+/// c2 of (1), or what comes next to it.
+static void weights_positive(const Vec x[4], double w[SPRINGS]) {
+    WeightSpring springs[SPRINGS] = {{0}};
+    double k[SPRINGS], twice = weights_plane(x, springs);
+    for (int e = 0; e < SPRINGS; e++) w[e] = 0;
+    if (!(twice > 0)) return;
+    double even = weights_entropy(springs, k);
+    for (int e = 0; e < SPRINGS; e++)
+        if (springs[e].square > 0) w[e] = twice * k[e] / (even * springs[e].square);
+}
+
+void heat_cell_weights(const Vec x[4], const double across[4], double w[6]) {
+    double positive[SPRINGS], mix = 0;
+    bool linear = heat_cell_linear(x, w);
+    weights_positive(x, positive);
+    for (int k = 0; k < SPRINGS && linear; k++) {
+        double least = k < SIDES ? fmin(-across[k], 0) : 0;
+        if (w[k] < least) mix = fmax(mix, (least - w[k]) / (positive[k] - w[k]));
+    }
+    mix = linear ? fmin(mix, 1) : 1;
+    for (int k = 0; k < SPRINGS; k++) {
+        w[k] += mix * (positive[k] - w[k]);
+        if (k >= SIDES) w[k] = fmax(w[k], 0);
+    }
+}
