@@ -17,6 +17,10 @@ float ablate_level(const Shell *shell, const State *state, uint32_t particle);
 /// first; a caller that reads pieces before the first step calls it too.
 void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 
+/// Whether what was read back fits together: springs that are left and counted at their ends, pieces that hang together
+/// by them, and ids enough for all that they may still fall into. The shell has torn as it had.
+bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate);
+
 /// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology
 /// changed; pushes hole and piece events. `heat_ambient` (K) is the zero of the enthalpy that removed
 /// particles carry away. Reads `state`, writes `ablate` (which is &state->ablate). First call labels the pieces.

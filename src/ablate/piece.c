@@ -131,3 +131,55 @@ void piece_update(Removal *removal, EventList *events) {
     }
     spread_ids(plan, ablate);
 }
+
+static bool flags_fit(const Shell *shell, const AblateState *ablate) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t s = 0; s < shell->springs[colour].count; s++) {
+            uint8_t flags = ablate->spring_flags[colour][s];
+            if ((flags & ~SINGE_ALIVE) || (flags && !(shell->springs[colour].rest[s] > 0))) return false;
+        }
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        if (ablate->cell_flags[c] & ~SINGE_ALIVE) return false;
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        uint8_t flags = ablate->particle_flags[i];
+        if ((flags & ~(SINGE_ALIVE | SINGE_PINNED)) || (ablate->degree[i] && !(flags & SINGE_ALIVE))) return false;
+    }
+    return true;
+}
+
+/// Counts springs at their ends into plan->size, and compares.
+static bool degrees_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    memset(plan->size, 0, shell->particle_count * sizeof *plan->size);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        const SpringSet *springs = &shell->springs[colour];
+        for (uint32_t s = 0; s < springs->count; s++)
+            for (int k = 0; k < 2 && ablate->spring_flags[colour][s]; k++) plan->size[springs->ends[s][k]]++;
+    }
+    for (uint32_t i = 0; i < shell->particle_count; i++)
+        if (plan->size[i] != ablate->degree[i]) return false;
+    return true;
+}
+
+/// A piece that falls apart takes a new id for each part but one, so it may need as many as it has particles, less one.
+/// Vertices that wait for a tear may become parts, too.
+static bool pieces_fit(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    uint64_t pieces = 0, particles = 0;
+    find_sets(plan, shell, ablate);
+    memset(plan->heir, 0xff, shell->particle_count * sizeof *plan->heir);
+    for (uint32_t i = 0; i < shell->particle_count; i++) {
+        int32_t piece = ablate->piece[i];
+        uint32_t root = plan->root[i];
+        particles += ablate->degree[i] > 0 || (shell_is_corner(shell, i) && shell_is_spare(shell, i));
+        if ((ablate->degree[i] > 0) != (piece >= 0) || piece < -1) return false;
+        if (piece < 0) continue;
+        if ((uint32_t)piece >= ablate->next_piece || piece != ablate->piece[root]) return false;
+        if ((uint32_t)piece >= shell->particle_count) return false;
+        if (root == i && plan->heir[piece] != SHELL_NONE) return false;
+        if (root == i) plan->heir[piece] = i, pieces++;
+    }
+    return pieces == ablate->piece_count && ablate->next_piece + particles <= shell->particle_count + pieces;
+}
+
+bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate) {
+    return flags_fit(shell, ablate) && degrees_fit(plan, shell, ablate) && pieces_fit(plan, shell, ablate);
+}

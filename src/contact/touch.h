@@ -27,8 +27,9 @@ SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeCon
                               TouchPlan **plan);
 void touch_plan_free(Memory *memory, TouchPlan *plan);
 
-/// What the plan remembers of the last search, as part of a snapshot. SINGE_ERROR_MEMORY when reading.
-SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream);
+/// What the plan remembers of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
+/// reading; what does not fit fails the stream.
+SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
 
 /// To be called when cells have other corners than before.
 void touch_plan_forget(TouchPlan *plan);

@@ -145,7 +145,20 @@ SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const Si
     return SINGE_OK;
 }
 
-SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *stream) {
+/// Whether what was read back is what a search may have been for; cells that are left now were left then.
+static bool touch_fits(const TouchPlan *plan, const uint8_t *cell_flags) {
+    if (plan->searched > 1 || plan->restless > 1) return false;
+    for (uint32_t v = 0; v < plan->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(plan->place[v][k]) || !isfinite(plan->speed[v][k])) return false;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (plan->alive[c] > 1 || plan->tangled[c] > 1) return false;
+        if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
+    }
+    return true;
+}
+
+SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
@@ -153,6 +166,7 @@ SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, Stream *strea
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
     stream_data(stream, plan->tangled, plan->cell_count);
+    if (stream->mode == STREAM_READ && !touch_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
     plan->counters.tangled = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;

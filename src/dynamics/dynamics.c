@@ -103,9 +103,9 @@ void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *sta
     if (plan->touch) touch_plan_forget(plan->touch); // cells that shared a corner may touch from now on
 }
 
-SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream) {
+SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
-    return plan->touch ? touch_plan_stream(plan->touch, shell, stream) : SINGE_OK;
+    return plan->touch ? touch_plan_stream(plan->touch, shell, state->ablate.cell_flags, stream) : SINGE_OK;
 }
 
 TouchCounters dynamics_plan_touches(const DynamicsPlan *plan) {

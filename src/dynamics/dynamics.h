@@ -32,8 +32,9 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan);
 /// Substeps in a step.
 int dynamics_plan_substeps(const DynamicsPlan *plan);
 
-/// What the plan remembers of earlier steps, as part of a snapshot. SINGE_ERROR_MEMORY when reading.
-SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, Stream *stream);
+/// What the plan remembers of earlier steps, as part of a snapshot of this State. SINGE_ERROR_MEMORY when reading; what
+/// does not fit fails the stream.
+SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream);
 
 /// To be called when other particles are pinned than before.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);

@@ -205,6 +205,8 @@ void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream) {
     STREAM(stream, gas->steps);
     stream_data(stream, plan->block[gas->turn], plan->block_size * sizeof(float));
     if (stream->mode != STREAM_READ) return;
+    for (size_t i = 0; i < plan->block_size; i++) stream->failed |= !isfinite(plan->block[gas->turn][i]);
+    if (stream->failed) return;
     gas->awake = awake != 0, gas->warm = warm != 0;
     plan_expose(plan, gas);
     GasPass pass = {.plan = plan};

@@ -26,6 +26,10 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
                           SingeError *error);
 void source_free(Memory *memory, const Shell *shell, Source *source);
 
+/// Checks a source that was read back as source_create and later moves of it would; its picture's values are those at
+/// the particles.
+SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error);
+
 /// What the stage needs and does not change while it runs.
 typedef struct HeatSettings {
     float ambient_temperature; ///< K

@@ -88,6 +88,17 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     return result;
 }
 
+SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error) {
+    SingeSourceDef def = source->def;
+    def.path_count = source->path.count, def.path = source->path.keys;
+    def.strength_count = source->strength_count, def.strength = source->strength;
+    def.picture = (SingePicture){(int)shell->particle_count, 1, source->picture};
+    TRY(source_check(&def, error));
+    if (source->picture && def.kind != SINGE_SOURCE_PICTURE)
+        return source_bad(error, "a picture needs a source of its kind");
+    return path_check(def.path_count, def.path, "source", error);
+}
+
 void source_free(Memory *memory, const Shell *shell, Source *source) {
     path_free(&source->path, memory);
     FREE(memory, source->strength, source->strength_count);

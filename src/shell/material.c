@@ -181,21 +181,32 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
     return (float)((1 - f) * (double)param->value + f * (double)param->to);
 }
 
+/// The particles of a sheet that a rule is about.
+static void rule_range(const ParamRule *rule, const Sheet *sheet, uint32_t *begin, uint32_t *end) {
+    *begin = rule->places & AT_VERTICES ? 0 : sheet->vertex_count;
+    *end = rule->places & AT_CENTRES ? sheet->vertex_count + sheet->cell_count : sheet->vertex_count;
+}
+
+static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32_t i, float value, SingeError *error) {
+    if (inside(value, rule->low, rule->high, rule->low_open, rule->high_open)) return SINGE_OK;
+    bool corner = i < sheet->vertex_count;
+    uint32_t element = corner ? i : i - sheet->vertex_count;
+    return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
+                     "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name, rule->range,
+                     corner ? "vertex" : "cell", element);
+}
+
 /// Evaluates a rule's parameter into values[particles].
 static SingeResult evaluate(const ParamField *field, const ParamRule *rule, float *values, SingeError *error) {
     const SheetSource *source = field->source;
     const Sheet *sheet = &source->sheet;
-    uint32_t total = sheet->vertex_count + sheet->cell_count;
-    uint32_t begin = rule->places & AT_VERTICES ? 0 : sheet->vertex_count;
-    uint32_t end = rule->places & AT_CENTRES ? total : sheet->vertex_count;
+    uint32_t begin, end;
+    rule_range(rule, sheet, &begin, &end);
     for (uint32_t i = begin; i < end; i++) {
-        bool corner = i < sheet->vertex_count;
-        uint32_t element = corner ? i : i - sheet->vertex_count;
-        values[i] = corner ? field_value(field, &i, 1, 0) : field_value(field, source->cells[element], 4, element);
-        if (!inside(values[i], rule->low, rule->high, rule->low_open, rule->high_open))
-            return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,
-                             "sheet '%s': %s must be %s, which it is not at %s %u", sheet->name, rule->name,
-                             rule->range, corner ? "vertex" : "cell", element);
+        uint32_t cell = i - sheet->vertex_count;
+        values[i] = i < sheet->vertex_count ? field_value(field, &i, 1, 0)
+                                            : field_value(field, source->cells[cell], 4, cell);
+        TRY(check_value(rule, sheet, i, values[i], error));
     }
     return SINGE_OK;
 }
@@ -221,6 +232,19 @@ static SingeResult check_matter(const SheetSource *source, SingeError *error) {
                                  source->sheet.name, made[k].name,
                                  made[k].param == PARAM_HEAT_SHARE ? "specific heat" : "grammage");
     return SINGE_OK;
+}
+
+SingeResult material_check_values(const SheetSource *source, SingeError *error) {
+    for (int r = 0; r < RULE_COUNT; r++) {
+        const ParamRule *rule = &param_rules[r];
+        const float *values = source->values[rule->param];
+        uint32_t begin, end;
+        rule_range(rule, &source->sheet, &begin, &end);
+        if (!values) TRY(check_value(rule, &source->sheet, begin, source->value[rule->param], error));
+        for (uint32_t i = begin; values && i < end; i++)
+            TRY(check_value(rule, &source->sheet, i, values[i], error));
+    }
+    return check_matter(source, error);
 }
 
 SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error) {

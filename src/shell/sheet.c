@@ -201,6 +201,26 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     return result;
 }
 
+SingeResult sheet_source_check(const SheetSource *source, SingeError *error) {
+    const Sheet *sheet = &source->sheet;
+    SingeSheetDef def = {.struct_size = sizeof def, .vertex_count = sheet->vertex_count,
+                         .cell_count = sheet->cell_count, .positions = (const float *)source->position,
+                         .cells = (const uint32_t *)source->cells, .uv = (const float *)source->uv,
+                         .drop_pieces_below = sheet->drop_pieces_below,
+                         .corner_uv = (const float *)source->corner_uv, .source_vertex = source->source_vertex,
+                         .source_count = sheet->source_count,
+                         .corner_source_vertex = (const int32_t *)source->corner_source};
+    memcpy(&def.material, &sheet->material, sizeof def.material);
+    memcpy(def.velocity, sheet->velocity, sizeof def.velocity);
+    TRY(check_def(&def, sheet->name, error));
+    if (!source->source_vertex && sheet->source_count != sheet->vertex_count)
+        return argument(sheet->name, "source_count is not the number of vertices", error);
+    TRY(check_vertices(&def, sheet->name, error));
+    TRY(check_cells(&def, sheet->name, error));
+    TRY(material_check_values(source, error));
+    return check_masses(source, error);
+}
+
 void sheet_source_free(Memory *memory, SheetSource *source) {
     size_t vertices = source->sheet.vertex_count, cells = source->sheet.cell_count;
     FREE(memory, source->position, vertices);

@@ -11,6 +11,9 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
 /// mesh, uv and sheet are in place.
 SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
 
+/// Checks the values that material_evaluate has left, or that were read back.
+SingeResult material_check_values(const SheetSource *source, SingeError *error);
+
 /// The parameters of a material that may vary over the sheet, one after the other; NULL behind the last.
 SingeParam *material_param(SingeMaterialDef *material, int index);
 

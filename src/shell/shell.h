@@ -158,6 +158,9 @@ static inline float sheet_param(const SheetSource *source, int param, uint32_t i
 SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *def, SheetSource *source, SingeError *error);
 void sheet_source_free(Memory *memory, SheetSource *source);
 
+/// Checks a sheet that was read back as sheet_source_create would.
+SingeResult sheet_source_check(const SheetSource *source, SingeError *error);
+
 /// The picture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
 float shell_sample_picture(const SingePicture *picture, float u, float v);
 

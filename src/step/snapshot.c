@@ -3,8 +3,10 @@
 //
 // Layout: SnapshotHeader, then the body that snapshot_body walks. Numbers are in the machine's order. Defs
 // go field by field (snapshot_def.c): their padding and pointers differ from run to run. The checksum finds
-// damage; what is read is checked further only as far as it is used as an index.
+// damage, and no malice: what is read is held against the checks that calls of the public functions pass, and a State
+// against what steps can leave (snapshot_check.c).
 #include "shell/split.h"
+#include "step/snapshot_check.h"
 #include "step/snapshot_def.h"
 
 #include <string.h>
@@ -27,11 +29,13 @@ static SnapshotHeader snapshot_header(const uint8_t *body, size_t size) {
     return header;
 }
 
+static size_t snapshot_left(const Stream *stream) { return stream->size - stream->offset; }
+
 /// An array of *count elements; when reading, allocates it. False when out of memory or bytes.
 static bool snapshot_array(Stream *stream, Memory *memory, void *array_pointer, size_t count, size_t element_size) {
     void *array = NULL;
     if (stream->mode == STREAM_READ) {
-        if (element_size && count > (stream->size - stream->offset) / element_size) {
+        if (element_size && count > snapshot_left(stream) / element_size) {
             stream->failed = true;
             return false;
         }
@@ -43,9 +47,16 @@ static bool snapshot_array(Stream *stream, Memory *memory, void *array_pointer, 
     return !stream->failed;
 }
 
+/// Fails the stream where something was read that a check refuses, and tells whether it is good still.
+static bool snapshot_held(Stream *stream, bool good) {
+    if (stream->mode == STREAM_READ && !good) stream->failed = true;
+    return !stream->failed;
+}
+
 static bool snapshot_path(Stream *stream, Memory *memory, Path *path) {
     STREAM(stream, path->count);
-    return snapshot_array(stream, memory, &path->keys, path->count, sizeof *path->keys);
+    return snapshot_array(stream, memory, &path->keys, path->count, sizeof *path->keys) &&
+           snapshot_held(stream, path_check(path->count, path->keys, "load", NULL) == SINGE_OK && path_is_normal(path));
 }
 
 static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) {
@@ -71,16 +82,15 @@ static bool snapshot_sheet(Stream *stream, Memory *memory, SheetSource *source) 
         if (varies && !snapshot_array(stream, memory, &source->values[p], (size_t)vertices + cells, sizeof(float)))
             return false;
     }
-    for (uint32_t c = 0; stream->mode == STREAM_READ && c < cells; c++)
-        for (int i = 0; i < 4; i++) stream->failed |= source->cells[c][i] >= vertices;
-    return !stream->failed;
+    return snapshot_held(stream, sheet_source_check(source, NULL) == SINGE_OK);
 }
 
 static bool snapshot_sheets(Stream *stream, SingeSim *sim) {
     uint32_t count = sim->sheet_count;
     STREAM(stream, count);
     if (stream->mode == STREAM_READ) {
-        stream->failed |= count == 0 || count > UINT16_MAX;
+        size_t most = snapshot_left(stream) / sizeof sim->sheets->sheet.name;
+        stream->failed |= count == 0 || count > UINT16_MAX || count > most;
         if (stream->failed || !NEW(&sim->memory, sim->sheets, count)) return false;
         sim->sheet_count = sim->sheet_capacity = count;
     }
@@ -94,7 +104,7 @@ static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint3
                           size_t size) {
     STREAM(stream, *count);
     if (stream->mode != STREAM_READ) return true;
-    if (stream->failed || *count > stream->size) {
+    if (stream->failed || *count > snapshot_left(stream) / sizeof(uint32_t)) { // each begins with its generation
         stream->failed = true;
         *count = 0;
         return false;
@@ -116,7 +126,9 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
     return snapshot_path(stream, &sim->memory, &source->path) &&
            snapshot_array(stream, &sim->memory, &source->strength, source->strength_count, sizeof *source->strength) &&
            (!has_picture ||
-            snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count, sizeof *source->picture));
+            snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count,
+                           sizeof *source->picture)) &&
+           snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
 }
 
 /// A mesh as its solid has it; the rest follows from it.
@@ -152,6 +164,9 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     if (collider->generation == 0) return !stream->failed;
     snapshot_collider_def(stream, &collider->def);
     if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
+    SingeColliderDef def = collider->def;
+    def.path_count = collider->path.count; // it may have been given another one
+    if (!snapshot_held(stream, collider_check(&def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
     if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)
         return snapshot_heights(stream, &sim->memory, &collider->def, &collider->heights);
@@ -166,9 +181,7 @@ static bool snapshot_pin(Stream *stream, SingeSim *sim, Pin *pin) {
         !snapshot_array(stream, &sim->memory, &pin->anchors, pin->count, sizeof *pin->anchors) ||
         !snapshot_path(stream, &sim->memory, &pin->path))
         return false;
-    for (uint32_t k = 0; stream->mode == STREAM_READ && k < pin->count; k++)
-        stream->failed |= pin->particles[k] >= sim->shell.particle_count;
-    return !stream->failed;
+    return snapshot_held(stream, snapshot_pin_fits(&sim->shell, pin));
 }
 
 static bool snapshot_objects(Stream *stream, SingeSim *sim) {
@@ -189,7 +202,7 @@ static bool snapshot_objects(Stream *stream, SingeSim *sim) {
         return false;
     for (uint32_t i = 0; i < sim->pins.count; i++)
         if (!snapshot_pin(stream, sim, &sim->pins.items[i])) return false;
-    return true;
+    return snapshot_held(stream, snapshot_generations_fit(sim));
 }
 
 static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
@@ -213,11 +226,11 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     stream_data(stream, state->arena, state->arena_size);
     if (stream->mode == STREAM_READ && !stream->failed) // the shell is as built: it tears again as it did
         stream->failed = state->tear.split_count > sim->shell.spare_count ||
-                         !split_replay(&sim->shell, state->tear.splits, state->tear.split_count);
-    SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, stream);
+                         !split_replay(&sim->shell, state->tear.splits, state->tear.split_count) ||
+                         !snapshot_state_fits(sim);
+    if (stream->failed) return SINGE_OK; // the caller tells
+    SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, state, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
-    for (uint32_t i = 0; stream->mode == STREAM_READ && i < sim->shell.particle_count; i++)
-        stream->failed |= state->ablate.piece[i] < -1 || state->ablate.piece[i] >= (int64_t)sim->shell.particle_count;
     stream->failed |= stream->mode == STREAM_READ && stream->offset != stream->size;
     return result;
 }
@@ -227,7 +240,12 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     snapshot_sim_def(stream, &sim->def);
     stream->failed |= stream->mode == STREAM_READ && sim_check_def(&sim->def, NULL) != SINGE_OK;
     bool ok = !stream->failed && snapshot_sheets(stream, sim);
-    if (ok && stream->mode == STREAM_READ) TRY(sim_build(sim));
+    if (ok && stream->mode == STREAM_READ) {
+        SingeResult result = sim_build(sim);
+        if (result == SINGE_ERROR_MEMORY) return result;
+        stream->failed = result != SINGE_OK;
+        ok = !stream->failed;
+    }
     ok = ok && snapshot_objects(stream, sim);
     if (ok && stream->mode == STREAM_READ)
         ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);

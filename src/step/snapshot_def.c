@@ -112,7 +112,6 @@ void snapshot_source_def(Stream *stream, SingeSourceDef *def) {
     STREAM(stream, def->falloff);
     STREAM(stream, def->path_count);
     STREAM(stream, def->flux);
-    stream->failed |= (unsigned)def->kind > SINGE_SOURCE_CALLBACK;
 }
 
 void snapshot_collider_def(Stream *stream, SingeColliderDef *def) {
@@ -133,5 +132,4 @@ void snapshot_collider_def(Stream *stream, SingeColliderDef *def) {
     STREAM(stream, def->columns);
     STREAM(stream, def->rows);
     STREAM(stream, def->size);
-    stream->failed |= (unsigned)def->kind > SINGE_COLLIDER_MESH || (unsigned)def->sides > SINGE_SIDES_BOTH;
 }

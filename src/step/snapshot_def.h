@@ -11,10 +11,10 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def);
 /// Name, counts, material and the rest of a sheet as it was added.
 void snapshot_sheet_def(Stream *stream, Sheet *sheet);
 
-/// Without path, picture, strength and callback. An unknown kind fails the stream.
+/// Without path, picture, strength and callback.
 void snapshot_source_def(Stream *stream, SingeSourceDef *def);
 
-/// Without path. An unknown kind fails the stream.
+/// Without path.
 void snapshot_collider_def(Stream *stream, SingeColliderDef *def);
 
 #endif

@@ -159,6 +159,7 @@ float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *norma
     int at[3];
     bool within = true;
     *normal = vec(0, 0, 1);
+    if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) return INFINITY; // every box of the tree would be near
     for (int d = 0; d < 3; d++) {
         within = within && q[d] >= 0 && q[d] < (float)solid->cells[d];
         at[d] = within ? (int)q[d] : 0;
@@ -175,5 +176,5 @@ float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *norma
     }
     float square = SOLID_SLACK * most * most;
     uint32_t t = mesh_tree_nearest(solid, p, &square);
-    return t == UINT32_MAX ? INFINITY : solid_signed(solid, p, t, normal); // of a place that is not a number
+    return t == UINT32_MAX ? INFINITY : solid_signed(solid, p, t, normal);
 }

@@ -20,8 +20,7 @@ static double path_rotation_length(const float q[4]) {
     return sqrt(square);
 }
 
-SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner,
-                     SingeError *error) {
+SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error) {
     if (count > 0 && !keys)
         return error_set(error, SINGE_ERROR_ARGUMENT, owner, -1, "the path has %u keys but no array", count);
     for (uint32_t i = 0; i < count; i++) {
@@ -33,6 +32,18 @@ SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePose
             return error_set(error, SINGE_ERROR_ARGUMENT, owner, i,
                              "path key %u has a rotation of length zero; {0,0,0,1} is none", i);
     }
+    return SINGE_OK;
+}
+
+bool path_is_normal(const Path *path) {
+    for (uint32_t i = 0; i < path->count; i++)
+        if (!(fabs(path_rotation_length(path->keys[i].rotation) - 1) < 1e-5)) return false;
+    return true;
+}
+
+SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner,
+                     SingeError *error) {
+    TRY(path_check(count, keys, owner, error));
     SingePoseKey *copy;
     if (!NEW(memory, copy, count)) return error_set(error, SINGE_ERROR_MEMORY, owner, -1, "out of memory for a path");
     for (uint32_t i = 0; i < count; i++) {

@@ -17,7 +17,13 @@ typedef struct Pose {
     float rotation[4];
 } Pose;
 
-/// Copies keys after checking them: finite, times increasing, rotations not zero (normalised here).
+/// Checks keys: finite, times increasing, rotations not zero.
+SingeResult path_check(uint32_t count, const SingePoseKey *keys, const char *owner, SingeError *error);
+
+/// Whether keys that path_check lets pass have rotations of length one, as path_set leaves them.
+bool path_is_normal(const Path *path);
+
+/// Copies keys after checking them; rotations are normalised.
 SingeResult path_set(Path *path, Memory *memory, uint32_t count, const SingePoseKey *keys, const char *owner,
                      SingeError *error);
 void path_free(Path *path, Memory *memory);
