@@ -193,8 +193,9 @@ static size_t memory_of(pid_t process) {
 }
 
 static SingeResult refuse_size(const Child *child) {
-    return refuse(child->error, SINGE_ERROR_LIMIT, "file", -1, "%s: reading it takes more than %.0f MB of memory",
-                  short_name(child->name), (double)child->limits.memory * 1e-6);
+    return refuse(child->error, SINGE_ERROR_LIMIT, "file", (int64_t)child->limits.memory,
+                  "%s: reading it takes more than %.0f MB of memory", short_name(child->name),
+                  (double)child->limits.memory * 1e-6);
 }
 
 static SingeResult refuse_time(const Child *child) {
@@ -301,13 +302,13 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     return result;
 }
 
-/// Whether this process has other threads, whose locks a child would find locked for good.
-static bool has_threads(void) {
+/// A child would find the locks of other threads locked for good.
+bool isolate_possible(void) {
 #if defined(__linux__)
     struct stat tasks;
-    return !ISOLATE_SANITIZED && stat("/proc/self/task", &tasks) == 0 && tasks.st_nlink > 3;
+    return ISOLATE_SANITIZED || stat("/proc/self/task", &tasks) != 0 || tasks.st_nlink <= 3;
 #else
-    return false;
+    return true;
 #endif
 }
 
@@ -321,7 +322,7 @@ static SingeResult refuse_process(const char *name, SingeError *error, int reaso
 SingeResult isolate_run(const char *name, IsolateWork *work, void *context, IsolateLimits limits,
                         SingeAllocator allocator, Bytes *answer, SingeError *error) {
     *answer = (Bytes){.allocator = allocator};
-    if (has_threads())
+    if (!isolate_possible())
         return refuse(error, SINGE_ERROR_STATE, "file", -1, "%s: cannot be read while other threads run",
                       short_name(name));
     int ends[2];

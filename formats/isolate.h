@@ -22,10 +22,14 @@ void isolate_put(IsolateAnswer *answer, const void *bytes, size_t size);
 /// memory; what it writes there is lost. Whatever it prints goes nowhere.
 typedef SingeResult IsolateWork(void *context, IsolateAnswer *answer, SingeError *error);
 
+/// Whether isolate_run can make a child: this process has one thread.
+bool isolate_possible(void);
+
 /// Runs work(context) in a child and waits for it. *answer gets what it put; the caller checks it as any file, and
 /// frees it with bytes_free. `name` is the file's, for messages. Call it only while this process has one thread.
-/// Errors: what `work` returned; SINGE_ERROR_LIMIT where it took more memory or time than `limits` allow;
-/// SINGE_ERROR_FORMAT where it crashed; SINGE_ERROR_MEMORY without memory for the answer or a process;
+/// Errors: what `work` returned; SINGE_ERROR_LIMIT where it took more memory than `limits` allow, or was refused what it
+/// asked for (error->element is limits.memory), or more time (-1); SINGE_ERROR_FORMAT where it crashed;
+/// SINGE_ERROR_MEMORY without memory for the answer or a process;
 /// SINGE_ERROR_STATE where other threads run, or where a signal stopped the child.
 ///
 /// Linux holds the child to its memory at each call. Elsewhere, and under sanitizers, whose shadow memory counts too,

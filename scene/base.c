@@ -147,8 +147,11 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
     Reader inner = *reader;
     inner.chain = &link;
     inner.prefix = base_folder(reader->arena, &file);
-    Node *root = tree_read(reader->arena, reader->text, text->bytes, text->size, (ScenePlace){.file = text->number},
-                           reader->messages);
+    if (!text->was_read)
+        text->root = tree_read(reader->arena, reader->text, text->bytes, text->size,
+                               (ScenePlace){.file = text->number}, reader->messages);
+    text->was_read = true;
+    Node *root = text->root;
     if (!root || !inner.prefix)
         return;
     char seen[NODE_WORDS];

@@ -14,6 +14,8 @@ typedef struct SceneText {
     int number;              ///< of a material file, 0 for the scene
     struct SceneText *files; ///< of the scene: the material files read so far, the last one first
     struct SceneText *next;  ///< of a material file: the one before it
+    struct Node *root;       ///< of a material file that was read: its tree, NULL where it is broken
+    bool was_read;
 } SceneText;
 
 /// Adds a mistake at a place; one in a material file that several sheets use is told once. Never fails: what memory

@@ -1,20 +1,16 @@
 #include "scene/tree.h"
 
-#include <libfyaml.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "formats/printable.h"
-#include "scene/scalar.h"
+#include "scene/yaml.h"
 
-enum { DEPTH_MOST = 64 };
+enum { DEPTH_MOST = YAML_DEPTH };
 
 typedef struct Builder {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
-    const char *bytes; // of the document
-    size_t size;
     ScenePlace origin; // --set or file, without line and column
     Node *stack[DEPTH_MOST]; // open lists and maps
     char *keys[DEPTH_MOST];  // key that waits for its value, in each open map
@@ -30,21 +26,15 @@ static void builder_fail(Builder *builder, ScenePlace place, const char *what) {
     builder->bad = true;
 }
 
-static ScenePlace event_place(const Builder *builder, struct fy_event *event) {
+// A line and column of a file; a --set has neither.
+static ScenePlace place_at(const Builder *builder, int line, int column) {
     ScenePlace place = builder->origin;
-    const struct fy_mark *mark = fy_event_start_mark(event);
-    if (mark && !place.set) {
-        place.line = mark->line + 1;
-        place.column = mark->column + 1;
-        // libfyaml's mark of a quoted text lies behind the quote, that of an alias behind the star
-        struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
-        enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
-        bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
-        if (behind && place.column > 1)
-            place.column--;
-    }
+    if (!place.set)
+        place.line = line, place.column = column;
     return place;
 }
+
+static const char not_read[] = "not valid YAML, or it could not be read";
 
 static void builder_attach(Builder *builder, Node *node) {
     if (!builder->depth) {
@@ -58,8 +48,6 @@ static void builder_attach(Builder *builder, Node *node) {
         node->key_place = builder->key_places[top];
         builder->keys[top] = NULL;
     }
-    if (!node->place.line) // an empty value has no place of its own
-        node->place = parent->kind == NODE_MAP ? node->key_place : parent->place;
     if (parent->last)
         parent->last->next = node;
     else
@@ -95,14 +83,13 @@ static void builder_open(Builder *builder, NodeKind kind, ScenePlace place) {
     builder->keys[builder->depth++] = NULL;
 }
 
-static void builder_value(Builder *builder, struct fy_event *event, ScenePlace place) {
-    size_t length = 0;
-    char *text = scalar_text(builder->arena, event->scalar.value, builder->bytes, builder->size, &length);
+static void builder_value(Builder *builder, const YamlEvent *event, ScenePlace place) {
+    char *text = arena_text(builder->arena, event->text, event->length);
     if (!text) {
         builder->bad = true;
         return;
     }
-    if (strlen(text) != length) {
+    if (strlen(text) != event->length) {
         builder_fail(builder, place, "a text must not contain a zero character");
         return;
     }
@@ -116,64 +103,48 @@ static void builder_value(Builder *builder, struct fy_event *event, ScenePlace p
         builder->bad = true;
         return;
     }
+    int top = builder->depth - 1;
+    if ((event->flags & YAML_ABSENT) && top >= 0) // told at what it is the value of
+        place = builder->stack[top]->kind == NODE_MAP ? builder->key_places[top] : builder->stack[top]->place;
     node->kind = NODE_VALUE;
     node->place = place;
     node->text = text;
-    node->quoted = event->scalar.value && fy_token_scalar_style(event->scalar.value) != FYSS_PLAIN;
+    node->quoted = event->flags & YAML_QUOTED;
     builder_attach(builder, node);
 }
 
-static void builder_take(Builder *builder, struct fy_event *event) {
-    ScenePlace place = event_place(builder, event);
-    struct fy_token *tag = NULL, *anchor = NULL;
-    if (event->type == FYET_SCALAR)
-        tag = event->scalar.tag, anchor = event->scalar.anchor;
-    else if (event->type == FYET_MAPPING_START)
-        tag = event->mapping_start.tag, anchor = event->mapping_start.anchor;
-    else if (event->type == FYET_SEQUENCE_START)
-        tag = event->sequence_start.tag, anchor = event->sequence_start.anchor;
-    if (anchor || event->type == FYET_ALIAS)
-        builder_fail(builder, place, "anchors and aliases (&name, *name) are not supported; write the value out");
-    else if (tag)
-        builder_fail(builder, place, "tags (!name) are not supported; each key knows the type of its value");
-    else if (event->type == FYET_SCALAR)
-        builder_value(builder, event, place);
-    else if (event->type == FYET_MAPPING_START)
-        builder_open(builder, NODE_MAP, place);
-    else if (event->type == FYET_SEQUENCE_START)
-        builder_open(builder, NODE_LIST, place);
-    else if (event->type == FYET_MAPPING_END || event->type == FYET_SEQUENCE_END)
+// The events come from a process that may have gone astray: an order that no text has is refused.
+static void builder_close(Builder *builder, ScenePlace place) {
+    int top = builder->depth - 1;
+    if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
+        builder_fail(builder, place, not_read);
+    else
         builder->depth--;
-    else if (event->type == FYET_DOCUMENT_START && builder->documents++)
+}
+
+static void builder_take(Builder *builder, const YamlEvent *event) {
+    ScenePlace place = place_at(builder, (int)event->line, (int)event->column);
+    bool node = event->kind == YAML_VALUE || event->kind == YAML_MAP || event->kind == YAML_LIST;
+    if ((event->flags & YAML_ANCHORED) || event->kind == YAML_ALIAS)
+        builder_fail(builder, place, "anchors and aliases (&name, *name) are not supported; write the value out");
+    else if (event->flags & YAML_TAGGED)
+        builder_fail(builder, place, "tags (!name) are not supported; each key knows the type of its value");
+    else if (node && builder->root && !builder->depth)
+        builder_fail(builder, place, not_read);
+    else if (event->kind == YAML_VALUE)
+        builder_value(builder, event, place);
+    else if (node)
+        builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, place);
+    else if (event->kind == YAML_CLOSE)
+        builder_close(builder, place);
+    else if (event->kind == YAML_DOCUMENT && builder->documents++)
         builder_fail(builder, place, "a second document (---) begins here; a scene is one document");
-}
-
-// What libfyaml has found, or a plain sentence where it does not say.
-static void builder_report(Builder *builder, struct fy_diag *diag) {
-    void *iterator = NULL;
-    struct fy_diag_error *found;
-    bool any = false;
-    while ((found = fy_diag_errors_iterate(diag, &iterator))) {
-        ScenePlace place = builder->origin;
-        place.line = found->line > 0 ? found->line : 0;
-        place.column = found->column > 0 ? found->column : 1;
-        if (place.file || !found->msg)
-            message_add(builder->messages, builder->text, place, "not valid YAML");
-        else
-            message_add(builder->messages, builder->text, place, "not valid YAML: %s", shown(found->msg).text);
-        any = true;
+    else if (event->kind == YAML_FAULT && (place.file || !event->length))
+        builder_fail(builder, place, "not valid YAML");
+    else if (event->kind == YAML_FAULT) {
+        message_add(builder->messages, builder->text, place, "not valid YAML: %s", shown(event->text).text);
+        builder->bad = true;
     }
-    if (!any)
-        message_add(builder->messages, builder->text, builder->origin, "not valid YAML");
-    builder->bad = true;
-}
-
-// A line and column of a file; a --set has neither.
-static ScenePlace place_at(const Builder *builder, int line, int column) {
-    ScenePlace place = builder->origin;
-    if (!place.set)
-        place.line = line, place.column = column;
-    return place;
 }
 
 // libfyaml takes any bytes; a scene is UTF-8 without control characters, so that messages can show it.
@@ -210,59 +181,69 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-static void builder_run(Builder *builder, struct fy_diag *diag) {
-    struct fy_parse_cfg config = {.flags = FYPCF_QUIET | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_AUTO, .diag = diag};
-    struct fy_parser *parser = fy_parser_create(&config);
-    if (!parser || fy_parser_set_string(parser, builder->bytes, builder->size)) {
-        builder->bad = true;
-        fy_parser_destroy(parser);
-        return;
+// What is wrong ends the tree, but all faults of the syntax are told.
+static void builder_run(Builder *builder, YamlEvents *events) {
+    YamlEvent event = {0};
+    while (event.kind != YAML_END && (!builder->bad || event.kind == YAML_FAULT)) {
+        if (!yaml_next(events, &event)) {
+            builder_fail(builder, place_at(builder, 1, 1), not_read);
+            return;
+        }
+        if (!builder->bad || event.kind == YAML_FAULT)
+            builder_take(builder, &event);
     }
-    struct fy_event *event;
-    bool ended = false;
-    while (!builder->bad && !ended && (event = fy_parser_parse(parser))) {
-        ended = event->type == FYET_STREAM_END;
-        builder_take(builder, event);
-        fy_parser_event_free(parser, event);
-    }
-    if (!builder->bad && (!ended || fy_parser_get_stream_error(parser)))
-        builder_report(builder, diag);
-    fy_parser_destroy(parser);
+    if (!builder->bad && builder->depth)
+        builder_fail(builder, place_at(builder, (int)event.line, (int)event.column), not_read);
+}
+
+// A --set's value that is a word or a number, with a unit perhaps, and so needs no YAML.
+static bool is_plain(const char *bytes, size_t size) {
+    static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
+    if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ')
+        return false;
+    const char *first = bytes + (*bytes == '-' || *bytes == '+');
+    return strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
+}
+
+static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, ScenePlace place) {
+    Node *node = arena_new(arena, 1, sizeof *node);
+    char *text = arena_text(arena, bytes, size);
+    if (!node || !text)
+        return NULL;
+    node->place = place;
+    node->text = text;
+    return node;
 }
 
 Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, ScenePlace origin,
                 SceneMessages *messages) {
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
+    YamlEvents events;
+    SingeError error = {0};
     if (!bytes_are_text(&builder, bytes, size))
         return NULL;
+    if (origin.set && (!size || is_plain(bytes, size))) // PATH= with nothing behind it is a value, too
+        return plain_node(arena, bytes, size, origin);
     if (size == 0) { // libfyaml takes length 0 for "count yourself"
         bytes = "\n";
         size = 1;
     }
-    struct fy_diag_cfg config;
-    fy_diag_cfg_default(&config);
-    config.fp = NULL;
-    config.level = FYET_ERROR;
-    struct fy_diag *diag = fy_diag_create(&config);
-    if (!diag)
+    SingeResult result = yaml_read(text->name, bytes, size, &events, &error);
+    if (result == SINGE_ERROR_MEMORY)
         return NULL;
-    fy_diag_set_collect_errors(diag, true);
-    builder.bytes = bytes;
-    builder.size = size;
-    builder_run(&builder, diag);
-    fy_diag_destroy(diag);
+    if (result) {
+        message_add(messages, text, place_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s", error.message);
+        return NULL;
+    }
+    builder_run(&builder, &events);
+    yaml_free(&events);
     if (builder.bad)
         return NULL;
-    if (!builder.root && origin.set) { // PATH= with nothing behind it
-        builder.root = arena_new(arena, 1, sizeof *builder.root);
-        if (builder.root) {
-            builder.root->text = arena_text(arena, "", 0);
-            builder.root->place = origin;
-        }
-    } else if (!builder.root && !arena_failed(arena)) {
+    if (!builder.root && origin.set && !arena_failed(arena)) // a comment alone
+        return plain_node(arena, "", 0, origin);
+    if (!builder.root && !arena_failed(arena))
         message_add(messages, text, place_at(&builder, 1, 1),
                     origin.file ? "the file is empty" : "the scene is empty; at least 'sheets' is needed");
-    }
     return builder.root;
 }
 

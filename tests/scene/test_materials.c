@@ -184,7 +184,7 @@ static void test_secrets(void **state) {
         "\"SECRET\n",                                   "grammage: 1\nSECRET\n",
         "weight: SECRET\n",                             "measured: {speed: [SECRET, 1]}\n",
         "thickness: {from: 1, to: 2, picture: SECRET}\n", "ablate: SECRET\n",
-        "'SECRET': *SECRET\n",                          "SECRET: >1\n SECRET\n",
+        "'SECRET': *SECRET\n",                          "SECRET: |0\n  SECRET\n",
     };
     Folder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
