@@ -1,0 +1,44 @@
+// What scenes must do whatever they are made of.
+#ifndef TESTS_FUZZ_SCENE_H
+#define TESTS_FUZZ_SCENE_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/scene.h"
+
+/// A refusal says why, and where by a line or a --set.
+static inline void expect_told(const SceneMessages *messages, const Scene *scene) {
+    if (!messages->count || scene)
+        abort();
+    for (uint32_t i = 0; i < messages->count; i++) {
+        const ScenePlace *place = &messages->items[i].place;
+        if (!place->set && (place->line < 1 || place->column < 1))
+            abort();
+    }
+}
+
+/// What is accepted reads back from its own dump.
+static inline void expect_back(const Scene *scene, SceneSyntax syntax) {
+    Scene *again = NULL;
+    SceneMessages messages = {0};
+    char *text = NULL;
+    size_t length = 0;
+    FILE *file = open_memstream(&text, &length);
+    if (!file)
+        abort();
+    scene_dump(scene, syntax, 0, file);
+    fclose(file);
+    // a dump says more than its scene did, and so may exceed the limit that scenes have
+    if (length <= 1 << 20 && scene_parse("dump", text, length, NULL, NULL, 0, &again, &messages)) {
+        scene_messages_print(&messages, stderr);
+        abort();
+    }
+    free(text);
+    scene_free(again);
+    scene_messages_free(&messages);
+}
+
+#endif
