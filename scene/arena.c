@@ -54,6 +54,8 @@ void *arena_new(SceneArena *arena, size_t count, size_t element_size) {
     return result;
 }
 
+void arena_fail(SceneArena *arena) { arena->failed = 1; }
+
 char *arena_text(SceneArena *arena, const char *text, size_t length) {
     char *copy = arena_new(arena, length + 1, 1);
     if (copy && length)

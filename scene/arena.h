@@ -14,6 +14,8 @@ void arena_destroy(SceneArena *arena);
 void *arena_new(SceneArena *arena, size_t count, size_t element_size);
 /// A zero-terminated copy.
 char *arena_text(SceneArena *arena, const char *text, size_t length);
+/// Remembers that memory was refused elsewhere.
+void arena_fail(SceneArena *arena);
 int arena_failed(const SceneArena *arena);
 
 #endif

@@ -229,8 +229,10 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         size = 1;
     }
     SingeResult result = yaml_read(text->name, bytes, size, &events, &error);
-    if (result == SINGE_ERROR_MEMORY)
+    if (result == SINGE_ERROR_MEMORY) {
+        arena_fail(arena);
         return NULL;
+    }
     if (result) {
         message_add(messages, text, place_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s", error.message);
         return NULL;

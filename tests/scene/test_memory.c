@@ -41,6 +41,20 @@ static const char text[] = "frames: 3\n"
                            "  - {kind: spot, position: [0, 0, 0]}\n";
 static const char broken[] = "frames: [1, 2\nsheets: '\n";
 
+/// All of a scene as text, from malloc.
+static char *whole(const Scene *scene) {
+    char *dump = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&dump, &size);
+    assert_non_null(file);
+    scene_dump(scene, SCENE_JSON, 0, file);
+    assert_int_equal(fclose(file), 0);
+    assert_non_null(dump);
+    return dump;
+}
+
+static char *undisturbed; // what the scene is where nothing fails
+
 /// Reads with failures; returns whether all went well, which is when none was met.
 static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t *told) {
     static const char *const sets[] = {"preview.camera.eye=[0, 1, 2]", "fps=30"};
@@ -51,6 +65,14 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
     fail_at = 0;
     *told = messages.count + messages.left_out;
     assert_int_equal(result == SINGE_OK, scene != NULL);
+    if (scene) { // nothing of it was lost on the way
+        char *dump = whole(scene);
+        if (!undisturbed)
+            undisturbed = dump;
+        assert_string_equal(dump, undisturbed);
+        if (dump != undisturbed)
+            free(dump);
+    }
     scene_free(scene);
     scene_messages_free(&messages);
     return result;
@@ -73,10 +95,13 @@ static void sweep(const char *scene_text, bool once, SingeResult expected) {
 
 static void test_every_allocation(void **state) {
     (void)state;
+    uint32_t told;
+    assert_int_equal(attempt(text, 0, false, &told), SINGE_OK);
     sweep(text, false, SINGE_OK);
     sweep(text, true, SINGE_OK);
     sweep(broken, false, SINGE_ERROR_FORMAT);
     sweep(broken, true, SINGE_ERROR_FORMAT);
+    free(undisturbed);
 }
 #else
 static void test_every_allocation(void **state) {
