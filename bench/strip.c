@@ -55,7 +55,8 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
         &material.ignition_temperature, &material.heat_of_combustion, &material.heat_share, &material.mass_rate,
         &material.rate_ceiling, &material.ash_exponent, &material.mass_min, &material.mass_loss, &material.ash_density,
         &material.shrink_front, &material.shrink_back, &material.char_weight, &material.drag, &material.damping,
-        &material.strength, &material.char_strength, &material.pre_exponential, &material.activation_energy};
+        &material.crease_radius, &material.crease_share, &material.strength, &material.char_strength,
+        &material.pre_exponential, &material.activation_energy, &material.curvature_max};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)

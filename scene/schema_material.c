@@ -128,6 +128,9 @@ static const SchemaRow material_rows[] = {
           "times as thick as the real sheet"),
     PARAM("crease_share", crease_share, DIM_FRACTION, WITHIN(0, 1),
           "how much of the bend beyond that stays; char keeps less, ash nothing"),
+    PARAM("curvature_max", curvature_max, DIM_CURVATURE, FROM(0),
+          "sharpest bend beyond the rest shape that unburnt mesh takes (solver `strand`); 0: any. Thin sheets that "
+          "shrink fold along rows of cells without it"),
     PARAM("strength", strength, DIM_STIFFNESS, OVER_OR_INF(0),
           "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The "
           "model's own, far below real paper's ([equations.md](equations.md#tearing))"),

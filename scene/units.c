@@ -39,6 +39,7 @@ static const DimensionRow dimensions[DIM_COUNT] = {
     [DIM_DIFFUSIVITY] = {"diffusivity", {{"m2/s", 1, 0}, {"cm2/s", 1e-4, 0}, {"mm2/s", 1e-6, 0}}},
     [DIM_RATE] = {"rate", {{"1/s", 1, 0}, {"1/min", 1.0 / 60.0, 0}}},
     [DIM_RATE_PER_KELVIN] = {"rate per kelvin", {{"1/(K s)", 1, 0}}},
+    [DIM_CURVATURE] = {"curvature", {{"1/m", 1, 0}, {"1/cm", 100, 0}, {"1/mm", 1e3, 0}}},
     [DIM_COMPLIANCE] = {"compliance", {{"m/N", 1, 0}, {"mm/N", 1e-3, 0}}},
     [DIM_STIFFNESS] = {"stiffness", {{"N/m", 1, 0}, {"N/mm", 1e3, 0}}},
     [DIM_MOLAR_ENERGY] = {"energy per amount", {{"J/mol", 1, 0}, {"kJ/mol", 1e3, 0}}},

@@ -28,6 +28,7 @@ typedef enum Dimension {
     DIM_RATE,
     DIM_RATE_PER_KELVIN,
     DIM_COMPLIANCE,
+    DIM_CURVATURE,
     DIM_STIFFNESS,
     DIM_MOLAR_ENERGY,
     DIM_FRAME_RATE,

@@ -147,6 +147,10 @@ typedef struct SingeMaterialDef {
     /// times the excess over ignition, its order ash_exponent; T counts to rate_ceiling above ignition at most
     SingeParam pre_exponential;
     SingeParam activation_energy; ///< J/mol, E, >= 0
+
+    /// 1/m, the sharpest bend beyond the rest shape that the mesh takes where it has not burnt, >= 0 (strand); 0: any.
+    /// Without it thin sheets fold along rows of edges
+    SingeParam curvature_max;
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

@@ -53,7 +53,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
-        !patches_create(memory, shell, &plan->patches) || !attach_create(memory, shell, &plan->attachments) ||
+        !curvature_create(memory, shell, &plan->strands) || !patches_create(memory, shell, &plan->patches) || !attach_create(memory, shell, &plan->attachments) ||
         (settings->contact.enabled &&
          touch_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->touch)) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
@@ -164,6 +164,7 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         if (solver->attachments && ((i == 0 && !attached) || i == SINGE_COLOUR_COUNT - 1))
             attach_project(&plan->attachments, shell, plan->kernels->hold, pool, dynamics);
+        if (i == SINGE_COLOUR_COUNT - 1) curvature_project(plan, pool, dynamics);
         double start = clock_seconds();
         strand_project(plan, solver->order[i], pool, h, dynamics, counters);
         counters->seconds += clock_seconds() - start;

@@ -17,9 +17,9 @@ static bool cpu_has(SingeInstructions instructions) {
 }
 
 static const Kernels *kernels_of(SingeInstructions instructions) {
-    static const Kernels kernels[] = {[SINGE_INSTRUCTIONS_X86_V2] = {strand_solve_v2, attach_hold_v2},
-                                      [SINGE_INSTRUCTIONS_X86_V3] = {strand_solve_v3, attach_hold_v3},
-                                      [SINGE_INSTRUCTIONS_X86_V4] = {strand_solve_v4, attach_hold_v4}};
+    static const Kernels kernels[] = {[SINGE_INSTRUCTIONS_X86_V2] = {strand_solve_v2, attach_hold_v2, strand_bend_v2},
+                                      [SINGE_INSTRUCTIONS_X86_V3] = {strand_solve_v3, attach_hold_v3, strand_bend_v3},
+                                      [SINGE_INSTRUCTIONS_X86_V4] = {strand_solve_v4, attach_hold_v4, strand_bend_v4}};
     return cpu_has(instructions) ? &kernels[instructions] : NULL;
 }
 #else
@@ -30,7 +30,7 @@ static const Kernels *kernels_of(SingeInstructions instructions) {
 #endif
 
 const Kernels *kernels_choose(SingeInstructions instructions) {
-    static const Kernels plain = {strand_solve_plain, attach_hold_plain};
+    static const Kernels plain = {strand_solve_plain, attach_hold_plain, strand_bend_plain};
     if (instructions == SINGE_INSTRUCTIONS_PLAIN) return &plain;
     if (instructions != SINGE_INSTRUCTIONS_BEST) return kernels_of(instructions);
     for (int best = SINGE_INSTRUCTIONS_X86_V4; best >= SINGE_INSTRUCTIONS_X86_V2; best--) {

@@ -21,6 +21,7 @@ typedef struct MovingCollider {
 typedef struct Kernels {
     StrandSolve *solve;
     AttachHold *hold;
+    StrandBend *bend;
 } Kernels;
 
 /// Those for these instructions, or NULL where the processor lacks them (kernels.c).
@@ -117,6 +118,13 @@ void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateSt
 /// One projection of one colour, family after family (strand_project.c).
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters);
+
+/// Room for the limits of bends, where a material has one (curvature.c). False when out of memory.
+bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
+/// Once a step: the limits along a strand, whose weights are known.
+void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set);
+/// Straightens what is bent sharper than its material's curvature_max.
+void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics);
 
 bool patches_create(Memory *memory, const Shell *shell, Patches *patches);
 void patches_free(Memory *memory, const Shell *shell, Patches *patches);

@@ -88,6 +88,7 @@ static void prepare_strands(void *task, int begin, int end) {
             float stays = crease[k] * hinges[k].arc * crease_kept(job->shell, job->state, k);
             set->length[slot] *= crease_ratio(&hinges[k], stays, bend[k] * hinges[k].arc);
         }
+        if (set->bend_limit) curvature_prepare(job->shell, job->state, job->colour, (uint32_t)s, set);
     }
 }
 

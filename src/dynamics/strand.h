@@ -14,6 +14,9 @@
 
 enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
 
+/// Of a bend beyond the limit what a substep takes away (curvature.c).
+#define BEND_GAIN 0.5f
+
 /// y of the constraint in strand_kernel.h.
 #define STRAND_YIELD 0.5f
 
@@ -42,6 +45,7 @@ typedef struct StrandSet {
     float *length;         ///< [row_count STRAND_LANES] m, targets
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N
+    float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
     float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: nobody asks
     float compliance_all;  ///< m/N, that of every spring; negative where they differ
     void *block;           ///< that the five lie in
@@ -68,5 +72,9 @@ typedef struct StrandJob {
 /// Projects the strands of one group; `keep` has room for STRAND_KEEP floats for each row and lane.
 typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
 StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4;
+
+/// Limits the curvature along the strands of one group (curvature_kernel.h).
+typedef void StrandBend(const StrandSet *set, float *position, uint32_t group);
+StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4;
 
 #endif

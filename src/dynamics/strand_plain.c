@@ -58,5 +58,7 @@ static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
 
 #define ATTACH_HOLD attach_hold_plain
 #define STRAND_SOLVE strand_solve_plain
+#define STRAND_BEND strand_bend_plain
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"
+#include "dynamics/curvature_kernel.h"

@@ -73,5 +73,6 @@ void strand_set_free(Memory *memory, StrandSet *set) {
     FREE(memory, set->strand_slot, set->strand_count);
     memory_free(memory, &set->block, set_words(set), sizeof(float));
     FREE(memory, set->pull, (size_t)set->row_count * STRAND_LANES);
+    FREE(memory, set->bend_limit, (size_t)set->row_count * STRAND_LANES);
     *set = (StrandSet){0};
 }

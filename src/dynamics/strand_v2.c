@@ -75,6 +75,8 @@ static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
 
 #define ATTACH_HOLD attach_hold_v2
 #define STRAND_SOLVE strand_solve_v2
+#define STRAND_BEND strand_bend_v2
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"
+#include "dynamics/curvature_kernel.h"
 #endif

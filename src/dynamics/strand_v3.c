@@ -82,7 +82,10 @@ static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
 
 #define ATTACH_HOLD attach_hold_v3
 #define STRAND_SOLVE strand_solve_v3
+#define STRAND_BEND strand_bend_v3
 #define STRAND_NARROWER strand_solve_v2
+#define BEND_NARROWER strand_bend_v2
 #include "dynamics/attach_kernel.h"
 #include "dynamics/strand_kernel.h"
+#include "dynamics/curvature_kernel.h"
 #endif

@@ -77,6 +77,7 @@ static const ParamRule param_rules[] = {
     {FIELD(char_strength), PARAM_CHAR_STRENGTH, AT_BOTH, POSITIVE},
     {FIELD(pre_exponential), PARAM_PRE_EXPONENTIAL, AT_BOTH, NOT_NEGATIVE},
     {FIELD(activation_energy), PARAM_ACTIVATION_ENERGY, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(curvature_max), PARAM_CURVATURE_MAX, AT_VERTICES, NOT_NEGATIVE},
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 

@@ -52,6 +52,7 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_CHAR_STRENGTH] = &matter->char_strength,
         [PARAM_PRE_EXPONENTIAL] = &matter->pre_exponential,
         [PARAM_ACTIVATION_ENERGY] = &matter->activation_energy,
+        [PARAM_CURVATURE_MAX] = &matter->curvature_max,
     };
     return fields[param];
 }

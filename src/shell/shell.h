@@ -72,6 +72,7 @@ typedef struct Matter {
     Field damping;             ///< 1/s
     Field crease_radius;       ///< m
     Field crease_share;
+    Field curvature_max;       ///< 1/m, 0: none
     Field temperature;         ///< K, initial
     uint16_t *sheet;
 } Matter;
@@ -124,6 +125,7 @@ typedef enum ShellParam {
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
     PARAM_CREASE_RADIUS, PARAM_CREASE_SHARE,
     PARAM_STRENGTH, PARAM_CHAR_STRENGTH, PARAM_PRE_EXPONENTIAL, PARAM_ACTIVATION_ENERGY,
+    PARAM_CURVATURE_MAX,
     PARAM_WEIGHT, // four, by colour
     PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
     PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT

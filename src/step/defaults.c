@@ -47,6 +47,7 @@ static SingeMaterialDef standard_material(void) {
         .char_strength = singe_param(0.3f),
         .pre_exponential = singe_param(0), // eq 4
         .activation_energy = singe_param(0),
+        .curvature_max = singe_param(0),
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);

@@ -78,7 +78,7 @@ static void disturb(Bench *bench) {
         float *x = bench->state.dynamics.position[i];
         for (uint32_t k = 0; k < 3; k++) x[k] += 0.008f * (random_unit(random_hash(i, k, 7, 1)) - 0.5f);
         if (i % 37 == 36) memcpy(x, bench->state.dynamics.position[i - 1], 3 * sizeof *x);
-        bench->state.burn.mass[i] = 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
+        bench->state.burn.mass[i] = i % 64 < 40 ? 1 : 0.3f + 0.7f * random_unit(random_hash(i, 9, 9, 2));
         bench->state.dynamics.pinned[i] = i % 11 == 3;
     }
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
@@ -92,10 +92,12 @@ static void project(Bench *bench, SingeInstructions instructions, Pool *pool, co
     DynamicsCounters counters = {0};
     float *position = bench->state.dynamics.position[0];
     memcpy(position, start, bytes);
-    bench->plan->strands.solve = kernels_choose(instructions)->solve;
+    bench->plan->kernels = kernels_choose(instructions);
+    bench->plan->strands.solve = bench->plan->kernels->solve;
     for (int i = 0; i < 3 * SINGE_COLOUR_COUNT; i++) {
         SingeColour colour = (SingeColour)(i % SINGE_COLOUR_COUNT);
         strand_project(bench->plan, colour, pool, 1e-3f, &bench->state.dynamics, &counters);
+        curvature_project(bench->plan, pool, &bench->state.dynamics);
     }
     memcpy(result, position, bytes);
 }
@@ -113,7 +115,9 @@ static void read_compliances(Bench *bench, bool vary) {
 /// Every kernel against the plain one. What compliances do is the same however they are read.
 static void compare_kernels(Quads quads, bool vary) {
     Bench bench;
-    bench_open(&bench, quads, NULL, 2);
+    SingeMaterialDef material = singe_default_material();
+    material.curvature_max = singe_param(vary ? 100 : 0);
+    bench_open(&bench, quads, &material, 2);
     disturb(&bench);
     if (vary) read_compliances(&bench, true);
     size_t bytes = (bench.shell.particle_count + 1) * 4 * sizeof(float);

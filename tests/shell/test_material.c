@@ -50,6 +50,7 @@ static const struct {
     {AT(char_strength), PARAM_CHAR_STRENGTH, BOTH, ABOVE_0},
     {AT(pre_exponential), PARAM_PRE_EXPONENTIAL, BOTH, FROM_0},
     {AT(activation_energy), PARAM_ACTIVATION_ENERGY, BOTH, FROM_0},
+    {AT(curvature_max), PARAM_CURVATURE_MAX, CORNERS, FROM_0},
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
 

@@ -1,0 +1,88 @@
+// The limit of curvature. A mesh of two layers resists a bend at an edge by the moment of its green spring, which grows
+// up to an angle of about atan(2 t/s) and falls beyond: a sheet that is bent sharper gives way at one row of edges and
+// spares their neighbours, so that folds run along rows. Where a sheet has not burnt, three vertices a, b, c in a row
+// of a blue or yellow strand, their springs l long in the mean, therefore keep to
+//
+//   |r| <= B,   r = x_a - 2 x_b + x_c,   B^2 = |r_0|^2 + (2 l sin(min(kappa l, 2.8)/2))^2
+//
+// with r_0 what it is at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
+// to the next. Once a substep what exceeds that is reduced by BEND_GAIN of the excess, with momentum kept:
+//
+//   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
+//
+// Families of strands follow each other; strands of a family share no particle.
+#include "dynamics/plan.h"
+
+#include <math.h>
+
+/// Mass fraction above which a vertex counts as unburnt. Char is weak, and folds as it likes.
+static const float BEND_FRESH = 0.98f;
+
+bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
+    const Field limit = shell->matter.curvature_max;
+    bool limited = false;
+    for (uint32_t v = 0; v < shell->vertex_count && !limited; v++) limited = field_at(limit, v) > 0;
+    if (!limited) return true;
+    for (int i = 0; i < 2; i++) {
+        StrandSet *set = &strands->sets[i ? SINGE_YELLOW : SINGE_BLUE];
+        size_t slots = (size_t)set->row_count * STRAND_LANES;
+        if (!NEW(memory, set->bend_limit, slots)) return false;
+        for (size_t slot = 0; slot < slots; slot++) set->bend_limit[slot] = INFINITY;
+    }
+    return true;
+}
+
+/// B above, of the vertex between two springs.
+static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, float length) {
+    const float(*x)[4] = (const float(*)[4])shell->rest_position;
+    const float curvature = field_at(shell->matter.curvature_max, b);
+    if (!(curvature > 0)) return INFINITY;
+    Vec rest = vec_sub(vec_sub(vec_load(x[c]), vec_load(x[b])), vec_sub(vec_load(x[b]), vec_load(x[a])));
+    float turned = 2 * length * sinf(0.5f * fminf(curvature * length, 2.8f));
+    return sqrtf(vec_dot(rest, rest) + turned * turned);
+}
+
+void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set) {
+    const SpringSet *springs = &shell->springs[colour];
+    const float *mass = state->burn.mass, *length = state->burn.spring_length[colour];
+    const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
+    size_t slot = set->strand_slot[strand];
+    for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
+        const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];
+        uint32_t before = k - 1;
+        size_t slot_before = slot - STRAND_LANES;
+        if (k == first) { // a ring's first vertex lies behind its last spring
+            before = end - 1, slot_before = slot + (size_t)(end - 1 - first) * STRAND_LANES;
+            if (springs->ends[before][1] != b || end - first < 3) continue;
+        }
+        const uint32_t a = springs->ends[before][0];
+        bool fresh = mass[a] > BEND_FRESH && mass[b] > BEND_FRESH && mass[c] > BEND_FRESH;
+        bool whole = set->weight[slot] > 0 && set->weight[slot_before] > 0; // neither burnt nor torn
+        set->bend_limit[slot] =
+            fresh && whole ? bend_limit(shell, a, b, c, 0.5f * (length[before] + length[k])) : INFINITY;
+    }
+}
+
+typedef struct Curvature {
+    const StrandSet *set;
+    StrandBend *bend;
+    float *position;
+    uint32_t first_group;
+} Curvature;
+
+static void curvature_range(void *task, int begin, int end) {
+    const Curvature *job = task;
+    for (int i = begin; i < end; i++) job->bend(job->set, job->position, job->first_group + (uint32_t)i);
+}
+
+void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics) {
+    static const SingeColour colours[] = {SINGE_BLUE, SINGE_YELLOW};
+    for (int i = 0; i < 2; i++) {
+        const StrandSet *set = &plan->strands.sets[colours[i]];
+        Curvature job = {set, plan->kernels->bend, dynamics->position[0], 0};
+        for (uint32_t f = 0; set->bend_limit && f < set->family_count; f++) {
+            job.first_group = set->family_first[f];
+            pool_for(pool, (int)(set->family_first[f + 1] - job.first_group), 1, curvature_range, &job);
+        }
+    }
+}

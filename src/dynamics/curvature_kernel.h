@@ -1,0 +1,63 @@
+// The limit of curvature along the strands of one group, a strand a lane: see curvature.c. Included behind
+// strand_kernel.h, whose groups and operations it has.
+
+/// Three nodes in a row.
+typedef struct Bend {
+    Quads a, b, c;
+} Bend;
+
+/// Straightens what is bent too sharply by its share of the way; false where no lane is.
+static inline bool bend_straighten(Bend *bend, Lanes most) {
+    Node a = quads_node(&bend->a), b = quads_node(&bend->b), c = quads_node(&bend->c);
+    Lanes two = lanes_all(2), x = a.x - two * b.x + c.x, y = a.y - two * b.y + c.y, z = a.z - two * b.z + c.z;
+    Lanes square = x * x + y * y + z * z, limit = most * most, zero = lanes_all(0);
+    if (__builtin_expect(!lanes_any_less(limit, square), 1)) return false;
+
+    Lanes weight = lanes_max(a.w + lanes_all(4) * b.w + c.w, lanes_all(1e-20f));
+    Lanes factor = (lanes_all(1) - most / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
+    factor = lanes_where_less(limit, square, factor, zero);
+    // r = (c - b) - (b - a): a and c move by -w r factor, b by 2 w r factor
+    Quads after = quads_push(&bend->b, &bend->c, factor), before = quads_push(&bend->a, &bend->b, factor);
+    quads_move(&bend->a, &before, &after);
+    quads_move(&bend->b, &after, &before);
+    quads_move(&bend->b, &after, &before);
+    quads_move(&bend->c, &before, &after);
+    return true;
+}
+
+static inline void group_straighten(const Group *group, const float *limit, bool ring) {
+    Bend bend = {.b = group_quads(group, 0), .c = group_quads(group, 1)};
+    for (uint32_t k = 1; k < group->rows; k++) {
+        bend.a = bend.b, bend.b = bend.c, bend.c = group_quads(group, k + 1);
+        if (!bend_straighten(&bend, lanes_load(limit + (size_t)k * STRAND_LANES))) continue;
+        group_put(group, k - 1, &bend.a);
+        group_put(group, k, &bend.b);
+        group_put(group, k + 1, &bend.c);
+    }
+    if (!ring) return;
+    bend = (Bend){group_quads(group, group->rows - 1), group_quads(group, 0), group_quads(group, 1)};
+    if (!bend_straighten(&bend, lanes_load(limit))) return;
+    group_put(group, group->rows - 1, &bend.a);
+    group_put(group, 0, &bend.b);
+    group_put(group, 1, &bend.c);
+}
+
+void STRAND_BEND(const StrandSet *set, float *position, uint32_t index) {
+    const StrandGroup *part = &set->groups[index];
+#ifdef BEND_NARROWER
+    if (part->width < LANES) {
+        BEND_NARROWER(set, position, index);
+        return;
+    }
+#endif
+    for (uint32_t lane = 0; lane < part->width; lane += LANES) {
+        size_t slot = (size_t)part->row * STRAND_LANES + lane;
+        Group group = {.position = position,
+                       .node = set->node + slot,
+                       .beside = set->beside + part->row,
+                       .rows = part->rows,
+                       .stride = part->width,
+                       .first_beside = position + 4 * strand_column(part->width, lane)};
+        group_straighten(&group, set->bend_limit + slot, part->ring);
+    }
+}

@@ -1,0 +1,213 @@
+// The limit of curvature: what is bent too sharply, and what is not touched.
+#include "sheets.h"
+
+#include "dynamics/plan.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { NX = 24, NY = 6 };
+static const float cell = 2e-3f, curvature = 350; // about 40 degrees a cell
+
+static void open_sheet(Bench *bench, Quads quads, float limit) {
+    SingeMaterialDef material = singe_default_material();
+    material.curvature_max = singe_param(limit);
+    bench_open(bench, quads, &material, 2);
+}
+
+/// Folds a grid along its middle column: `angle` in rad within one row of edges, or spread over an arc of `turns` cells.
+static void fold(Bench *bench, float angle, int turns) {
+    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
+        uint32_t i = v % (NX + 1);
+        float x = 0, z = 0, heading = 0;
+        for (uint32_t k = 0; k < i; k++) {
+            int into = (int)k - (NX - turns) / 2;
+            if (into >= 0 && into < turns) heading += angle / (float)turns;
+            x += cell * cosf(heading), z += cell * sinf(heading);
+        }
+        float *p = bench->state.dynamics.position[v];
+        p[0] = x, p[2] = z;
+    }
+}
+
+static void prepare(Bench *bench) {
+    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, NULL, &bench->state.dynamics);
+}
+
+/// The largest |r| of three vertices in a row along x, over what an arc of the limit has.
+static double sharpest(const Bench *bench) {
+    double most = 0;
+    for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
+        if (v % (NX + 1) == 0 || v % (NX + 1) == NX) continue;
+        const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
+        Vec a = vec_sub(vec_load(x[v]), vec_load(x[v - 1])), b = vec_sub(vec_load(x[v + 1]), vec_load(x[v]));
+        most = fmax(most, (double)vec_length(vec_sub(b, a)));
+    }
+    return most / (double)(2 * cell * sinf(0.5f * curvature * cell));
+}
+
+/// kg m and kg m2: sums of m x and of m x cross x_0, which no force between particles changes.
+static void momenta(const Bench *bench, const float (*start)[4], double *sums) {
+    memset(sums, 0, 6 * sizeof *sums);
+    for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
+        const float *x = bench->state.dynamics.position[i];
+        double m = (double)bench->shell.matter.mass[i], d[3];
+        for (int k = 0; k < 3; k++) d[k] = (double)x[k] - (double)start[i][k];
+        for (int k = 0; k < 3; k++) {
+            int a = (k + 1) % 3, b = (k + 2) % 3;
+            sums[k] += m * d[k];
+            sums[3 + k] += m * ((double)start[i][a] * d[b] - (double)start[i][b] * d[a]);
+        }
+    }
+}
+
+static float (*copy_positions(const Bench *bench))[4] {
+    size_t bytes = (bench->shell.particle_count + 1) * sizeof *bench->state.dynamics.position;
+    float(*copy)[4] = malloc(bytes);
+    memcpy(copy, bench->state.dynamics.position, bytes);
+    return copy;
+}
+
+static bool is_touched(Bench *bench) {
+    prepare(bench);
+    float(*before)[4] = copy_positions(bench);
+    curvature_project(bench->plan, bench->pool, &bench->state.dynamics);
+    bool touched = memcmp(before, bench->state.dynamics.position,
+                          bench->shell.particle_count * sizeof *before) != 0;
+    free(before);
+    return touched;
+}
+
+static void sharp_folds_are_rounded(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    fold(&bench, 2, 1);
+    prepare(&bench);
+    assert_true(sharpest(&bench) > 2);
+    for (int i = 0; i < 400; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
+    assert_true(sharpest(&bench) < 1.02);
+    bench_close(&bench);
+}
+
+static void momenta_are_kept(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    fold(&bench, 2, 1);
+    prepare(&bench);
+    float(*start)[4] = copy_positions(&bench);
+    curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
+    double sums[6], moved = 0;
+    momenta(&bench, (const float(*)[4])start, sums);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++)
+        for (int k = 0; k < 3; k++)
+            moved += (double)bench.shell.matter.mass[i] *
+                     fabs((double)bench.state.dynamics.position[i][k] - (double)start[i][k]);
+    assert_true(moved > 0);
+    for (int k = 0; k < 3; k++) assert_true(fabs(sums[k]) < 1e-4 * moved);
+    for (int k = 3; k < 6; k++) assert_true(fabs(sums[k]) < 1e-4 * moved * NX * (double)cell + 1e-12);
+    free(start);
+    bench_close(&bench);
+}
+
+static void gentle_bends_are_not_touched(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    fold(&bench, 0.9f * curvature * cell * 8, 8);
+    assert_false(is_touched(&bench));
+    fold(&bench, 1.2f * curvature * cell * 8, 8);
+    assert_true(is_touched(&bench));
+    bench_close(&bench);
+}
+
+static void without_a_limit_nothing_is_touched(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 0);
+    fold(&bench, 2.5f, 1);
+    assert_false(is_touched(&bench));
+    bench_close(&bench);
+}
+
+static void char_folds_as_it_likes(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    fold(&bench, 2, 1);
+    for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.burn.mass[i] = 0.9f;
+    assert_false(is_touched(&bench));
+    bench_close(&bench);
+}
+
+static void what_is_gone_does_not_bend(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), curvature);
+    fold(&bench, 2, 1);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        memset(bench.state.ablate.spring_flags[colour], 0, bench.shell.springs[colour].count);
+    assert_false(is_touched(&bench));
+    bench_close(&bench);
+}
+
+/// A tube that is rounder at rest than the limit, and a flat sheet whose vertices lie off their rows.
+static void rest_shapes_are_kept(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(8, NY, cell, cell, true), 100);
+    assert_false(is_touched(&bench));
+    bench_close(&bench);
+
+    Quads quads = quads_grid(NX, NY, cell, cell, false);
+    for (uint32_t v = 0; v < quads.vertex_count; v++) {
+        quads.positions[3 * v] += 0.3f * cell * sinf(7.0f * (float)v);
+        quads.positions[3 * v + 1] += 0.3f * cell * sinf(13.0f * (float)v);
+    }
+    open_sheet(&bench, quads, 10);
+    assert_false(is_touched(&bench));
+    bench_close(&bench);
+}
+
+/// Around a tube that is pressed flat there are folds at every ring's first vertex or elsewhere: all are rounded.
+static void rings_are_limited_all_around(void **unused) {
+    (void)unused;
+    Bench bench;
+    open_sheet(&bench, quads_grid(32, 2, cell, cell, true), curvature);
+    for (uint32_t turn = 0; turn < 32; turn++) {
+        for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
+            uint32_t i = (v + turn) % 32; // two flat sides, and folds where i is 0 and 16
+            float *p = bench.state.dynamics.position[v];
+            p[0] = cell * (float)(i < 16 ? i : 32 - i), p[2] = 0;
+        }
+        prepare(&bench);
+        for (int i = 0; i < 300; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
+        for (uint32_t v = 0; v < 32; v++) {
+            const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
+            Vec r = vec_add(vec_sub(vec_load(x[(v + 31) % 32]), vec_scale(vec_load(x[v]), 2)),
+                            vec_load(x[(v + 1) % 32]));
+            assert_true(vec_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
+        }
+    }
+    bench_close(&bench);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sharp_folds_are_rounded),
+        cmocka_unit_test(momenta_are_kept),
+        cmocka_unit_test(gentle_bends_are_not_touched),
+        cmocka_unit_test(without_a_limit_nothing_is_touched),
+        cmocka_unit_test(char_folds_as_it_likes),
+        cmocka_unit_test(what_is_gone_does_not_bend),
+        cmocka_unit_test(rest_shapes_are_kept),
+        cmocka_unit_test(rings_are_limited_all_around),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
