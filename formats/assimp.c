@@ -1,209 +1,251 @@
-// Meshes by assimp's C interface: glTF, GLB, STL, FBX, COLLADA and more. Nothing is triangulated, smoothed or joined
-// there: mesh_make does that by position. All meshes of all nodes are taken with their transforms, in the order of a
-// walk over the nodes. What a file refers to beside itself (a glTF's buffers) is read from its folder.
+// Meshes by assimp's C interface: glTF, GLB, FBX, COLLADA, 3DS and X3D. It is much code that was not written for
+// hostile files, so it runs in a child process, which puts polygons as mesh_answer.h has them. Nothing is triangulated,
+// smoothed or joined there: mesh_make does that by position. All meshes of all nodes are taken with their transforms,
+// in the order of a walk over the nodes.
+#include "assimp_files.h"
+#include "isolate.h"
 #include "mesh.h"
+#include "mesh_answer.h"
 #include "support.h"
 
-#include <assimp/cfileio.h>
 #include <assimp/cimport.h>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <math.h>
-#include <stdlib.h>
+#include <errno.h>
 #include <string.h>
+
+enum { DEPTH_LIMIT = 1000 }; ///< of nodes in nodes
 
 bool assimp_available(void) { return true; }
 
-// ---- files in memory
+// ---- a walk over the meshes of all nodes
 
-typedef struct Source {
+typedef struct Walk Walk;
+typedef SingeResult Visit(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at);
+
+struct Walk {
+    const struct aiScene *scene;
     const char *name;
-    const uint8_t *bytes;
-    size_t size;
-} Source;
+    SingeError *error;
+    Visit *visit;
+    MeshCounts counts;  ///< so far
+    uint64_t most;      ///< bytes of the answer
+    int depth;
+    IsolateAnswer *answer;
+    size_t held;        ///< bytes of `buffer` in use
+    uint8_t buffer[1 << 16];
+};
 
-typedef struct Opened {
-    const uint8_t *bytes;
-    size_t size, at;
-    Bytes own; ///< of a file beside the first
-} Opened;
-
-static size_t opened_read(struct aiFile *file, char *to, size_t size, size_t count) {
-    Opened *opened = (void *)file->UserData;
-    if (!size) return 0;
-    size_t most = (opened->size - opened->at) / size;
-    if (count > most) count = most;
-    if (count) memcpy(to, opened->bytes + opened->at, size * count);
-    opened->at += size * count;
-    return count;
-}
-
-static size_t opened_write(struct aiFile *file, const char *from, size_t size, size_t count) {
-    (void)file, (void)from, (void)size, (void)count;
-    return 0;
-}
-
-static size_t opened_tell(struct aiFile *file) { return ((Opened *)(void *)file->UserData)->at; }
-static size_t opened_size(struct aiFile *file) { return ((Opened *)(void *)file->UserData)->size; }
-static void opened_flush(struct aiFile *file) { (void)file; }
-
-static enum aiReturn opened_seek(struct aiFile *file, size_t offset, enum aiOrigin origin) {
-    Opened *opened = (void *)file->UserData;
-    size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? opened->at : opened->size;
-    size_t to = from + offset; // wraps where it goes back
-    if (to > opened->size) return aiReturn_FAILURE;
-    opened->at = to;
-    return aiReturn_SUCCESS;
-}
-
-static struct aiFile *source_open(struct aiFileIO *io, const char *name, const char *mode) {
-    const Source *source = (void *)io->UserData;
-    if (!mode || strchr(mode, 'w')) return NULL;
-    struct aiFile *file = calloc(1, sizeof *file);
-    Opened *opened = calloc(1, sizeof *opened);
-    bool good = file && opened;
-    if (good && strcmp(name, source->name) == 0) opened->bytes = source->bytes, opened->size = source->size;
-    else if (good && !file_read(name, (SingeAllocator){0}, &opened->own, NULL))
-        opened->bytes = opened->own.data, opened->size = opened->own.size;
-    else good = false;
-    if (!good) {
-        free(file);
-        free(opened);
-        return NULL;
-    }
-    *file = (struct aiFile){opened_read, opened_write, opened_tell, opened_size, opened_seek, opened_flush,
-                            (void *)opened};
-    return file;
-}
-
-static void source_close(struct aiFileIO *io, struct aiFile *file) {
-    (void)io;
-    Opened *opened = (void *)file->UserData;
-    bytes_free(&opened->own);
-    free(opened);
-    free(file);
-}
-
-// ---- from its scene to polygons
-
-typedef struct Counts {
-    uint64_t vertices, faces, corners, skipped;
-    bool uv;
-} Counts;
-
-static void count_node(const struct aiScene *scene, const struct aiNode *node, Counts *counts) {
+static SingeResult walk_node(Walk *walk, const struct aiNode *node, struct aiMatrix4x4 parent) {
+    const struct aiScene *scene = walk->scene;
+    if (++walk->depth > DEPTH_LIMIT)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: more than %d nodes in each other",
+                      short_name(walk->name), DEPTH_LIMIT);
+    aiMultiplyMatrix4(&parent, &node->mTransformation);
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
-        const struct aiMesh *mesh = scene->mMeshes[node->mMeshes[i]];
-        counts->vertices += mesh->mNumVertices;
-        for (unsigned f = 0; f < mesh->mNumFaces; f++) {
-            unsigned corners = mesh->mFaces[f].mNumIndices;
-            if (corners < 3) counts->skipped++; // points and lines carry nothing that burns
-            else counts->faces++, counts->corners += corners;
-        }
-        counts->uv = counts->uv || mesh->mTextureCoords[0];
+        if (node->mMeshes[i] >= scene->mNumMeshes)
+            return refuse(walk->error, SINGE_ERROR_MESH, "mesh", -1, "%s: a node uses mesh %u of %u",
+                          short_name(walk->name), node->mMeshes[i], scene->mNumMeshes);
+        TRY(walk->visit(walk, scene->mMeshes[node->mMeshes[i]], &parent));
     }
-    for (unsigned i = 0; i < node->mNumChildren; i++) count_node(scene, node->mChildren[i], counts);
+    for (unsigned i = 0; i < node->mNumChildren; i++) TRY(walk_node(walk, node->mChildren[i], parent));
+    walk->depth--;
+    return SINGE_OK;
 }
 
-static struct aiVector3D moved(const struct aiMatrix4x4 *m, struct aiVector3D p) {
-    return (struct aiVector3D){m->a1 * p.x + m->a2 * p.y + m->a3 * p.z + m->a4,
-                               m->b1 * p.x + m->b2 * p.y + m->b3 * p.z + m->b4,
-                               m->c1 * p.x + m->c2 * p.y + m->c3 * p.z + m->c4};
+static SingeResult walk_scene(Walk *walk, Visit *visit) {
+    struct aiMatrix4x4 unit;
+    aiIdentityMatrix4(&unit);
+    walk->visit = visit, walk->depth = 0;
+    return walk_node(walk, walk->scene->mRootNode, unit);
 }
 
-/// False where an index is out of range.
-static bool take_mesh(const struct aiMesh *mesh, const struct aiMatrix4x4 *at, Polygons *out) {
-    const uint32_t base = out->vertex_count;
-    const float turn = (at->a1 * (at->b2 * at->c3 - at->b3 * at->c2) - at->a2 * (at->b1 * at->c3 - at->b3 * at->c1) +
-                        at->a3 * (at->b1 * at->c2 - at->b2 * at->c1));
+// ---- what is put, each by a walk of its own
+
+static void put(Walk *walk, const void *bytes, size_t size) {
+    if (walk->held + size > sizeof walk->buffer) {
+        isolate_put(walk->answer, walk->buffer, walk->held);
+        walk->held = 0;
+    }
+    memcpy(walk->buffer + walk->held, bytes, size);
+    walk->held += size;
+}
+
+/// The number of a mesh in its file.
+static unsigned mesh_number(const Walk *walk, const struct aiMesh *mesh) {
+    unsigned i = 0;
+    while (i < walk->scene->mNumMeshes && walk->scene->mMeshes[i] != mesh) i++;
+    return i;
+}
+
+static SingeResult check_face(Walk *walk, const struct aiMesh *mesh, unsigned f) {
+    const struct aiFace *face = &mesh->mFaces[f];
+    for (unsigned i = 0; i < face->mNumIndices; i++)
+        if (face->mIndices[i] >= mesh->mNumVertices)
+            return refuse(walk->error, SINGE_ERROR_MESH, "mesh", f,
+                          "%s: mesh %u, face %u (from 0): vertex index %u is out of range: the mesh has %u vertices",
+                          short_name(walk->name), mesh_number(walk, mesh), f, face->mIndices[i], mesh->mNumVertices);
+    return SINGE_OK;
+}
+
+static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    (void)at;
+    MeshCounts *counts = &walk->counts;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        unsigned corners = mesh->mFaces[f].mNumIndices;
+        TRY(check_face(walk, mesh, f));
+        if (corners < 3) continue; // points and lines carry nothing that burns
+        counts->faces++, counts->corners += corners;
+    }
+    counts->vertices += mesh->mNumVertices;
+    counts->uv = counts->uv || mesh->mTextureCoords[0];
+    if (12 * counts->vertices + 12 * counts->corners > walk->most)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
+                      "%s: too large: its nodes use meshes over and over, and come to more than %llu MB",
+                      short_name(walk->name), (unsigned long long)walk->most / 1000000);
+    return SINGE_OK;
+}
+
+static SingeResult put_positions(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *m) {
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
-        struct aiVector3D p = moved(at, mesh->mVertices[v]);
-        float *position = out->positions + 3 * (size_t)out->vertex_count++;
-        position[0] = p.x, position[1] = p.y, position[2] = p.z;
+        struct aiVector3D p = mesh->mVertices[v];
+        float moved[3] = {m->a1 * p.x + m->a2 * p.y + m->a3 * p.z + m->a4,
+                          m->b1 * p.x + m->b2 * p.y + m->b3 * p.z + m->b4,
+                          m->c1 * p.x + m->c2 * p.y + m->c3 * p.z + m->c4};
+        put(walk, moved, sizeof moved);
     }
+    return SINGE_OK;
+}
+
+static SingeResult put_sizes(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    (void)at;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++)
+        if (mesh->mFaces[f].mNumIndices >= 3) put(walk, &mesh->mFaces[f].mNumIndices, 4);
+    return SINGE_OK;
+}
+
+/// The i-th corner of a face: a mirror turns faces over.
+static unsigned corner(const struct aiFace *face, const struct aiMatrix4x4 *at, unsigned i) {
+    float turn = (at->a1 * (at->b2 * at->c3 - at->b3 * at->c2) - at->a2 * (at->b1 * at->c3 - at->b3 * at->c1) +
+                  at->a3 * (at->b1 * at->c2 - at->b2 * at->c1));
+    return face->mIndices[turn < 0 ? face->mNumIndices - 1 - i : i];
+}
+
+static SingeResult put_corners(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         const struct aiFace *face = &mesh->mFaces[f];
-        if (face->mNumIndices < 3) continue;
-        for (unsigned i = 0; i < face->mNumIndices; i++) {
-            unsigned v = face->mIndices[turn < 0 ? face->mNumIndices - 1 - i : i]; // a mirror turns faces over
-            if (v >= mesh->mNumVertices) return false;
-            if (out->uv) {
-                float *uv = out->uv + 2 * (size_t)out->corner_count;
-                const struct aiVector3D *given = mesh->mTextureCoords[0];
-                uv[0] = given ? given[v].x : 0, uv[1] = given ? given[v].y : 0;
-                if (!isfinite(uv[0]) || !isfinite(uv[1])) uv[0] = uv[1] = 0;
-            }
-            out->corners[out->corner_count++] = base + v;
+        for (unsigned i = 0; face->mNumIndices >= 3 && i < face->mNumIndices; i++) {
+            uint32_t vertex = (uint32_t)walk->counts.vertices + corner(face, at, i);
+            put(walk, &vertex, sizeof vertex);
         }
-        out->first[++out->face_count] = out->corner_count;
     }
-    return true;
-}
-
-static bool take_node(const struct aiScene *scene, const struct aiNode *node, struct aiMatrix4x4 parent,
-                      Polygons *out) {
-    aiMultiplyMatrix4(&parent, &node->mTransformation);
-    for (unsigned i = 0; i < node->mNumMeshes; i++)
-        if (!take_mesh(scene->mMeshes[node->mMeshes[i]], &parent, out)) return false;
-    for (unsigned i = 0; i < node->mNumChildren; i++)
-        if (!take_node(scene, node->mChildren[i], parent, out)) return false;
-    return true;
-}
-
-/// Makes the arrays, which are then filled, their counts rising to what they have room for.
-static SingeResult take_scene(const char *name, const struct aiScene *scene, Polygons *out, SingeError *error) {
-    Counts counts = {0};
-    count_node(scene, scene->mRootNode, &counts);
-    if (counts.faces == 0)
-        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
-    if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
-        return refuse(error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(name));
-    SingeAllocator a = out->allocator;
-    Polygons made = {.allocator = a};
-    made.positions = store_new(a, counts.vertices, 3 * sizeof *made.positions);
-    made.first = store_new(a, counts.faces + 1, sizeof *made.first);
-    made.corners = store_new(a, counts.corners, sizeof *made.corners);
-    if (counts.uv) made.uv = store_new(a, counts.corners, 2 * sizeof *made.uv);
-    *out = made;
-    bool room = made.positions && made.first && made.corners && (!counts.uv || made.uv), good = true;
-    if (room) {
-        struct aiMatrix4x4 unit;
-        aiIdentityMatrix4(&unit);
-        out->first[0] = 0;
-        good = take_node(scene, scene->mRootNode, unit, out);
-    }
-    // as they were made, so that polygons_free knows
-    out->vertex_count = (uint32_t)counts.vertices, out->face_count = (uint32_t)counts.faces;
-    out->corner_count = (uint32_t)counts.corners;
-    if (!room) return refuse_memory(error, "mesh", name);
-    if (!good)
-        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: a face uses a vertex that is not there",
-                      short_name(name));
-    for (size_t i = 0; i < 3 * (size_t)counts.vertices; i++)
-        if (!isfinite(out->positions[i]))
-            return refuse(error, SINGE_ERROR_MESH, "mesh", (int64_t)(i / 3),
-                          "%s: vertex %llu (from 0) has a position that is not finite", short_name(name),
-                          (unsigned long long)(i / 3));
+    walk->counts.vertices += mesh->mNumVertices;
     return SINGE_OK;
+}
+
+static SingeResult put_uv(Walk *walk, const struct aiMesh *mesh, const struct aiMatrix4x4 *at) {
+    const struct aiVector3D *given = mesh->mTextureCoords[0];
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        const struct aiFace *face = &mesh->mFaces[f];
+        for (unsigned i = 0; face->mNumIndices >= 3 && i < face->mNumIndices; i++) {
+            unsigned v = corner(face, at, i);
+            float uv[2] = {given ? given[v].x : 0, given ? given[v].y : 0};
+            put(walk, uv, sizeof uv);
+        }
+    }
+    return SINGE_OK;
+}
+
+static SingeResult put_scene(Walk *walk) {
+    TRY(walk_scene(walk, count_mesh));
+    MeshCounts counts = walk->counts;
+    if (counts.vertices > MESH_COUNT_LIMIT || counts.corners > MESH_COUNT_LIMIT)
+        return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1, "%s: is too large", short_name(walk->name));
+    put(walk, &counts, sizeof counts);
+    TRY(walk_scene(walk, put_positions));
+    TRY(walk_scene(walk, put_sizes));
+    walk->counts.vertices = 0; // so far, again
+    TRY(walk_scene(walk, put_corners));
+    if (counts.uv) TRY(walk_scene(walk, put_uv));
+    isolate_put(walk->answer, walk->buffer, walk->held);
+    return SINGE_OK;
+}
+
+// ---- in the child
+
+/// assimp leaves out or moves some indices that are out of range, and only its log tells.
+static void note_complaint(const char *message, char *bad_index) {
+    if (!strstr(message, "ndex")) return;
+    if (strstr(message, "range") || strstr(message, "overflow") || strstr(message, "nvalid")) *bad_index = 1;
+}
+
+/// assimp's words without what it quotes: the file may not be one that whoever sees the message may read.
+static void unquote(char *to, size_t most, const char *words) {
+    size_t length = 0;
+    bool quoted = false;
+    for (; *words && length + 4 < most; words++) {
+        if (*words == '"' && !quoted) memcpy(to + length, "...", 3), length += 3;
+        if (*words == '"') quoted = !quoted;
+        else if (!quoted && (unsigned char)*words >= ' ') to[length++] = *words;
+    }
+    to[length] = 0;
+}
+
+static SingeResult refuse_import(const Source *source, SingeError *error) {
+    const char *why = aiGetErrorString();
+    char words[160];
+    if (why && strstr(why, "bad_alloc")) errno = ENOMEM; // tells isolate_run
+    unquote(words, sizeof words, why && why[0] ? why : "cannot be read");
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
+                  source->refused ? source->refused : "");
+}
+
+static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeError *error) {
+    char bad_index = 0;
+    Source *source = context;
+    struct aiFileIO files = assimp_files(source);
+    struct aiLogStream log = {note_complaint, &bad_index};
+    aiAttachLogStream(&log);
+    const struct aiScene *scene = aiImportFileEx(source->name, 0, &files);
+    if (!scene || !scene->mRootNode) return refuse_import(source, error);
+    if (bad_index)
+        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
+    Walk walk = {.scene = scene, .name = source->name, .error = error, .answer = answer,
+                 .most = (128u << 20) + 64 * (uint64_t)source->size};
+    return put_scene(&walk);
+}
+
+// ---- in the parent
+
+/// assimp takes a file for what it looks like, whatever its name: of other formats, too.
+static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t size, SingeError *error) {
+    static const struct {
+        const char *ending, *begins;
+    } kinds[] = {{".gltf", "{"},    {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"}, {".fbx", "FBX"},
+                 {".dae", "<"},     {".x3d", "<"},    {".3ds", "MM"}};
+    const uint8_t *at = bytes, *end = bytes + size;
+    if (end - at >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
+    while (at < end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) at++;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        size_t length = strlen(kinds[i].begins);
+        if (mesh_name_ends(name, kinds[i].ending) && (size_t)(end - at) >= length &&
+            memcmp(at, kinds[i].begins, length) == 0)
+            return SINGE_OK;
+    }
+    return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: does not begin as a file of its name's kind does",
+                  short_name(name));
 }
 
 SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                         Polygons *polygons, SingeError *error) {
-    memset(polygons, 0, sizeof *polygons);
-    polygons->allocator = allocator;
+    *polygons = (Polygons){.allocator = allocator};
     if (size == 0) return refuse(error, SINGE_ERROR_FORMAT, "mesh", 0, "%s: is empty", short_name(name));
-    Source source = {name, bytes, size};
-    struct aiFileIO io = {source_open, source_close, (void *)&source};
-    const struct aiScene *scene = aiImportFileEx(name, 0, &io);
-    if (!scene || !scene->mRootNode) {
-        const char *why = aiGetErrorString();
-        return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %.160s", short_name(name),
-                      why && why[0] ? why : "cannot be read");
-    }
-    SingeResult result = take_scene(name, scene, polygons, error);
-    aiReleaseImport(scene);
-    if (result) polygons_free(polygons);
+    TRY(check_kind(name, bytes, size, error));
+    Source source = {.name = name, .bytes = bytes, .size = size};
+    IsolateLimits limits = {(512u << 20) + 32 * size, 10 + 5e-7 * (double)size};
+    Bytes answer;
+    TRY(isolate_run(name, read_in_child, &source, limits, allocator, &answer, error));
+    SingeResult result = mesh_answer_take(name, answer.data, answer.size, allocator, polygons, error);
+    bytes_free(&answer);
     return result;
 }

@@ -10,6 +10,6 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
                         Polygons *polygons, SingeError *error) {
     (void)bytes, (void)size, (void)allocator;
     memset(polygons, 0, sizeof *polygons);
-    return refuse(error, SINGE_ERROR_STATE, "mesh", -1, "%s: this singe was built without assimp; it reads OBJ and PLY",
-                  short_name(name));
+    return refuse(error, SINGE_ERROR_STATE, "mesh", -1,
+                  "%s: this singe was built without assimp; it reads OBJ, PLY, STL and OFF", short_name(name));
 }

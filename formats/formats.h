@@ -35,7 +35,7 @@ typedef struct Polygons {
     uint32_t *first;   ///< [face_count + 1] where a face's corners begin
     uint32_t *corners; ///< [corner_count] vertices
     float *uv;         ///< [2 * corner_count], of each corner, or NULL
-    uint32_t *lines;   ///< [face_count] the file's line of each, from 1 (OBJ), or NULL
+    uint32_t *lines;   ///< [face_count] the file's line of each, from 1 (OBJ, OFF), or NULL
     SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
     SingeAllocator allocator;
 } Polygons;
@@ -49,8 +49,14 @@ SINGE_NODISCARD SingeResult obj_read(const char *name, const uint8_t *bytes, siz
                                      Polygons *polygons, SingeError *error);
 SINGE_NODISCARD SingeResult ply_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                      Polygons *polygons, SingeError *error);
-/// glTF, GLB, STL, FBX, DAE and what else assimp reads, from a file in memory. Vertices are assimp's, faces as in the
-/// file; all of a scene's meshes with their nodes' transforms.
+SINGE_NODISCARD SingeResult off_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Polygons *polygons, SingeError *error);
+SINGE_NODISCARD SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                     Polygons *polygons, SingeError *error);
+/// glTF, GLB, FBX, COLLADA, 3DS and X3D by assimp, from a file in memory. Vertices are assimp's, faces as in the file;
+/// all of a scene's meshes with their nodes' transforms. assimp runs in a child process with limits (isolate.h): what
+/// crashes it, takes 512 MiB and 32 times the file's size of memory, or 10 s and 1 s for each 2 MB, is an error.
+/// Reading opens plain files in the folder of `name` and below, and no others. Call it while there is one thread.
 SINGE_NODISCARD SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                         Polygons *polygons, SingeError *error);
 /// False in a program built without assimp, where assimp_read fails.

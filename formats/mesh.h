@@ -7,6 +7,9 @@
 /// The largest number of vertices, faces or corners: they are numbered by int32_t.
 enum { MESH_COUNT_LIMIT = 0x7fffffff };
 
+/// Whether a file's name has this ending (".obj"), in capitals or not.
+bool mesh_name_ends(const char *name, const char *ending);
+
 /// Frees the names and the values, [count] each, and the array.
 void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count);
 

@@ -13,17 +13,17 @@ static const struct {
 } mesh_formats[] = {
     {".obj", obj_read},
     {".ply", ply_read},
+    {".stl", stl_read},
+    {".off", off_read},
     {".gltf", assimp_read},
     {".glb", assimp_read},
-    {".stl", assimp_read},
-    {".off", assimp_read},
     {".fbx", assimp_read},
     {".dae", assimp_read},
     {".3ds", assimp_read},
     {".x3d", assimp_read},
 };
 
-static bool ends_with(const char *name, const char *ending) {
+bool mesh_name_ends(const char *name, const char *ending) {
     size_t length = strlen(name), tail = strlen(ending);
     if (length < tail) return false;
     for (size_t i = 0; i < tail; i++) {
@@ -38,7 +38,7 @@ SingeResult polygons_read(const char *name, const uint8_t *bytes, size_t size, S
     memset(polygons, 0, sizeof *polygons);
     enum { FORMATS = sizeof mesh_formats / sizeof *mesh_formats };
     for (size_t i = 0; i < FORMATS; i++)
-        if (ends_with(name, mesh_formats[i].ending))
+        if (mesh_name_ends(name, mesh_formats[i].ending))
             return mesh_formats[i].read(name, bytes, size, allocator, polygons, error);
     char known[96] = "";
     for (size_t i = 0; i < FORMATS; i++) {

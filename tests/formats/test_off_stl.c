@@ -1,0 +1,253 @@
+// OFF and STL: what is read, and what is refused with its line or byte.
+#include "support.h"
+
+#include <math.h>
+
+/// A copy without anything behind it, so that a sanitizer sees a read behind the end.
+static SingeResult parse_bytes(const char *name, const void *text, size_t size, Polygons *mesh, SingeError *error) {
+    memset(error, 0, sizeof *error);
+    uint8_t *bytes = malloc(size ? size : 1);
+    memcpy(bytes, text, size);
+    SingeResult result = polygons_read(name, bytes, size, (SingeAllocator){0}, mesh, error);
+    free(bytes);
+    return result;
+}
+
+static void expect_mesh(const char *name, const char *text, const float *positions, uint32_t vertices,
+                        const uint32_t *corners, uint32_t corner_count, uint32_t faces) {
+    Polygons mesh;
+    SingeError error;
+    if (parse_bytes(name, text, strlen(text), &mesh, &error)) fail_msg("%s", error.message);
+    assert_int_equal(mesh.vertex_count, vertices);
+    assert_int_equal(mesh.corner_count, corner_count);
+    assert_int_equal(mesh.face_count, faces);
+    assert_memory_equal(mesh.positions, positions, 12 * vertices);
+    assert_memory_equal(mesh.corners, corners, 4 * corner_count);
+    assert_int_equal(mesh.first[0], 0);
+    assert_int_equal(mesh.first[faces], corner_count);
+    polygons_free(&mesh);
+}
+
+static void expect_error(const char *name, const char *text, size_t size, SingeResult code, int64_t element,
+                         const char *part) {
+    Polygons mesh;
+    SingeError error;
+    SingeResult result = parse_bytes(name, text, size, &mesh, &error);
+    if (result != code) fail_msg("result %d, not %d, for %s (%s)", result, code, text, error.message);
+    if (error.element != element) fail_msg("%d, not %d: %s", (int)error.element, (int)element, error.message);
+    assert_message(&error, part);
+    assert_message(&error, name);
+    assert_null(mesh.positions);
+    assert_null(mesh.corners);
+}
+
+// ---- OFF
+
+#define POINTS "0 0 0\n1 0 0\n1 1 0\n0 1 .5\n"
+
+static void off_is_read(void **state) {
+    (void)state;
+    static const float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, .5f};
+    static const uint32_t corners[] = {0, 1, 2, 3, 0, 2, 3};
+    static const char *const texts[] = {
+        "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n",
+        "OFF 4 2\n" POINTS "4 0 1 2 3\n3 0 2 3",
+        "# a comment\n\nOFF # here\n\n 4 2 5 # there\r\n" POINTS "\n# between\n4 0 1 2 3 .5 .5 .5\r\n3  0\t2 3 17\n# end",
+        "COFF\n4 2 0\n0 0 0 255 0 0 255\n1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n0 1 .5 1 2 3 4\n4 0 1 2 3\n3 0 2 3\n",
+        "STCNOFF\r4 2 0\r0 0 0 a\r1 0 0 b\r1 1 0 c\r0 1 .5 d\r4 0 1 2 3\r3 0 2 3\r",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) expect_mesh("a.off", texts[i], positions, 4, corners, 7, 2);
+}
+
+static void off_faces_have_lines(void **state) {
+    (void)state;
+    Polygons mesh;
+    SingeError error;
+    static const char text[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n\n3 0 2 3\n";
+    assert_int_equal(parse_bytes("a.off", text, sizeof text - 1, &mesh, &error), SINGE_OK);
+    assert_int_equal(mesh.lines[0], 7);
+    assert_int_equal(mesh.lines[1], 9);
+    polygons_free(&mesh);
+}
+
+static void off_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        SingeResult code;
+        int line;
+        const char *part;
+    } cases[] = {
+        {"", SINGE_ERROR_FORMAT, 1, "empty"},
+        {"# only\n", SINGE_ERROR_FORMAT, 2, "nothing but comments"},
+        {"ply\n", SINGE_ERROR_FORMAT, 1, "begins otherwise"},
+        {"4OFF\n4 2 0\n", SINGE_ERROR_FORMAT, 1, "begins otherwise"},
+        {"OFF BINARY\n", SINGE_ERROR_FORMAT, 1, "binary"},
+        {"OFF", SINGE_ERROR_FORMAT, 1, "ends too soon"},
+        {"OFF\n4\n" POINTS, SINGE_ERROR_FORMAT, 2, "too few values"},
+        {"OFF\n4 x 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 3 is not an integer of at least 0"},
+        {"OFF\n-4 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 1 is not an integer of at least 0"},
+        {"OFF\n4.5 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "column 1 is not an integer"},
+        {"OFF\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 2, "no vertices"},
+        {"OFF\n4 0 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "no faces"},
+        {"OFF\n2147483647 1 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "too short for its 2147483647 vertices"},
+        {"OFF\n4 4611686018427387904 0\n" POINTS, SINGE_ERROR_FORMAT, 2, "too short"},
+        {"OFF\n9223372036854775807 9223372036854775807 0\n", SINGE_ERROR_FORMAT, 2, "column 1 is out of range"},
+        {"OFF\n4 1 0\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 4, "not a finite number"},
+        {"OFF\n4 1 0\n0 0 0\n1 0 1e39\n1 1 0\n0 1 0\n3 0 1 2\n", SINGE_ERROR_FORMAT, 4, "out of range"},
+        {"OFF\n4 1 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n   ", SINGE_ERROR_FORMAT, 4, "too few values"},
+        {"OFF\n4 1 0\n" POINTS "4 0 1 2 999999\n", SINGE_ERROR_MESH, 7, "index 999999 is out of range"},
+        {"OFF\n4 1 0\n" POINTS "4 0 1 2 4\n", SINGE_ERROR_MESH, 7, "index 4 is out of range: the file has 4"},
+        {"OFF\n4 1 0\n" POINTS "4 0 1 2 -1\n", SINGE_ERROR_FORMAT, 7, "column 9 is not"},
+        {"OFF\n4 1 0\n" POINTS "2 0 1       \n", SINGE_ERROR_MESH, 7, "face has 2 corners; it needs three"},
+        {"OFF\n4 1 0\n" POINTS "4000000000 0 1 2\n", SINGE_ERROR_FORMAT, 7, "too few values"},
+        {"OFF\n4 1 0\n0 0 0      \n1 0 0      \n1 1 0\n3 0 1 2", SINGE_ERROR_FORMAT, 6, "ends too soon"},
+        {"OFF\n4 1 0\n" POINTS "4 0 1 2 3\n3 0 1 2\n", SINGE_ERROR_FORMAT, 8, "more than the 4 vertices and 1 faces"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_error("a.off", cases[i].text, strlen(cases[i].text), cases[i].code, cases[i].line, cases[i].part);
+}
+
+// ---- STL
+
+static const float triangles[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, .5f};
+static const uint32_t in_order[] = {0, 1, 2, 3, 4, 5};
+
+#define FACET(a, b, c) \
+    " facet normal 0 0 1\n  outer loop\n   vertex " a "\n   vertex " b "\n   vertex " c "\n  endloop\n endfacet\n"
+
+static void stl_text_is_read(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "solid a b\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid a b\n",
+        "solid\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nsolid two\nendsolid\nsolid 3\n"
+        FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid",
+        "\nSOLID x\r\nFACET NORMAL nan -nan(ind) 0\r\nOUTER LOOP\r\nVERTEX 0 0 0\r\nVERTEX 1 0 0\r\nVERTEX 1 1 0\r\n"
+        "ENDLOOP\r\nENDFACET\r\n" FACET("0 0 0", "1 1 0", "0 1 .5") "EndSolid\r\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        expect_mesh("a.stl", texts[i], triangles, 6, in_order, 6, 2);
+}
+
+static size_t binary(uint8_t *bytes, const char *head, uint32_t count) {
+    memset(bytes, 0, 84);
+    strcpy((char *)bytes, head);
+    for (int i = 0; i < 4; i++) bytes[80 + i] = (uint8_t)(count >> 8 * i);
+    for (size_t f = 0; f < 2; f++) {
+        memset(bytes + 84 + 50 * f, 0xff, 50); // the normal may be anything
+        memcpy(bytes + 96 + 50 * f, triangles + 9 * f, 36);
+    }
+    return 184;
+}
+
+static void stl_bytes_are_read(void **state) {
+    (void)state;
+    uint8_t bytes[184];
+    Polygons mesh;
+    SingeError error;
+    static const char *const heads[] = {"a program", "solid, though it is not"};
+    for (int i = 0; i < 2; i++) {
+        size_t size = binary(bytes, heads[i], 2);
+        if (parse_bytes("a.stl", bytes, size, &mesh, &error)) fail_msg("%s", error.message);
+        assert_int_equal(mesh.face_count, 2);
+        assert_memory_equal(mesh.positions, triangles, sizeof triangles);
+        assert_memory_equal(mesh.corners, in_order, sizeof in_order);
+        polygons_free(&mesh);
+    }
+}
+
+static void stl_bytes_are_refused(void **state) {
+    (void)state;
+    char bytes[185] = "";
+    size_t size = binary((uint8_t *)bytes, "a", 2);
+    expect_error("a.stl", bytes, 0, SINGE_ERROR_FORMAT, 1, "empty");
+    expect_error("a.stl", bytes, 83, SINGE_ERROR_FORMAT, 0, "83 bytes are too few");
+    expect_error("a.stl", bytes, size - 1, SINGE_ERROR_FORMAT, 80, "2 triangles take 184 bytes, but the file has 183");
+    expect_error("a.stl", bytes, size + 1, SINGE_ERROR_FORMAT, 80, "the file has 185");
+    bytes[83] = (char)0xff;
+    expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 80, "4278190082 triangles take");
+    binary((uint8_t *)bytes, "a", 0);
+    expect_error("a.stl", bytes, 84, SINGE_ERROR_FORMAT, 80, "no faces");
+    binary((uint8_t *)bytes, "a", 2);
+    memset(bytes + 150, 0xff, 4);
+    expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 150, "byte 150: a position is not finite");
+}
+
+static void stl_text_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        int line;
+        const char *part;
+    } cases[] = {
+        {"solid\n", 2, "\"endsolid\" is missing"},
+        {"solid\nendsolid\n", 3, "no faces"},
+        {"solid a\nfacet 0 0 1\n", 2, "\"normal\" is missing"},
+        {"solid a\nfacet normal 0 0 1\nouter vertex\n", 3, "\"outer loop\" is missing"},
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n", 4, "too few values"},
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 x\n", 4, "column 12 is not a number"},
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 inf\n", 4, "not a finite number"},
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop", 5, "\"vertex\" is missing"},
+        {"solid a\n" FACET("0 0 0", "1 0 0", "1 1 0"), 9, "\"endsolid\" is missing"},
+        {"solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nmore", 10, "\"solid\" is missing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        expect_error("a.stl", cases[i].text, strlen(cases[i].text), SINGE_ERROR_FORMAT, cases[i].line, cases[i].part);
+}
+
+// ---- both
+
+static const char good_off[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n";
+static const char good_stl[] = "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid";
+
+static void every_cut_is_refused(void **state) {
+    (void)state;
+    uint8_t bytes[184];
+    Polygons mesh;
+    SingeError error;
+    for (size_t size = 0; size < sizeof good_stl - 1; size++)
+        assert_int_equal(parse_bytes("a.stl", good_stl, size, &mesh, &error), SINGE_ERROR_FORMAT);
+    for (size_t size = 0; size < binary(bytes, "a", 2); size++)
+        assert_int_equal(parse_bytes("a.stl", bytes, size, &mesh, &error), SINGE_ERROR_FORMAT);
+    for (size_t size = 0; size < sizeof good_off - 3; size++)
+        assert_int_not_equal(parse_bytes("a.off", good_off, size, &mesh, &error), SINGE_OK);
+}
+
+static void failing_memory_is_reported(void **state) {
+    (void)state;
+    uint8_t bytes[184];
+    binary(bytes, "a", 2);
+    const struct {
+        const char *name;
+        const void *data;
+        size_t size;
+    } files[] = {{"a.off", good_off, sizeof good_off - 1}, {"a.stl", good_stl, sizeof good_stl - 1},
+                 {"b.stl", bytes, sizeof bytes}};
+    for (int i = 0; i < 3; i++)
+        for (long at = 1;; at++) {
+            TestAllocator counts = {.fail_at = at};
+            Polygons mesh;
+            SingeError error;
+            SingeResult result =
+                polygons_read(files[i].name, files[i].data, files[i].size, test_allocator(&counts), &mesh, &error);
+            if (!result) polygons_free(&mesh);
+            else assert_int_equal(result, SINGE_ERROR_MEMORY);
+            test_allocator_check(&counts);
+            if (!result) break;
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(off_is_read),
+        cmocka_unit_test(off_faces_have_lines),
+        cmocka_unit_test(off_is_refused),
+        cmocka_unit_test(stl_text_is_read),
+        cmocka_unit_test(stl_bytes_are_read),
+        cmocka_unit_test(stl_bytes_are_refused),
+        cmocka_unit_test(stl_text_is_refused),
+        cmocka_unit_test(every_cut_is_refused),
+        cmocka_unit_test(failing_memory_is_reported),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
