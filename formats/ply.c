@@ -183,11 +183,13 @@ static SingeResult ply_plan_vertices(Ply *ply, const PlyElement *element, Polygo
     static const char *const axes[] = {"x", "y", "z"};
     static const char *const uvs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
     size_t index, other;
+    for (int i = 0; i < 3; i++) // before the memory: without properties a count needs no bytes in the file
+        if (!ply_scalar(ply, element, axes[i], &index))
+            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
     mesh->positions = store_new(ply->allocator, mesh->vertex_count, 3 * sizeof *mesh->positions);
     if (!mesh->positions) return refuse_memory(ply->error, "ply", ply->name);
     for (int i = 0; i < 3; i++) {
-        if (!ply_scalar(ply, element, axes[i], &index))
-            return ply_refuse(ply, SINGE_ERROR_FORMAT, "vertices have no property \"%s\"", axes[i]);
+        ply_scalar(ply, element, axes[i], &index);
         targets[index] = (PlyTarget){mesh->positions + i, 3, 1};
     }
     for (int i = 0; i < 3 && !*uv; i++) {

@@ -7,6 +7,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+// Names are compared with all before them.
+enum { PLY_ELEMENT_LIMIT = 100, PLY_PROPERTY_LIMIT = 1000 };
+
 // Each type has an old and a new name.
 static const struct {
     const char *name, *other;
@@ -81,6 +84,8 @@ static SingeResult ply_header_element(Ply *ply) {
     PlyHeader *header = &ply->header;
     Word name;
     TRY(ply_header_name(ply, &name));
+    if (header->element_count >= PLY_ELEMENT_LIMIT)
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d kinds of elements", PLY_ELEMENT_LIMIT);
     for (size_t i = 0; i < header->element_count; i++)
         if (word_same(name, header->elements[i].name, header->elements[i].name_end))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "an element is declared twice");
@@ -115,7 +120,8 @@ static SingeResult ply_header_property(Ply *ply) {
     }
     TRY(ply_header_type(ply, word, &property.type));
     TRY(ply_header_name(ply, &name));
-    if (element->property_count >= 1000) return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than 1000 properties");
+    if (element->property_count >= PLY_PROPERTY_LIMIT)
+        return ply_refuse(ply, SINGE_ERROR_LIMIT, "more than %d properties", PLY_PROPERTY_LIMIT);
     for (size_t i = element->first_property; i < header->property_count; i++)
         if (word_same(name, header->properties[i].name, header->properties[i].name_end))
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "a property is declared twice");

@@ -194,6 +194,12 @@ HOSTILE = {
     "vertices.3ds": (three_ds(vertices=0xFFFF), ""),
     "bomb.fbx": (fbx_bomb(), ""),
     "nothing.fbx": (b"Kaydara FBX Binary  \0\x1a\0" + struct.pack("<I", 7400), ""),
+    "elements.ply": (ply(head="".join(f"element e{i} 0\n" for i in range(200000))), "more than 100 kinds of elements"),
+    "bare.ply": (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n"
+        b"property list uchar int vertex_indices\nend_header\n\3",
+        'no property "x"',
+    ),
     # indices out of range, in every format
     "index.dae": (dae(f"<node>{USE}</node>", indices="0 1 2 0 2 999999"), "999999"),
     "index.x3d": (x3d(x3d_shape("0 1 2 999999 -1")), ""),

@@ -314,6 +314,37 @@ static void allocation_failure_is_clean(void **state) {
     }
 }
 
+/// Their names are compared with each other: many of them would take minutes.
+static void kinds_of_elements_and_properties_are_limited(void **state) {
+    (void)state;
+    enum { LINE = 24, MOST = 1001 };
+    static char text[MOST * LINE + 400];
+    for (int kinds = 0; kinds < 2; kinds++) {
+        size_t length = (size_t)sprintf(text, kinds ? HEADER : HEADER "element a 0\n");
+        int count = kinds ? 101 : MOST;
+        for (int i = 0; i < count; i++)
+            length += (size_t)sprintf(text + length, kinds ? "element e%d 0\n" : "property int p%d\n", i);
+        strcpy(text + length, "end_header\n");
+        expect_error(text, SINGE_ERROR_LIMIT, kinds ? 103 : 1004,
+                     kinds ? "more than 100 kinds of elements" : "more than 1000 properties");
+    }
+}
+
+/// A count of elements without properties needs no bytes in the file, and must get none in memory.
+static void counts_without_bytes_take_no_memory(void **state) {
+    (void)state;
+    static const char text[] = "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n" FACES
+                               "end_header\n\3";
+    TestAllocator counts = {0};
+    Polygons mesh;
+    SingeError error;
+    assert_int_equal(ply_read("a.ply", (const uint8_t *)text, sizeof text - 1, test_allocator(&counts), &mesh, &error),
+                     SINGE_ERROR_FORMAT);
+    assert_message(&error, "no property \"x\"");
+    assert_true(counts.largest < 10000);
+    test_allocator_check(&counts);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_ascii),
@@ -325,6 +356,8 @@ int main(void) {
         cmocka_unit_test(faces_have_uv_of_their_own),
         cmocka_unit_test(truncated_ascii),
         cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(kinds_of_elements_and_properties_are_limited),
+        cmocka_unit_test(counts_without_bytes_take_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
