@@ -103,6 +103,14 @@ static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
     return sheet;
 }
 
+/// Counts a pair that crosses from the start, and tells of it when it is one of the first.
+static void add_from_start(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
+    const float *p = frame->position[frame->triangles[a][0]];
+    if (findings->from_start++ < TOLD && findings->begins)
+        console_warn(findings->console, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
+                     findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
+}
+
 static void add_crossing(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
     const float *p = frame->position[frame->triangles[a][0]];
     const int32_t one = sheet_of(frame, a), other = sheet_of(frame, b);
@@ -122,9 +130,16 @@ static bool check_crossings(const CacheFrame *frame, const uint32_t *sound, uint
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) triangles[i][k] = frame->triangles[sound[i]][k];
     const float(*position)[3] = (const float(*)[3])frame->position;
-    const bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
+    bool good = crossings_find(position, (const uint32_t(*)[3])triangles, count, &list);
     for (size_t i = 0; i < list.count; i++)
-        add_crossing(frame, sound[list.pairs[i][0]], sound[list.pairs[i][1]], findings);
+        for (int k = 0; k < 2; k++) list.pairs[i][k] = sound[list.pairs[i][k]];
+    if (good && findings->begins)
+        good = initial_take(&findings->initial, frame, (const uint32_t(*)[2])list.pairs, list.count);
+    for (size_t i = 0; i < list.count; i++) {
+        const uint32_t a = list.pairs[i][0], b = list.pairs[i][1];
+        if (initial_has(&findings->initial, frame, a, b)) add_from_start(frame, a, b, findings);
+        else add_crossing(frame, a, b, findings);
+    }
     crossings_free(&list);
     free(triangles);
     return good;
@@ -253,6 +268,15 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
     }
     free(sides);
     return true;
+}
+
+bool check_start(const CacheFrame *frame, Findings *findings) {
+    Findings quiet = *findings;
+    for (int f = 0; f < FAULT_COUNT; f++) quiet.told[f] = TOLD;
+    quiet.begins = true, quiet.from_start = TOLD;
+    const bool good = check_surface(frame, &quiet);
+    findings->initial = quiet.initial;
+    return good;
 }
 
 bool check_surface(const CacheFrame *frame, Findings *findings) {

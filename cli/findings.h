@@ -4,6 +4,7 @@
 
 #include "cli/cache.h"
 #include "cli/console.h"
+#include "cli/initial.h"
 
 typedef enum Fault {
     FAULT_CROSSING,     ///< pairs of triangles
@@ -26,6 +27,9 @@ typedef struct Findings {
     double stretch;           ///< edges longer than this many times their length at rest count
     uint64_t count[FAULT_COUNT];
     uint64_t near;            ///< of the crossings, those of triangles side by side at rest
+    bool begins;              ///< this is the first frame of the run: what crosses in it crosses from the start
+    Initial initial;          ///< what did, to be freed
+    uint64_t from_start;      ///< crossings of what did; no fault
     uint64_t folded;          ///< edges whose triangles lie on one another; no fault
     int told[FAULT_COUNT];    ///< messages so far
 } Findings;
@@ -38,5 +42,8 @@ void check_values(const CacheFrame *frame, Findings *findings);
 
 /// All that edges and triangles have. False when out of memory.
 bool check_surface(const CacheFrame *frame, Findings *findings);
+
+/// Takes what crosses in the first frame of the run, and counts and tells nothing. False when out of memory.
+bool check_start(const CacheFrame *frame, Findings *findings);
 
 #endif

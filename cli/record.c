@@ -51,7 +51,7 @@ static void write_totals(FILE *file, const Totals *t) {
     const struct { const char *name; uint64_t value; } rows[] = {
         {"steps", t->steps}, {"heat_iterations", t->heat_iterations}, {"strands_projected", t->strands_projected},
         {"contacts", t->contacts}, {"ignited", t->ignited}, {"holes_opened", t->holes_opened},
-        {"pieces_freed", t->pieces_freed}};
+        {"pieces_freed", t->pieces_freed}, {"crossed_at_start", t->crossed}};
     fputs("  \"totals\": {", file);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         fprintf(file, "%s\"%s\": %" PRIu64, i ? ", " : "", rows[i].name, rows[i].value);

@@ -122,6 +122,7 @@ static void read_timers(Run *run, FrameCost *cost) {
     run->totals->heat_iterations += now.heat_iterations - before->heat_iterations;
     run->totals->strands_projected += now.strands_projected - before->strands_projected;
     run->totals->contacts += now.contacts - before->contacts;
+    run->totals->crossed += now.contact_crossed - before->contact_crossed;
     *before = now;
 }
 

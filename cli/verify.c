@@ -44,7 +44,7 @@ static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
 
 typedef struct Row {
     uint32_t vertices, triangles;
-    uint64_t count[FAULT_COUNT], near, folded;
+    uint64_t count[FAULT_COUNT], near, folded, from_start;
 } Row;
 
 typedef struct Verify {
@@ -53,6 +53,7 @@ typedef struct Verify {
     StatsTable stats;
     const char *csv;
     double stretch;
+    bool crossed;                 ///< at the start
     int first, last, done;        ///< frames; first 0: all
     Row *rows;                    ///< of every frame
     Findings findings;
@@ -83,7 +84,8 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
     Findings *findings = &verify->findings;
     char *path = folder_ply(&verify->folder, frame);
     memset(findings->count, 0, sizeof findings->count);
-    findings->near = findings->folded = 0, findings->file = path;
+    findings->near = findings->folded = findings->from_start = 0, findings->file = path;
+    findings->begins = frame == 1 && verify->crossed;
     SingeResult result = cache_read(path, &cache, error);
     if (!result) {
         check_values(&cache, findings);
@@ -94,12 +96,25 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
             result = SINGE_ERROR_MEMORY;
         }
         *row = (Row){.vertices = cache.vertex_count, .triangles = cache.triangle_count, .near = findings->near,
-                     .folded = findings->folded};
+                     .folded = findings->folded, .from_start = findings->from_start};
         memcpy(row->count, findings->count, sizeof row->count);
     }
     cache_free(&cache);
     free(path);
     return result;
+}
+
+/// What crosses from the start, where the first frame is not among those that are asked for.
+static bool look_at_start(Verify *verify) {
+    CacheFrame cache;
+    SingeError error;
+    bool good = true;
+    if (verify->first == 1 || !verify->crossed) return true;
+    char *path = folder_ply(&verify->folder, 1);
+    if (!cache_read(path, &cache, &error)) good = check_start(&cache, &verify->findings);
+    cache_free(&cache);
+    free(path);
+    return good;
 }
 
 // ---- the whole
@@ -129,7 +144,7 @@ static void print_frames(const Verify *verify, const uint64_t *total) {
 
 /// Returns the number of all faults.
 static uint64_t print_table(const Verify *verify) {
-    uint64_t total[FAULT_COUNT] = {0}, all = 0, near = 0, folded = 0, triangles = 0;
+    uint64_t total[FAULT_COUNT] = {0}, all = 0, near = 0, folded = 0, from_start = 0, triangles = 0;
     int frames[FAULT_COUNT] = {0}, worst[FAULT_COUNT] = {0}, bad = 0;
     for (int i = 0; i < verify->done; i++) {
         const Row *row = &verify->rows[i];
@@ -138,7 +153,7 @@ static uint64_t print_table(const Verify *verify) {
             if (row->count[f] > verify->rows[worst[f]].count[f]) worst[f] = i;
         }
         bad += faults_of(row) > 0, all += faults_of(row), triangles += row->triangles;
-        near += row->near, folded += row->folded;
+        near += row->near, folded += row->folded, from_start += row->from_start;
     }
     if (all) print_frames(verify, total);
     printf("%-52s%12s%8s%10s%7s\n", "fault", "all frames", "frames", "worst", "frame");
@@ -152,6 +167,7 @@ static uint64_t print_table(const Verify *verify) {
     }
     printf("%-52s%12" PRIu64 "\n", "(of the crossings: side by side at rest)", near);
     printf("%-52s%12" PRIu64 "\n", "(no fault: edges folded onto each other)", folded);
+    printf("%-52s%12" PRIu64 "\n", "(no fault: crossings of what crosses in frame 1)", from_start);
     printf("\n%d frames, %" PRIu64 " triangles: ", verify->done, triangles);
     if (all) printf("%" PRIu64 " faults in %d frames\n", all, bad);
     else printf("no faults\n");
@@ -163,12 +179,12 @@ static ExitCode write_csv(Verify *verify) {
     if (file) {
         fputs("frame,vertices,triangles", file);
         for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
-        fputs(",near_crossings,folded_edges\n", file);
+        fputs(",near_crossings,folded_edges,initial_crossings\n", file);
         for (int i = 0; i < verify->done; i++) {
             const Row *row = &verify->rows[i];
             fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
             for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%" PRIu64, row->count[f]);
-            fprintf(file, ",%" PRIu64 ",%" PRIu64 "\n", row->near, row->folded);
+            fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 "\n", row->near, row->folded, row->from_start);
         }
     }
     bool failed = !file || ferror(file);
@@ -190,7 +206,7 @@ static ExitCode verify_all(Verify *verify) {
     SingeError error = {0};
     SingeResult result = SINGE_OK;
     verify->rows = calloc((size_t)frames, sizeof *verify->rows);
-    if (!verify->rows) {
+    if (!verify->rows || !look_at_start(verify)) {
         console_error(&verify->console, "no memory for the counts of %d frames", frames);
         return EXIT_FAILED;
     }
@@ -214,6 +230,14 @@ static ExitCode verify_all(Verify *verify) {
 
 // ---- the cache
 
+/// Whether the run has told that it began with crossings.
+static bool began_crossed(const Bytes *record) {
+    const char *totals, *value;
+    size_t size;
+    return text_json_member((const char *)record->data, record->size, "totals", &totals, &size) &&
+           text_json_member(totals, size, "crossed_at_start", &value, &size) && size && *value >= '1' && *value <= '9';
+}
+
 /// The name of the run's files, as its record has it.
 static ExitCode find_folder(Verify *verify, const char *path) {
     SingeError error = {0};
@@ -231,6 +255,7 @@ static ExitCode find_folder(Verify *verify, const char *path) {
         name = text_json_unquote(value, size);
     if (name) verify->folder = folder_name(path, name);
     else console_error(&verify->console, "%s is not a record of a run: no \"name\"", record);
+    verify->crossed = began_crossed(&bytes);
     bytes_free(&bytes);
     free(record);
     free(name);
@@ -264,6 +289,7 @@ int command_verify(int argc, char **argv) {
     if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);
     if (!code) code = verify_all(&verify);
+    initial_free(&verify.findings.initial);
     stats_table_free(&verify.stats);
     folder_free(&verify.folder);
     free(verify.rows);

@@ -1,6 +1,6 @@
 // T-junctions: a vertex of an open edge that lies on another open edge belongs to that face, too, which gets it as a
 // corner, where that closes the gap.
-#include "mesh/work.h"
+#include "mesh/loops.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,34 +130,66 @@ static void push_on_side(const Junctions *j, Faces *out, int i, uint32_t half, u
         out->uv[at][k] += (float)j->found[i].t * (old->uv[next][k] - old->uv[half][k]);
 }
 
+/// Puts vertices into the sides of all faces but those that are to be left as they are, and writes the faces unless
+/// `out` is NULL. Returns how many vertices.
+static uint32_t put_all(Junctions *j, const uint8_t *left, Faces *out) {
+    const Work *work = j->work;
+    const Faces *old = &work->faces;
+    uint32_t added = 0;
+    for (uint32_t f = 0; f < old->count; f++) {
+        for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
+            const uint32_t next = faces_next(old, work->face, h);
+            if (out) faces_push(out, old->corner[h], old, h);
+            if (left[f] || work->twin[h] != MESH_NONE) continue;
+            j->face = f;
+            look_along(j, old->corner[h], old->corner[next]);
+            keep_joined(j, old->corner[h], old->corner[next]);
+            for (int i = 0; i < j->count && out; i++) push_on_side(j, out, i, h, next);
+            added += (uint32_t)j->count;
+        }
+        if (out) faces_end(out, old->origin[f]);
+    }
+    return added;
+}
+
+/// Marks faces that cross themselves now that they have more corners, as those narrower than `weld` may.
+static bool any_crossed(Work *work, const Faces *before, uint8_t *left) {
+    const Faces *faces = &work->faces;
+    Loops loops = {0};
+    bool any = false;
+    if (!loops_begin(&loops, work, faces)) return false;
+    for (uint32_t f = 0; f < faces->count; f++) {
+        const bool same = faces->first[f + 1] - faces->first[f] == before->first[f + 1] - before->first[f];
+        if (!same && loops_find(&loops, f) == FACE_CROSSED) left[f] = 1, any = true;
+    }
+    return any;
+}
+
 SingeResult mesh_junctions(Work *work) {
     work_edges(work);
     Junctions *j = work_new(work, 1, sizeof *j);
+    uint8_t *left = work_new(work, work->faces.count, 1);
     if (work->no_memory) return SINGE_OK;
     j->work = work;
     if (!list_open(j)) return SINGE_OK;
-    const Faces *old = &work->faces;
-    uint32_t added = 0;
-    for (int write = 0; write < 2; write++) {
-        Faces out = {0};
-        if (write && !added) return SINGE_OK;
-        if (write) out = work_faces(work, old->count, old->corner_count + added);
+    const Faces before = work->faces;
+    const uint32_t added = put_all(j, left, NULL), corners = before.corner_count + added;
+    if (!added) return SINGE_OK;
+    Faces after = work_faces(work, before.count, corners);
+    if (work->no_memory) return SINGE_OK;
+    (void)put_all(j, left, &after);
+    work->faces = after;
+    if (any_crossed(work, &before, left)) {
+        work->faces = before;
+        work_edges(work);
+        after = work_faces(work, before.count, corners);
         if (work->no_memory) return SINGE_OK;
-        for (uint32_t f = 0; f < old->count; f++) {
-            for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
-                uint32_t next = faces_next(old, work->face, h);
-                if (write) faces_push(&out, old->corner[h], old, h);
-                if (work->twin[h] != MESH_NONE) continue;
-                j->face = f;
-                look_along(j, old->corner[h], old->corner[next]);
-                keep_joined(j, old->corner[h], old->corner[next]);
-                for (int i = 0; i < j->count && write; i++) push_on_side(j, &out, i, h, next);
-                if (write) work_did(work, MESH_JUNCTION, (uint32_t)j->count, work_face_name(work, old->origin[f]));
-                else added += (uint32_t)j->count;
-            }
-            if (write) faces_end(&out, old->origin[f]);
-        }
-        if (write) work->faces = out;
+        (void)put_all(j, left, &after);
+        work->faces = after;
     }
-    return mesh_clean(work); // a vertex may lie on two sides of one face
+    for (uint32_t f = 0; f < before.count; f++)
+        work_did(work, MESH_JUNCTION,
+                 after.first[f + 1] - after.first[f] - (before.first[f + 1] - before.first[f]),
+                 work_face_name(work, before.origin[f]));
+    return work->no_memory ? SINGE_OK : mesh_clean(work); // a vertex may lie on two sides of one face
 }

@@ -181,7 +181,7 @@ void mesh_part_sides(Work *work) {
     for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) middle[h] = MESH_NONE;
     for (uint32_t k = 0, size; !work->no_memory && k < faces->corner_count; k += size) {
         size = work_edge_size(work, order, k);
-        const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // they go on by themselves
+        const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // which go on
         if (size > 1 && !two) added += part_side(work, order + k, size, middle);
     }
     if (added && !work->no_memory) add_corners(work, middle, added);

@@ -37,6 +37,8 @@ void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first) {
     plan->counters.tangled = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         plan->tangled[c] = (plan->tangled[c] & IS) != 0;
+        if (plan->tangled[c] && plan->counters.tangled == 0) plan->counters.tangled_first = c;
         plan->counters.tangled += plan->tangled[c];
     }
+    if (first) plan->counters.tangled_at_start = plan->counters.tangled;
 }

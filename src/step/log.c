@@ -91,10 +91,11 @@ void sim_log_unconverged(SingeSim *sim) {
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
     if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
         sim->tangle_warned = true;
+        const float *at = sim->shell.rest_position[sim->shell.cells[touches->tangled_first][0]];
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts; "
-                "they are left alone until they have parted",
-                touches->tangled);
+                "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts, one "
+                "near (%.4g, %.4g, %.4g) m; they are left alone until they have parted",
+                touches->tangled, (double)at[0], (double)at[1], (double)at[2]);
     }
     if (touches->unresolved && !sim->crossing_warned) {
         sim->crossing_warned = true;

@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import math
 import os
 import random
 import signal
@@ -304,6 +305,46 @@ class Verify(Case):
         self.finds("degenerate_triangles", line, "has no area", others=("crossings", "stretched_edges"))
         self.finds("non_manifold_edges", third, "has 3 triangles", others=("stretched_edges", "winding"))
         self.finds("winding", turned, "run the same way along edge")
+
+    def test_what_crosses_from_the_start(self):
+        """What crosses in frame 1 is told and no fault, there and later; what comes to cross elsewhere is."""
+        def pierce(first):
+            def change(s):
+                def place(t): return [s.vertices[t[0]]["rest_" + axis] for axis in "xyz"]
+                a = s.triangles[first]
+                b = min((t for t in s.triangles if not set(t) & set(a)), key=lambda t: math.dist(place(t), place(a)))
+                corners = [[s.vertices[v][axis] for axis in "xyz"] for v in a]
+                up = normal(corners)
+                size = dot(up, up) ** 0.25
+                for v, way in zip(b, (0.5, -0.5, -0.5)):
+                    for k, axis in enumerate("xyz"):
+                        aside = 0.1 * size if v == b[2] and k == 0 else 0
+                        s.vertices[v][axis] = sum(c[k] for c in corners) / 3 + way * up[k] / size + aside
+            return change
+
+        def total(rows, kind): return [row[kind] for row in rows]
+        for number in (1, 3):
+            self.damage(pierce(0), number)
+        _, _, rows = self.verify("--stretch", "1e9", expect=1) # the run has told of none
+        self.assertEqual(sum(total(rows, "initial_crossings")), 0)
+        with open(self.path("o", "run.json")) as file:
+            record = file.read()
+        self.assertIn('"crossed_at_start": 0', record)
+        with open(self.path("o", "run.json"), "w") as file:
+            file.write(record.replace('"crossed_at_start": 0', '"crossed_at_start": 7'))
+        out, err, rows = self.verify("--stretch", "1e9")
+        start = total(rows, "initial_crossings")
+        self.assertGreater(start[0], 0)
+        self.assertEqual(start[2], start[0])
+        self.assertEqual(sum(start), 2 * start[0])
+        self.assertIn("cross from the start", err)
+        self.assertIn("no faults", out)
+        _, _, rows = self.verify("--stretch", "1e9", "--frames", "3-4")
+        self.assertEqual(total(rows, "initial_crossings"), [start[0], 0])
+        self.damage(pierce(len(Surface(self.frame(4)).triangles) - 1), 4)
+        _, err, rows = self.verify("--stretch", "1e9", expect=1)
+        self.assertEqual([n > 0 for n in total(rows, "crossings")], [i == 3 for i in range(6)])
+        self.assertIn("tiny.0004.ply", err)
 
     def test_rounding(self):
         """An edge of the size of its coordinates' last bits is as long as they are rounded to, and not stretched."""
