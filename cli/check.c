@@ -124,7 +124,8 @@ static void report_materials(const Scene *scene, float thickening) {
         while (memcmp(&scene->sheets[j].material, material, sizeof *material) != 0) j++;
         if (j < i) continue;
         BenchMaterial bench = bench_material(material);
-        printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own", 1e3 * (double)grammage);
+        printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",
+               1e3 * (double)grammage);
         report_front(scene, &bench, thickening);
         printf("\n");
         told++;
@@ -143,11 +144,30 @@ static void report_times(const Job *job, const CheckTimes *times, float thickeni
            1e3 * times->step, 1e3 * times->surface, 1e3 * times->picture, job->hooks.thread_count);
 }
 
+static void report_size(const Job *job, const SceneAssets *assets, double pictures) {
+    SceneSize size = scene_size(job->scene, assets);
+    printf("needs         about %.2f GB of memory for %" PRIu64 " cells", 1e-9 * (size.memory + pictures), size.cells);
+    if (size.unread) printf(" and those of %" PRIu32 " mesh file%s", size.unread, size.unread > 1 ? "s" : "");
+    printf("\n");
+    fflush(stdout);
+}
+
+/// What it takes is said before anything is made, and again when meshes have been read.
+static ExitCode load_and_build(Job *job, Console *console, SingeSim **sim) {
+    double pictures = pictures_available() ? scene_picture_memory(job->scene) : 0;
+    bool unread = scene_size(job->scene, NULL).unread > 0;
+    report_size(job, NULL, pictures);
+    ExitCode code = job_load(job, console, pictures);
+    if (code) return code;
+    if (unread) report_size(job, &job->assets, pictures);
+    return job_build(job, console, sim);
+}
+
 static ExitCode check_scene(Console *console, const char *path, const SetList *sets, int threads) {
     Job job;
     SingeSim *sim = NULL;
-    ExitCode code = job_open(&job, console, path, sets, threads);
-    if (!code) code = job_build(&job, console, &sim);
+    ExitCode code = job_read(&job, console, path, sets, threads);
+    if (!code) code = load_and_build(&job, console, &sim);
     if (!code) {
         SingeCensus census = singe_sim_census(sim);
         float thickening = singe_sim_stats(sim).thickening;
@@ -155,7 +175,9 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         SingeError error = {0};
         report_meshes(&job);
         report_shell(&census);
+        job_note_long(&job, console, "burning a strip of each material");
         report_materials(job.scene, thickening);
+        job_note_long(&job, console, "timing steps");
         if (time_steps(&job, sim, &times, &error)) {
             fflush(stdout);
             console_result(console, &error);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "cli/machine.h"
 #include "cli/text.h"
 
 void set_add(SetList *sets, const char *text) {
@@ -47,38 +48,60 @@ static void *libc_resize(void *context, void *block, size_t old_size, size_t new
     return NULL;
 }
 
-static ExitCode finish_open(Job *job, Console *console, SingeResult result, SceneMessages *messages, int threads) {
-    if (!result) result = scene_load(job->scene, &job->assets, messages);
+/// Prints what is wrong and closes the job, if the result says so.
+static ExitCode tell(Job *job, Console *console, SingeResult result, SceneMessages *messages) {
     if (result) {
         console_clear(console);
         scene_messages_print(messages, stderr);
         if (messages->count == 0) console_error(console, "%s", singe_result_name(result));
-        scene_free(job->scene);
-        *job = (Job){0};
-    } else {
-        scene_frame(job->scene, &job->assets);
-        job->hooks = singe_default_sim();
-        job->hooks.allocator = (SingeAllocator){libc_resize, NULL};
-        job->hooks.log = console_log(console);
-        job->hooks.thread_count = threads;
+        job_close(job);
     }
     scene_messages_free(messages);
     return job_exit(result);
 }
 
-ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
+static void set_hooks(Job *job, Console *console, int threads) {
+    job->hooks = singe_default_sim();
+    job->hooks.allocator = (SingeAllocator){libc_resize, NULL};
+    job->hooks.log = console_log(console);
+    job->hooks.thread_count = threads;
+}
+
+ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
     SceneMessages messages = {0};
     *job = (Job){0};
+    set_hooks(job, console, threads);
     SingeResult result = scene_read(scene_path, sets->items, sets->count, &job->scene, &messages);
-    return finish_open(job, console, result, &messages, threads);
+    return tell(job, console, result, &messages);
+}
+
+ExitCode job_load(Job *job, Console *console, double pictures) {
+    SceneMessages messages = {0};
+    SingeResult result = SINGE_OK;
+    for (int loaded = 0; loaded < 2 && !result; loaded++) { // the cells of meshes in files are known when they are read
+        const SceneAssets *assets = loaded ? &job->assets : NULL;
+        double wanted = scene_size(job->scene, assets).memory + pictures;
+        if (!scene_fits(job->scene, assets, wanted, machine_memory(), &messages)) result = SINGE_ERROR_LIMIT;
+        else if (!loaded) result = scene_load(job->scene, &job->assets, &messages);
+    }
+    if (!result) scene_frame(job->scene, &job->assets);
+    return tell(job, console, result, &messages);
+}
+
+ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
+    ExitCode code = job_read(job, console, scene_path, sets, threads);
+    return code ? code : job_load(job, console, 0);
 }
 
 ExitCode job_parse(Job *job, Console *console, const char *name, const char *text, size_t size, const char *folder,
                    const SetList *sets, int threads) {
     SceneMessages messages = {0};
     *job = (Job){0};
+    set_hooks(job, console, threads);
     SingeResult result = scene_parse(name, text, size, folder, sets->items, sets->count, &job->scene, &messages);
-    return finish_open(job, console, result, &messages, threads);
+    if (!result) result = scene_load(job->scene, &job->assets, &messages);
+    if (!result) scene_frame(job->scene, &job->assets);
+    return tell(job, console, result, &messages);
 }
 
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {
@@ -116,8 +139,16 @@ void job_note_meshes(const Job *job, Console *console) {
     }
 }
 
+void job_note_long(const Job *job, Console *console, const char *doing) {
+    enum { CELLS_LONG = 200000 }; // from so many on a stage takes seconds
+    if (scene_size(job->scene, &job->assets).cells < CELLS_LONG) return;
+    fflush(stdout); // what is printed comes before it
+    console_note(console, "%s", doing);
+}
+
 ExitCode job_build(Job *job, Console *console, SingeSim **sim) {
     SceneMessages messages = {0};
+    job_note_long(job, console, "building");
     SingeResult result = scene_build(job->scene, &job->assets, &job->hooks, sim, &messages);
     if (result) {
         console_clear(console);

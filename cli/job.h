@@ -24,7 +24,14 @@ typedef struct Job {
     SingeSimDef hooks; ///< allocator, log and threads
 } Job;
 
-/// Reads the scene file and all that it names. Messages have been printed unless the result is EXIT_GOOD.
+/// Reads the scene file alone. Messages have been printed unless the result is EXIT_GOOD, and the job is closed.
+ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads);
+
+/// Reads all that the scene names. Refuses one that needs more memory than the machine has, before and after its meshes
+/// are read; `pictures` are the bytes that what is drawn of it takes.
+ExitCode job_load(Job *job, Console *console, double pictures);
+
+/// Both, for a scene that is not drawn.
 ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads);
 
 /// The same for a scene in memory, whose files are looked for in `folder`.
@@ -36,6 +43,9 @@ ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetLis
 
 /// Notes what meshes were read and what was done to them.
 void job_note_meshes(const Job *job, Console *console);
+
+/// Notes what comes next where the scene is so large that it takes a while.
+void job_note_long(const Job *job, Console *console, const char *doing);
 
 ExitCode job_build(Job *job, Console *console, SingeSim **sim);
 void job_close(Job *job);

@@ -379,7 +379,9 @@ int command_run(int argc, char **argv) {
         run.checkpoint_time = run.started;
         run.record = record_make(options.scene);
         run.totals = &run.record.totals;
-        code = job_open(&run.job, &console, options.scene, &options.sets, options.threads);
+        code = job_read(&run.job, &console, options.scene, &options.sets, options.threads);
+        const bool drawn = !options.no_preview && pictures_available();
+        if (!code) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
         if (!code) code = run_scene(&run, &options);
         stats_close(&run.stats);
         singe_surface_free(&run.surface);

@@ -245,6 +245,23 @@ typedef struct SceneAssets {
 SINGE_NODISCARD SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages);
 void scene_assets_free(SceneAssets *assets);
 
+/// From a scene's numbers, before anything is made of it.
+typedef struct SceneSize {
+    uint64_t cells;  ///< of sheets
+    uint32_t unread; ///< sheets whose mesh is in a file that was not read: their cells do not count
+    double memory;   ///< bytes, about: of the simulation and its drawn mesh
+} SceneSize;
+
+/// `assets` are NULL before scene_load.
+SceneSize scene_size(const Scene *scene, const SceneAssets *assets);
+
+/// Bytes that its pictures take, about.
+double scene_picture_memory(const Scene *scene);
+
+/// Whether `wanted` bytes are there, of `room` (0: not known, and so they are); a message at the largest sheet
+/// otherwise. `assets` are NULL before scene_load.
+bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages);
+
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
 /// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
 /// or the first other object.

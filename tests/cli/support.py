@@ -12,6 +12,7 @@ import unittest
 SINGE = os.environ["SINGE"]
 HAS_PREVIEW = os.environ.get("SINGE_PREVIEW", "1") == "1"
 HAS_EXR = os.environ.get("SINGE_EXR", "1") == "1"
+SANITIZED = os.environ.get("SINGE_SANITIZED", "0") == "1"
 HAS_FFMPEG = shutil.which("ffmpeg") is not None
 
 # a corner of a sheet 6 cm wide, lit at an edge; burns through within its frames

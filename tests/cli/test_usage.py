@@ -1,10 +1,13 @@
 """Usage, check, and what is refused before anything is written."""
 
 import os
+import re
+import resource
 import subprocess
+import time
 import unittest
 
-from support import HAS_PREVIEW, SINGE, Case
+from support import HAS_PREVIEW, SANITIZED, SINGE, Case
 
 
 class Usage(Case):
@@ -123,6 +126,39 @@ class Usage(Case):
                      "yellow      288", "families", "memory", "thickening", "time"):
             self.assertIn(word, out)
         self.assertEqual(sorted(os.listdir(self.dir)), ["tiny.yaml"], "check writes no files")
+
+    def test_memory_is_said_first(self):
+        """What a scene needs is known from it alone; what the machine has not is refused before anything is made."""
+        def limited():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 32, 1 << 32))
+
+        cells = "sheets.0.grid.cells="
+        for command in ["check"], ["run", "-o", self.path("large")]:
+            begun = time.monotonic()
+            out, err = self.singe(*command, self.scene, "--set", cells + "[10000, 10000]", expect=2)
+            self.assertLess(time.monotonic() - begun, 10)
+            self.assertRegex(err, r"tiny.yaml:6:5: error: the scene needs about 10\d\d\.\d GB of memory, and there are")
+        self.assertFalse(os.path.exists(self.path("large")))
+        with open(self.path("two.obj"), "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        mesh = self.write_scene("mesh.yaml").replace("mesh.yaml", "with_mesh.yaml")
+        with open(mesh, "w") as file:
+            file.write("sheets: [{mesh: two.obj}]\n")
+        out, _ = self.singe("check", mesh)
+        self.assertRegex(out, r"^needs +about \d\.\d\d GB of memory for 0 cells and those of 1 mesh file\n"
+                              r"needs +about \d\.\d\d GB of memory for 1 cells\n")
+        if not SANITIZED:
+            for command in ["check"], ["run", "-o", self.path("large")]:
+                _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
+                self.assertIn("and there are 4.3 GB", err)
+
+    def test_memory_is_as_it_was_said(self):
+        for more in "contact=no", "contact=yes":
+            out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[150, 150]", "--set", more)
+            said = 1e3 * float(re.search(r"^needs +about ([0-9.]+) GB", out).group(1)) - 40 - 40 * 64 * 48e-6
+            held = float(re.search(r"^memory +([0-9.]+) MB$", out, re.MULTILINE).group(1))
+            self.assertGreater(said, held)
+            self.assertLess(said, 1.7 * held)
 
     def test_check_says_good_last(self):
         out, _ = self.singe("check", self.scene)

@@ -1,0 +1,97 @@
+// What a scene takes, from its numbers alone: bytes a cell as measured on sheets of 10,000 to 490,000 cells, which
+// differ by 5 % (tests/cli/test_usage.py holds it against a run).
+#include "scene/messages.h"
+#include "scene/rotation.h"
+#include "scene/scene.h"
+
+#include <math.h>
+
+/// Bytes of a cell with its springs and its share of the drawn mesh, and what contact adds to them.
+static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
+/// Bytes of a cell of the gas, how many cells it has where the scene leaves them to it, and at most; and how far it
+/// reaches beyond the sheets to the sides and down, m.
+static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_most = 2e6, gas_margin = 0.045;
+static const double pixel_bytes = 40;
+static const double program_bytes = 40e6;
+
+static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
+    const SceneSheet *sheet = &scene->sheets[index];
+    if (assets)
+        return assets->meshes[index].cell_count;
+    return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
+}
+
+/// A box around what is known of the sheets.
+typedef struct Box {
+    double low[3], high[3];
+} Box;
+
+static void box_add(Box *box, const double low[3], const double high[3]) {
+    for (int i = 0; i < 3; i++) {
+        box->low[i] = fmin(box->low[i], low[i]);
+        box->high[i] = fmax(box->high[i], high[i]);
+    }
+}
+
+static void box_add_sheet(Box *box, const SceneSheet *sheet, const Mesh *mesh) {
+    double turned[9], low[3], high[3];
+    rotation_matrix(sheet->rotate, turned);
+    for (int i = 0; i < 3 && sheet->grid.given; i++) {
+        const float *size = sheet->grid.size;
+        double half = fabs(turned[3 * i]) * (double)size[0] + fabs(turned[3 * i + 1]) * (double)size[1];
+        half *= 0.5 * (double)sheet->scale;
+        low[i] = (double)sheet->translate[i] - half;
+        high[i] = (double)sheet->translate[i] + half;
+    }
+    if (sheet->grid.given)
+        box_add(box, low, high);
+    for (uint32_t v = 0; mesh && !sheet->grid.given && v < mesh->vertex_count; v++) {
+        const float *p = mesh->positions + 3 * (size_t)v;
+        const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
+        box_add(box, point, point);
+    }
+}
+
+static double gas_cells(const Scene *scene, const SceneAssets *assets) {
+    const double cell = (double)scene->sim.gas.cell_size;
+    if (!(cell > 0))
+        return gas_cells_usual;
+    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t i = 0; i < scene->sheet_count; i++)
+        box_add_sheet(&box, &scene->sheets[i], assets ? &assets->meshes[i] : NULL);
+    double cells = 1;
+    for (int i = 0; i < 3; i++) {
+        const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
+        cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // a multiple of 8
+    }
+    return fmin(cells, gas_cells_most);
+}
+
+SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
+    SceneSize size = {.memory = program_bytes};
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        size.cells += sheet_cells(scene, assets, i);
+        size.unread += !assets && scene->sheets[i].mesh.name;
+    }
+    size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
+    if (scene->sim.gas.enabled)
+        size.memory += gas_bytes * gas_cells(scene, assets);
+    return size;
+}
+
+double scene_picture_memory(const Scene *scene) {
+    return pixel_bytes * (double)scene->preview.size[0] * (double)scene->preview.size[1];
+}
+
+bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
+    if (!(room > 0) || wanted <= room)
+        return true;
+    uint32_t largest = 0;
+    for (uint32_t i = 1; i < scene->sheet_count; i++)
+        if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest))
+            largest = i;
+    message_add(messages, scene->text, scene->sheets[largest].place, // there is at least one
+                "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
+                1e-9 * wanted, 1e-9 * room);
+    return false;
+}
