@@ -3,15 +3,9 @@
 #define TESTS_FUZZ_MESH_H
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "mesh/mesh.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static inline void demand(bool holds) {
-    if (!holds) abort();
-}
+#include "tests/fuzz/input.h"
 
 static inline void demand_mesh(const Polygons *mesh) {
     demand(mesh->vertex_count > 0 && mesh->face_count > 0 && mesh->positions && mesh->corners && mesh->first);

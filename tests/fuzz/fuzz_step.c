@@ -1,0 +1,347 @@
+// Any bytes as a simulation: a few sheets of any polygons, close together or not, of any material, with anything that
+// the library accepts about them. Three steps: nothing crashes, what is left stays finite and above 0 K, a step that
+// fails changes nothing, and two threads give the bytes of one.
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "mesh/mesh.h"
+#include "tests/fuzz/input.h"
+
+enum { SHEETS = 16, SIDE = 6, VERTICES = 64, FACES = 24, STEPS = 3 };
+
+/// Most of a mesh's polygons lie in a square of this side, m.
+static const float size = 0.06f;
+
+static const float extreme[] = {0,    1e-30f, 1e-9f, 1e-4f, 0.01f, 0.1f, 0.25f, 0.5f,     0.75f,
+                                0.9f, 1,      2,     10,    500,   1e4f, 1e9f,  1e30f, INFINITY};
+
+static float input_extreme(Input *input) {
+    return extreme[input_pick(input, sizeof extreme / sizeof *extreme)];
+}
+
+// ---- meshes
+
+typedef struct Sketch {
+    float positions[3 * VERTICES];
+    uint32_t first[FACES + 1 + SIDE * SIDE], corners[4 * SIDE * SIDE + 6 * FACES];
+    Polygons polygons;
+} Sketch;
+
+static void sketch_face(Sketch *sketch, uint32_t count, const uint32_t *corners) {
+    Polygons *p = &sketch->polygons;
+    memcpy(sketch->corners + p->corner_count, corners, count * sizeof *corners);
+    p->corner_count += count;
+    sketch->first[++p->face_count] = p->corner_count;
+}
+
+static void sketch_grid(Input *input, Sketch *sketch) {
+    uint32_t nx = 1 + input_pick(input, SIDE), ny = 1 + input_pick(input, SIDE), v = 0;
+    float jitter = input_rarely(input, 4) ? 0.6f : input_rarely(input, 2) ? 0.1f : 0;
+    for (uint32_t j = 0; j <= ny; j++)
+        for (uint32_t i = 0; i <= nx; i++, v++) {
+            float *p = sketch->positions + 3 * v;
+            p[0] = size * ((float)i + jitter * (jitter > 0 ? input_share(input) : 0)) / (float)nx;
+            p[1] = size * ((float)j + jitter * (jitter > 0 ? input_share(input) : 0)) / (float)ny;
+            p[2] = jitter > 0 ? 0.1f * size * input_share(input) * jitter : 0;
+        }
+    sketch->polygons.vertex_count = v;
+    for (uint32_t j = 0; j < ny; j++)
+        for (uint32_t i = 0; i < nx; i++) {
+            uint32_t c = j * (nx + 1) + i;
+            sketch_face(sketch, 4, (uint32_t[]){c, c + 1, c + nx + 2, c + nx + 1});
+        }
+}
+
+/// Triangles to hexagons over vertices that lie anywhere.
+static void sketch_soup(Input *input, Sketch *sketch) {
+    uint32_t vertices = 4 + input_pick(input, VERTICES - 4), faces = 1 + input_pick(input, FACES);
+    for (uint32_t i = 0; i < 3 * vertices; i++) sketch->positions[i] = size * input_share(input);
+    sketch->polygons.vertex_count = vertices;
+    for (uint32_t f = 0; f < faces; f++) {
+        uint32_t corners[6], count = 3 + input_pick(input, 4), base = input_byte(input);
+        for (uint32_t i = 0; i < count; i++) corners[i] = (base + input_pick(input, 8)) % vertices;
+        sketch_face(sketch, count, corners);
+    }
+}
+
+static bool sketch_mesh(Input *input, Mesh *mesh) {
+    Sketch sketch = {0};
+    if (input_rarely(input, 3)) sketch_soup(input, &sketch);
+    else sketch_grid(input, &sketch);
+    sketch.polygons.positions = sketch.positions;
+    sketch.polygons.first = sketch.first, sketch.polygons.corners = sketch.corners;
+    MeshOptions options = mesh_default_options();
+    if (input_rarely(input, 4)) options.quads = MESH_QUADS_SPLIT;
+    MeshReport report;
+    SingeError error;
+    return mesh_make("fuzz", &sketch.polygons, &options, (SingeAllocator){0}, mesh, &report, &error) == SINGE_OK;
+}
+
+// ---- what a sheet is made of
+
+static void vary_material(Input *input, SingeMaterialDef *material) {
+    static const size_t params[] = {
+#define AT(member) offsetof(SingeMaterialDef, member)
+        AT(grammage), AT(specific_heat), AT(thickness), AT(diffusivity), AT(layer_exchange), AT(convection),
+        AT(emissivity), AT(loss_mass_floor), AT(temperature), AT(ignition_temperature), AT(heat_of_combustion),
+        AT(heat_share), AT(mass_rate), AT(rate_ceiling), AT(ash_exponent), AT(mass_min), AT(mass_loss),
+        AT(ash_density), AT(shrink_front), AT(shrink_back), AT(fibre_angle), AT(fibre_shrink), AT(weight[0]),
+        AT(weight[3]), AT(compliance[0]), AT(compliance[1]), AT(compliance[2]), AT(compliance[3]), AT(char_weight),
+        AT(drag), AT(damping), AT(crease_radius), AT(crease_share), AT(strength), AT(char_strength),
+        AT(pre_exponential), AT(activation_energy)
+#undef AT
+    };
+    for (unsigned k = input_pick(input, 8); k > 0; k--) {
+        size_t at = params[input_pick(input, sizeof params / sizeof *params)];
+        SingeParam param = singe_param(input_extreme(input));
+        if (input_rarely(input, 3)) {
+            param.to = input_extreme(input), param.field = SINGE_FIELD_NOISE;
+            param.noise = (SingeNoise){0.01f, 1 + (int)input_pick(input, 8), input_byte(input)};
+        }
+        memcpy((char *)material + at, &param, sizeof param);
+    }
+    if (input_rarely(input, 4)) material->heat_operator = SINGE_HEAT_UMBRELLA;
+    if (input_rarely(input, 4)) material->thickening = input_extreme(input);
+    if (input_rarely(input, 8)) material->ablate = false;
+}
+
+/// A material that burns from the first step on.
+static void make_quick(SingeMaterialDef *material) {
+    material->temperature = singe_param(700);
+    material->mass_rate = singe_param(2);
+    material->thickening = 1;
+}
+
+static SingeSheetDef sheet_def(const Mesh *mesh) {
+    SingeSheetDef def = singe_default_sheet();
+    def.vertex_count = mesh->vertex_count, def.positions = mesh->positions;
+    def.cell_count = mesh->cell_count, def.cells = mesh->cells;
+    def.uv = mesh->uv, def.corner_uv = mesh->corner_uv;
+    return def;
+}
+
+static void move_mesh(Input *input, Mesh *mesh, unsigned sheet) {
+    static const float far[] = {0, 0, 0, 0.01f, 9e3f, 1e6f, 1e14f};
+    static const float scales[] = {1, 1, 1, 1, 1e-3f, 100, 1e6f, 1e-9f};
+    float gap = (float[]){0.5e-3f, 0.1e-3f, 0.02e-3f, 5e-3f, 0.05f}[input_pick(input, 5)];
+    float x = far[input_pick(input, 7) * (input_rarely(input, 4) ? 1 : 0)];
+    float scale = scales[input_pick(input, 8) * (input_rarely(input, 8) ? 1 : 0)];
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        float *p = mesh->positions + 3 * (size_t)v;
+        for (int k = 0; k < 3; k++) p[k] *= scale;
+        p[0] += x, p[2] += gap * (float)sheet;
+    }
+}
+
+/// Sheets one over the other: most often copies of the first, half a millimetre apart.
+static unsigned add_sheets(Input *input, SingeSim *sim) {
+    unsigned count = 1 + input_pick(input, SHEETS), added = 0;
+    Mesh mesh = {0};
+    SingeMaterialDef material = singe_default_material();
+    for (unsigned s = 0; s < count; s++) {
+        if (s == 0 || input_rarely(input, 4)) {
+            mesh_free(&mesh);
+            if (!sketch_mesh(input, &mesh)) return added;
+            material = singe_default_material();
+            if (input_rarely(input, 2)) make_quick(&material);
+            if (input_rarely(input, 2)) vary_material(input, &material);
+        }
+        move_mesh(input, &mesh, s == 0 ? 0 : 1);
+        SingeSheetDef def = sheet_def(&mesh);
+        def.material = material;
+        if (input_rarely(input, 8)) def.velocity[input_pick(input, 3)] = input_share(input) * input_extreme(input);
+        if (input_rarely(input, 8)) def.drop_pieces_below = input_extreme(input);
+        SingeSheetId id;
+        added += singe_sim_add_sheet(sim, &def, &id) == SINGE_OK;
+    }
+    mesh_free(&mesh);
+    return added;
+}
+
+// ---- what is around them
+
+static SingePoseKey input_pose(Input *input, float time) {
+    return (SingePoseKey){time,
+                          {size * input_share(input), size * input_share(input), size * input_share(input)},
+                          {input_share(input), 0, 0, 1}};
+}
+
+static void add_sources(Input *input, SingeSim *sim) {
+    for (unsigned k = input_pick(input, 3); k > 0; k--) {
+        SingeSourceDef def = singe_default_source();
+        SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.01f)};
+        def.kind = input_pick(input, 2) ? SINGE_SOURCE_BALL : SINGE_SOURCE_SPOT;
+        def.path = path, def.path_count = def.kind == SINGE_SOURCE_BALL ? 2 : 1;
+        if (input_rarely(input, 2)) def.radius = size;
+        if (input_rarely(input, 4)) def.temperature = input_extreme(input);
+        if (input_rarely(input, 4)) def.conductance = input_extreme(input);
+        SingeSourceId id;
+        if (singe_sim_add_source(sim, &def, &id)) continue;
+    }
+}
+
+static void add_colliders(Input *input, SingeSim *sim) {
+    static const float vertices[] = {0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f, 0, 0, 0, 0.01f, 0, 0, -0.01f};
+    static const uint32_t triangles[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    float heights[9];
+    for (unsigned k = input_pick(input, 3); k > 0; k--) {
+        SingeColliderDef def = singe_default_collider();
+        SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.02f)};
+        for (int i = 0; i < 9; i++) heights[i] = 0.02f * input_share(input);
+        def.kind = (SingeColliderKind)input_pick(input, SINGE_COLLIDER_MESH);
+        if (input_rarely(input, 16)) def.kind = SINGE_COLLIDER_MESH; // takes long to build
+        def.path = path, def.path_count = 1 + input_pick(input, 2);
+        def.vertex_count = 6, def.vertices = vertices, def.triangle_count = 8, def.triangles = triangles;
+        def.columns = def.rows = 3, def.heights = heights;
+        if (input_rarely(input, 4)) def.conductance = input_extreme(input), def.temperature = input_extreme(input);
+        if (input_rarely(input, 4)) def.friction = input_extreme(input);
+        if (input_rarely(input, 8)) def.radius = def.half_size[1] = input_extreme(input);
+        SingeColliderId id;
+        if (singe_sim_add_collider(sim, &def, &id)) continue;
+    }
+}
+
+static void add_pins(Input *input, SingeSim *sim) {
+    for (uint32_t k = input_pick(input, 4); k > 0; k--) {
+        SingePinDef def = singe_default_pin();
+        const float points[3] = {size * input_share(input), size * input_share(input), 0};
+        SingePoseKey path[2] = {input_pose(input, 0), input_pose(input, 0.02f)};
+        def.sheet = (SingeSheetId){k - 1, 1};
+        def.points = points, def.point_count = 1;
+        def.path = path, def.path_count = 2 * input_pick(input, 2);
+        if (input_rarely(input, 4)) def.radius = size;
+        SingePinId id;
+        if (singe_sim_add_pin(sim, &def, &id)) continue;
+    }
+}
+
+static SingeSimDef input_sim(Input *input) {
+    SingeSimDef def = singe_default_sim();
+    unsigned choices = input_byte(input), more = input_byte(input);
+    def.contact.enabled = !(choices & 1);
+    def.solver.creases = choices & 2, def.solver.tearing = choices & 4;
+    def.gas.enabled = (choices & 24) == 24, def.gas.cell_size = 0.02f, def.gas.height = 0.05f;
+    if ((choices & 96) == 96) {
+        singe_init_solver_method(&def.solver, sizeof def.solver, (SingeSolverMethod)input_pick(input, 5));
+        if (def.solver.substeps > 20) def.solver.substeps = 20;
+    }
+    if (choices & 128) def.time_step = (float[]){1.0f / 24, 1e-9f, 1e-3f, 10}[input_pick(input, 4)];
+    if ((more & 7) == 7) def.contact.thickness = input_extreme(input);
+    if ((more & 56) == 56) def.pace = input_extreme(input);
+    if ((more & 64) && input_rarely(input, 2)) def.gravity[input_pick(input, 3)] = 1e4f * input_share(input);
+    if ((more & 128) && input_rarely(input, 2)) def.wind.velocity[input_pick(input, 3)] = 1000 * input_share(input);
+    if ((more & 128) && input_rarely(input, 2)) def.wind.gust = 1000;
+    if ((more & 128) && input_rarely(input, 2)) def.surface_detail = 0.002f, def.surface_raggedness = 0.002f;
+    return def;
+}
+
+// ---- what must hold
+
+typedef struct Saved {
+    uint8_t *bytes;
+    size_t size;
+} Saved;
+
+static void demand_state(const SingeSim *sim) {
+    SingeView view = singe_sim_view(sim);
+    for (uint32_t i = 0; i < view.particle_count; i++) {
+        if (!(view.particle_flags[i] & SINGE_ALIVE)) continue;
+        for (int k = 0; k < 3; k++) demand(isfinite(view.position[i][k]) && isfinite(view.velocity[i][k]));
+        demand(isfinite(view.temperature[i]) && view.temperature[i] >= 0);
+        demand(view.mass[i] >= 0 && view.mass[i] <= 1);
+    }
+}
+
+static void digest_add(uint64_t *digest, const void *data, size_t bytes) {
+    for (size_t i = 0; i < bytes; i++) *digest = (*digest ^ ((const uint8_t *)data)[i]) * 1099511628211u;
+}
+
+/// Of what a caller sees; what contact remembers of its last search may be of the step that failed.
+static uint64_t digest_view(const SingeSim *sim) {
+    SingeView view = singe_sim_view(sim);
+    SingeStats stats = singe_sim_stats(sim);
+    uint64_t digest = 14695981039346656037u;
+    size_t n = view.particle_count;
+    digest_add(&digest, &view.step, sizeof view.step);
+    digest_add(&digest, &view.topology_version, sizeof view.topology_version);
+    digest_add(&digest, &stats.heat_in, sizeof stats.heat_in), digest_add(&digest, &stats.mass, sizeof stats.mass);
+    for (size_t i = 0; i < n; i++) digest_add(&digest, view.position[i], 3 * sizeof(float));
+    for (size_t i = 0; i < n; i++) digest_add(&digest, view.velocity[i], 3 * sizeof(float));
+    digest_add(&digest, view.temperature, n * sizeof(float)), digest_add(&digest, view.mass, n * sizeof(float));
+    digest_add(&digest, view.time_ignited, n * sizeof(float)), digest_add(&digest, view.piece, n * sizeof(int32_t));
+    digest_add(&digest, view.particle_flags, n), digest_add(&digest, view.cell_flags, view.cell_count);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        digest_add(&digest, view.spring_flags[c], view.spring_count[c]);
+        digest_add(&digest, view.spring_length[c], view.spring_count[c] * sizeof(float));
+    }
+    return digest;
+}
+
+static Saved save(SingeSim *sim) {
+    Saved saved;
+    if (singe_sim_save(sim, &saved.bytes, &saved.size)) abort();
+    return saved;
+}
+
+static void demand_same(SingeSim *sim, const Saved *before) {
+    Saved now = save(sim);
+    demand(now.size == before->size && memcmp(now.bytes, before->bytes, now.size) == 0);
+    singe_sim_free_bytes(sim, now.bytes, now.size);
+}
+
+static void demand_surface(SingeSim *sim) {
+    SingeSurface surface = {0};
+    if (singe_sim_surface(sim, &surface)) abort();
+    for (uint32_t i = 0; i < 3 * surface.triangle_count; i++)
+        demand(surface.triangles[i / 3][i % 3] < surface.vertex_count);
+    singe_surface_free(&surface);
+    (void)singe_sim_stats(sim);
+}
+
+/// NULL where the library refuses it.
+static SingeSim *make(Input input, int threads) {
+    SingeSim *sim = NULL;
+    SingeError error;
+    SingeSimDef def = input_sim(&input);
+    def.thread_count = threads;
+    if (singe_sim_create(&def, &sim, &error)) return NULL;
+    if (add_sheets(&input, sim) == 0 || singe_sim_commit(sim)) {
+        singe_sim_destroy(sim);
+        return NULL;
+    }
+    add_colliders(&input, sim);
+    add_sources(&input, sim);
+    add_pins(&input, sim);
+    return sim;
+}
+
+static bool run(SingeSim *sim, bool thorough) {
+    for (int step = 0; step < STEPS; step++) {
+        uint64_t before = thorough ? digest_view(sim) : 0;
+        bool failed = singe_sim_step(sim) != SINGE_OK;
+        if (failed && thorough) demand(digest_view(sim) == before);
+        if (failed) return false;
+        demand_state(sim);
+    }
+    return true;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t length) {
+    Input input = {data, data + length};
+    unsigned thorough = input_byte(&input);
+    SingeSim *sim = make(input, 1);
+    if (!sim) return 0;
+    bool good = run(sim, thorough & 1);
+    demand_surface(sim);
+    if ((thorough & 14) == 14) {
+        SingeSim *other = make(input, 2);
+        demand(other && run(other, false) == good);
+        Saved saved = save(other);
+        demand_same(sim, &saved);
+        singe_sim_free_bytes(other, saved.bytes, saved.size);
+        singe_sim_destroy(other);
+    }
+    singe_sim_destroy(sim);
+    return 0;
+}

@@ -1,0 +1,47 @@
+// Gives a fuzz target the files of a folder, one after the other, and no bytes at all: what libFuzzer does with a corpus.
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/fuzz/input.h"
+
+static int give(const char *folder, const char *name) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "rb");
+    if (!file || fseek(file, 0, SEEK_END)) {
+        perror(path);
+        return 1;
+    }
+    long size = ftell(file);
+    uint8_t *data = malloc(size > 0 ? (size_t)size : 1); // of its very size, so that a byte too many is seen
+    rewind(file);
+    if (size < 0 || !data || fread(data, 1, (size_t)size, file) != (size_t)size) {
+        perror(path);
+        return 1;
+    }
+    fclose(file);
+    fprintf(stderr, "%s\n", path); // the last one is the culprit
+    LLVMFuzzerTestOneInput(data, (size_t)size);
+    free(data);
+    return 0;
+}
+
+int main(int argc, char **argv) {
+    DIR *folder = argc == 2 ? opendir(argv[1]) : NULL;
+    if (!folder) {
+        fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+        return 2;
+    }
+    int given = 0, failed = 0;
+    LLVMFuzzerTestOneInput((const uint8_t *)"", 0);
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (entry->d_name[0] == '.') continue;
+        failed += give(argv[1], entry->d_name);
+        given++;
+    }
+    closedir(folder);
+    fprintf(stderr, "%d files\n", given);
+    return failed || !given;
+}
