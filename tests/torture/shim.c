@@ -131,15 +131,23 @@ FAILING(int, renameat, (int from_folder, const char *from, int to_folder, const 
 FAILING(int, linkat, (int from_folder, const char *from, int to_folder, const char *to, int flags),
         (from_folder, from, to_folder, to, flags), RENAME, -1)
 
+/// Pipes between processes do not fill as disks do, and are none of what is counted.
+static bool is_pipe(int file) {
+    const int reason = errno;
+    const bool seeks = lseek(file, 0, SEEK_CUR) >= 0;
+    errno = reason;
+    return !seeks && file != STDOUT_FILENO;
+}
+
 ssize_t write(int file, const void *data, size_t size) {
     NEXT(write);
-    if (!fails(WRITE)) return next(file, data, size);
+    if ((active && is_pipe(file)) || !fails(WRITE)) return next(file, data, size);
     return halves ? next(file, data, size / 2 ? size / 2 : size) : -1;
 }
 
 ssize_t read(int file, void *data, size_t size) {
     NEXT(read);
-    if (!fails(READ)) return next(file, data, size);
+    if ((active && is_pipe(file)) || !fails(READ)) return next(file, data, size);
     return halves ? next(file, data, size / 2 ? size / 2 : size) : -1;
 }
 
