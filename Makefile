@@ -11,7 +11,10 @@ MEASURING = cli_paper|cli_materials|cli_bench|heat_front
 # check-examples has them: together they would take longer than all the rest
 LONG_EXAMPLES = LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain
 
-.PHONY: all demo check check-examples torture pictures build build-asan build-fuzz build-shared build-tsan clean
+# tests of what stands outside those folders, or of how fast it is
+NO_COVERAGE = mesh_zoo|cli_wrinkles|cli_rim|cli_crossings|cli_validate|cli_paper_.*|step_cost|step_instructions|front|spread|install
+
+.PHONY: all demo check check-examples torture coverage pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -62,8 +65,17 @@ torture:
 	cmake --preset release
 	cmake --build --preset release --target torture
 
+# how much of src, formats, scene and mesh the tests reach, by folder; docs/coverage.md says what they leave and why
+coverage:
+	scripts/setup.sh
+	cmake --preset coverage
+	cmake --build --preset coverage
+	find build-coverage -name '*.gcda' -delete
+	ctest --preset coverage -j2 -E '^($(MEASURING)|$(NO_COVERAGE)|example_.*)$$'
+	scripts/coverage.py build-coverage
+
 pictures:
 	scripts/draw_gallery.sh
 
 clean:
-	rm -rf build build-asan build-tsan build-fuzz build-shared
+	rm -rf build build-asan build-tsan build-fuzz build-shared build-coverage
