@@ -60,6 +60,12 @@ void console_note(Console *console, const char *format, ...) {
     va_end(list);
 }
 
+void console_more(const char *text) {
+    fputs("  ", stderr);
+    printable_write(text, stderr);
+    fputc('\n', stderr);
+}
+
 void console_result(Console *console, const SingeError *error) {
     const char *text = error->message[0] ? error->message : singe_result_name(error->code);
     if (error->stage[0]) console_error(console, "%s: %s", error->stage, text);

@@ -25,6 +25,9 @@ void console_error(Console *console, const char *format, ...) SINGE_PRINTF(2, 3)
 void console_warn(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
 void console_note(Console *console, const char *format, ...) SINGE_PRINTF(2, 3);
 
+/// Prints a line that belongs to the message before it.
+void console_more(const char *text);
+
 /// Prints a library's error: its stage and message.
 void console_result(Console *console, const SingeError *error);
 

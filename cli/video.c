@@ -48,8 +48,9 @@ static void tell_command(Console *console, const char *what, VideoResult result,
         free(line);
         line = longer;
     }
-    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later: %s", what, why, line);
-    else console_error(console, "no %s: %s; to make it later: %s", what, why, line);
+    if (result == VIDEO_NO_PROGRAM) console_warn(console, "no %s: %s; to make it later:", what, why);
+    else console_error(console, "no %s: %s; to make it later:", what, why);
+    if (result != VIDEO_NO_PROGRAM || !console->quiet) console_more(line);
     free(line);
 }
 

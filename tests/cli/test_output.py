@@ -116,7 +116,7 @@ class Output(Case):
             with self.subTest(script):
                 _, err = self.run_scene(out, "--frames", "2", "--quiet", preview=True, expect=1, env=env)
                 self.assertIn("error: no video: " + why, err)
-                self.assertIn(": ffmpeg ", err)
+                self.assertIn("\n  ffmpeg ", err)
                 self.assertEqual(set(os.listdir(self.path(out))),
                                  {"checkpoint.singe", "frames", "gas", "ply", "run.json", "stats.csv"})
                 self.assertEqual((self.record(out)["result"], self.record(out)["video"]), ("complete", False))
