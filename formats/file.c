@@ -1,7 +1,7 @@
 // Whole files: read into memory, and written under a temporary name that replaces the old file only when
 // every byte is on the disk.
 #ifndef _XOPEN_SOURCE
-#define _XOPEN_SOURCE 700 // realpath
+#define _XOPEN_SOURCE 700
 #endif
 
 #include "formats.h"
@@ -112,45 +112,80 @@ static int temporary_open(const char *target, char *temporary, size_t length, in
 }
 
 // The rename itself lasts only when the folder is flushed too. A failure here loses no data.
-static void flush_folder(const char *target, char *scratch) {
-    strcpy(scratch, target);
-    char *slash = strrchr(scratch, '/');
-    if (!slash) strcpy(scratch, ".");
-    else slash[slash == scratch] = 0;
-    int folder = open(scratch, O_RDONLY | O_CLOEXEC);
-    if (folder < 0) return;
-    (void)fsync(folder);
-    close(folder);
+static void flush_folder(const char *target) {
+    char folder[PATH_MAX];
+    strcpy(folder, target);
+    char *slash = strrchr(folder, '/');
+    if (!slash) strcpy(folder, ".");
+    else slash[slash == folder] = 0;
+    int file = open(folder, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    (void)fsync(file);
+    close(file);
 }
 
-static int write_whole(const char *target, const void *data, size_t size) {
-    char temporary[PATH_MAX + 64];
-    int file, reason = temporary_open(target, temporary, sizeof temporary, &file);
-    if (reason) return reason;
-    reason = write_bytes(file, data, size);
-    if (close(file) && !reason) reason = errno;
-    if (!reason && rename(temporary, target)) reason = errno;
-    if (reason) unlink(temporary);
-    else flush_folder(target, temporary);
-    return reason;
+// A rename replaces a link, and never what it points at; but it would put a plain file in the place of a device.
+static SingeResult check_target(const char *path, SingeError *error) {
+    struct stat about;
+    if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);
+    if (strlen(path) >= PATH_MAX) return refuse_system(error, "write", path, ENAMETOOLONG);
+    if (lstat(path, &about) || S_ISREG(about.st_mode) || S_ISLNK(about.st_mode)) return SINGE_OK;
+    if (S_ISDIR(about.st_mode)) return refuse_system(error, "write", path, EISDIR);
+    return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file", short_name(path));
+}
+
+static int put_in_place(const char *temporary, const char *target) {
+    if (rename(temporary, target)) return errno;
+    flush_folder(target);
+    return 0;
 }
 
 SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error) {
-    char target[PATH_MAX];
-    struct stat about;
-    if (!*path) return refuse_system(error, "write", "(no name)", ENOENT);
-    if (stat(path, &about) == 0) {
-        if (S_ISDIR(about.st_mode)) return refuse_system(error, "write", path, EISDIR);
-        // a rename would put a plain file in the place of a device
-        if (!S_ISREG(about.st_mode))
-            return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file",
-                          short_name(path));
-        // a link stays a link: what it points at is replaced
-        if (!realpath(path, target)) return refuse_system(error, "write", path, errno);
-    } else {
-        if (strlen(path) >= sizeof target) return refuse_system(error, "write", path, ENAMETOOLONG);
-        strcpy(target, path);
+    char temporary[PATH_MAX + 64];
+    int file = -1;
+    SingeResult result = check_target(path, error);
+    if (result) return result;
+    int reason = temporary_open(path, temporary, sizeof temporary, &file);
+    if (!reason) {
+        reason = write_bytes(file, data, size);
+        if (close(file) && !reason) reason = errno;
+        if (!reason) reason = put_in_place(temporary, path);
+        if (reason) unlink(temporary);
     }
-    int reason = write_whole(target, data, size);
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
+}
+
+SingeResult file_draft(const char *path, char **draft, SingeError *error) {
+    int file = -1;
+    *draft = NULL;
+    SingeResult result = check_target(path, error);
+    if (result) return result;
+    char *name = malloc(PATH_MAX + 64);
+    if (!name) return refuse_memory(error, "file", path);
+    int reason = temporary_open(path, name, PATH_MAX + 64, &file);
+    if (reason) {
+        free(name);
+        return refuse_system(error, "write", path, reason);
+    }
+    close(file);
+    *draft = name;
+    return SINGE_OK;
+}
+
+SingeResult file_publish(char *draft, const char *path, SingeError *error) {
+    int file = open(draft, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
+    if (file >= 0) close(file);
+    if (!reason) reason = put_in_place(draft, path);
+    if (reason) {
+        file_discard(draft);
+        return refuse_system(error, "write", path, reason);
+    }
+    free(draft);
+    return SINGE_OK;
+}
+
+void file_discard(char *draft) {
+    if (draft) unlink(draft);
+    free(draft);
 }

@@ -21,9 +21,19 @@ SINGE_NODISCARD SingeResult file_read_most(const char *path, size_t most, SingeA
                                            SingeError *error);
 void bytes_free(Bytes *bytes);
 
-/// Writes path whole or leaves it as it was: a temporary name beside it, flushed, renamed. Errors name
-/// the path and the system's reason (full disk, no permission) and remove the temporary file.
+/// Writes path whole or leaves it as it was: a temporary name beside it, flushed, renamed. A link is replaced, not
+/// followed. Errors name the path and the system's reason (full disk, no permission) and remove the temporary file.
 SINGE_NODISCARD SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error);
+
+/// Makes an empty file beside `path`, under a temporary name that nobody else has, for what is written by others or
+/// shall take its place later. *draft is its name, for file_publish or file_discard; NULL on failure. Errors as above.
+SINGE_NODISCARD SingeResult file_draft(const char *path, char **draft, SingeError *error);
+
+/// Puts a draft in the place of `path`, whole. The draft is gone afterwards, after a failure too.
+SINGE_NODISCARD SingeResult file_publish(char *draft, const char *path, SingeError *error);
+
+/// Removes a draft. NULL is none.
+void file_discard(char *draft);
 
 // ---- meshes
 

@@ -107,6 +107,54 @@ static void writing_says_why(void **state) {
     assert_int_equal(files_in_folder(), 0);
 }
 
+// What a link points at is not ours.
+static void links_are_replaced(void **state) {
+    (void)state;
+    SingeError error;
+    struct stat about;
+    assert_int_equal(file_write(inside("theirs"), "theirs", 6, &error), SINGE_OK);
+    const char *const targets[] = {"theirs", "nothing", "/dev/null", "."};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(symlink(targets[i], inside("link")), 0);
+        assert_int_equal(file_write(inside("link"), "ours", 4, &error), SINGE_OK);
+        assert_int_equal(lstat(inside("link"), &about), 0);
+        assert_true(S_ISREG(about.st_mode));
+        assert_contents(inside("link"), "ours");
+        assert_contents(inside("theirs"), "theirs");
+        assert_int_equal(unlink(inside("link")), 0);
+    }
+    assert_int_equal(unlink(inside("theirs")), 0);
+    assert_int_equal(files_in_folder(), 0);
+}
+
+static void drafts_take_the_place_later(void **state) {
+    (void)state;
+    SingeError error;
+    const char *path = inside("film");
+    char *first, *second;
+    assert_int_equal(file_write(path, "old", 3, &error), SINGE_OK);
+    assert_int_equal(file_draft(path, &first, &error), SINGE_OK);
+    assert_int_equal(file_draft(path, &second, &error), SINGE_OK);
+    assert_string_not_equal(first, second);
+    assert_int_equal(file_write(first, "new", 3, &error), SINGE_OK);
+    assert_contents(path, "old");
+    assert_int_equal(file_publish(first, path, &error), SINGE_OK);
+    assert_contents(path, "new");
+    file_discard(second);
+    file_discard(NULL);
+    assert_int_equal(files_in_folder(), 1);
+    // one whose file has gone leaves what was there
+    assert_int_equal(file_draft(path, &first, &error), SINGE_OK);
+    assert_int_equal(unlink(first), 0);
+    assert_int_equal(file_publish(first, path, &error), SINGE_ERROR_FILE);
+    assert_message(&error, "film: cannot write: No such file");
+    assert_contents(path, "new");
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(file_draft(inside("no/where"), &first, &error), SINGE_ERROR_FILE);
+    assert_null(first);
+    assert_int_equal(file_draft(folder, &first, &error), SINGE_ERROR_FILE);
+}
+
 // The limit on a file's size makes the write fail in the middle, as a full disk does.
 static void failed_write_keeps_the_old_file(void **state) {
     (void)state;
@@ -131,20 +179,6 @@ static void failed_write_keeps_the_old_file(void **state) {
     unlink(path);
 }
 
-static void a_link_stays_a_link(void **state) {
-    (void)state;
-    SingeError error;
-    assert_int_equal(file_write(inside("real"), "1", 1, &error), SINGE_OK);
-    assert_int_equal(symlink("real", inside("link")), 0);
-    assert_int_equal(file_write(inside("link"), "22", 2, &error), SINGE_OK);
-    struct stat about;
-    assert_int_equal(lstat(inside("link"), &about), 0);
-    assert_true(S_ISLNK(about.st_mode));
-    assert_contents(inside("real"), "22");
-    unlink(inside("real"));
-    unlink(inside("link"));
-}
-
 static void allocation_failure_is_clean(void **state) {
     (void)state;
     SingeError error;
@@ -162,9 +196,11 @@ static void allocation_failure_is_clean(void **state) {
 int main(void) {
     folder = test_folder();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(writes_and_reads),     cmocka_unit_test(reading_says_why),
-        cmocka_unit_test(writing_says_why),     cmocka_unit_test(failed_write_keeps_the_old_file),
-        cmocka_unit_test(a_link_stays_a_link),  cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(writes_and_reads),         cmocka_unit_test(reading_says_why),
+        cmocka_unit_test(writing_says_why),         cmocka_unit_test(links_are_replaced),
+        cmocka_unit_test(drafts_take_the_place_later),
+        cmocka_unit_test(failed_write_keeps_the_old_file),
+        cmocka_unit_test(allocation_failure_is_clean),
     };
     int failures = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(folder);
