@@ -2,10 +2,12 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
+#include "formats/utf8.h"
 
 /// A block that is there, or the end.
 static char *need(char *block) {
@@ -34,10 +36,14 @@ bool text_stream_end(FILE *stream, char **text) {
 
 void text_json_string(FILE *file, const char *text) {
     fputc('"', file);
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        if (*c == '"' || *c == '\\') fprintf(file, "\\%c", *c);
-        else if (*c < 0x20) fprintf(file, "\\u%04x", *c);
-        else fputc(*c, file);
+    for (const char *c = text; *c;) {
+        int length = utf8_length(c);
+        unsigned byte = (unsigned char)*c;
+        if (length == 0) fprintf(file, "\\udc%02x", byte);
+        else if (*c == '"' || *c == '\\') fprintf(file, "\\%c", *c);
+        else if (byte < 0x20 || byte == 0x7f) fprintf(file, "\\u%04x", byte);
+        else fwrite(c, 1, (size_t)length, file);
+        c += length ? length : 1;
     }
     fputc('"', file);
 }
@@ -106,23 +112,65 @@ bool text_json_member(const char *json, size_t size, const char *name, const cha
     return false;
 }
 
+/// Four hexadecimal digits, or -1.
+static int32_t read_hex(const char *text, const char *end) {
+    int32_t value = 0;
+    for (int i = 0; i < 4; i++) {
+        static const char digits[] = "0123456789abcdef0123456789ABCDEF";
+        const char *digit = text + i < end && text[i] ? strchr(digits, text[i]) : NULL;
+        if (!digit) return -1;
+        value = 16 * value + (int32_t)((digit - digits) % 16);
+    }
+    return value;
+}
+
+/// Appends a character; one of \udc80 to \udcff is the byte that it stands for.
+static char *put_code(char *out, uint32_t code) {
+    if (code >= 0xdc80 && code <= 0xdcff) {
+        *out++ = (char)(code - 0xdc00);
+        return out;
+    }
+    int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    static const unsigned char heads[] = {0, 0xc0, 0xe0, 0xf0};
+    *out++ = (char)(heads[more] | code >> 6 * more);
+    while (more--) *out++ = (char)(0x80 | (code >> 6 * more & 0x3f));
+    return out;
+}
+
+/// Reads what follows a backslash and appends it. Returns the place behind it, or NULL where it is no escape.
+static const char *put_escape(const char *p, const char *end, char **out) {
+    static const char kinds[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
+    const char *kind = p < end && *p ? strchr(kinds, *p) : NULL;
+    if (kind) {
+        *(*out)++ = meanings[kind - kinds];
+        return p + 1;
+    }
+    if (p >= end || *p != 'u') return NULL;
+    int32_t code = read_hex(p + 1, end), low = -1;
+    if (code <= 0) return NULL; // a text ends at 0
+    p += 5;
+    bool high = code >= 0xd800 && code < 0xdc00;
+    if (high && end - p >= 6 && p[0] == '\\' && p[1] == 'u') low = read_hex(p + 2, end);
+    if (low >= 0xdc00 && low < 0xe000) {
+        code = 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00);
+        p += 6;
+    }
+    *out = put_code(*out, (uint32_t)code);
+    return p;
+}
+
 char *text_json_unquote(const char *value, size_t size) {
     while (size && (value[size - 1] == ' ' || value[size - 1] == '\n')) size--;
     if (size < 2 || value[0] != '"' || value[size - 1] != '"') return NULL;
-    char *text = need(malloc(size)), *out = text;
-    for (size_t i = 1; i < size - 1; i++) {
-        if (value[i] != '\\' || i + 1 >= size - 1) {
-            *out++ = value[i];
-            continue;
-        }
-        char kind = value[++i];
-        if (kind == 'u' && i + 4 < size - 1) {
-            char digits[5] = {value[i + 1], value[i + 2], value[i + 3], value[i + 4], 0};
-            *out++ = (char)strtol(digits, NULL, 16); // only control characters are written so
-            i += 4;
-        } else {
-            *out++ = kind == 'n' ? '\n' : kind == 't' ? '\t' : kind == 'r' ? '\r' : kind;
-        }
+    char *text = need(malloc(size)), *out = text; // no escape is shorter than what it stands for
+    const char *p = value + 1, *end = value + size - 1;
+    while (p && p < end) {
+        if (*p == '\\') p = put_escape(p + 1, end, &out);
+        else *out++ = *p++;
+    }
+    if (!p) {
+        free(text);
+        return NULL;
     }
     *out = 0;
     return text;

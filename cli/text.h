@@ -14,7 +14,9 @@ char *text_format(const char *format, ...) SINGE_PRINTF(1, 2);
 /// caller frees it either way.
 SINGE_NODISCARD bool text_stream_end(FILE *stream, char **text);
 
-/// Writes a JSON string with its quotes.
+/// Writes a JSON string with its quotes. Bytes that are no UTF-8, as names of files may have, become \udc80 to
+/// \udcff: what is written is UTF-8 whatever the text is, and text_json_unquote gives the same bytes back (and so do
+/// the file names of Python).
 void text_json_string(FILE *file, const char *text);
 
 /// Writes a number that reads back exactly, or null where it is not finite.
@@ -24,8 +26,8 @@ void text_json_number(FILE *file, double number);
 /// text is not JSON up to it.
 bool text_json_member(const char *json, size_t size, const char *name, const char **value, size_t *value_size);
 
-/// The characters of a JSON string value, from malloc; NULL when it is not one. Without memory for it the program ends
-/// with EXIT_FAILED.
+/// The bytes of a JSON string value, from malloc; NULL when it is not one. Without memory for it the program ends with
+/// EXIT_FAILED.
 char *text_json_unquote(const char *value, size_t size);
 
 #endif

@@ -2,6 +2,7 @@
 #include "scene/values.h"
 
 #include "formats/printable.h"
+#include "formats/utf8.h"
 
 #include <string.h>
 
@@ -20,11 +21,17 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     return kept;
 }
 
-// "dir/letter.yaml" → "letter"
+// "dir/letter.yaml" → "letter". Bytes that are no UTF-8 become '_': the name is in run.json, whose reader knows no other.
 static char *stem(SceneArena *arena, const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    return length ? arena_text(arena, name, length) : arena_text(arena, "scene", 5);
+    char *copy = length ? arena_text(arena, name, length) : arena_text(arena, "scene", 5);
+    for (char *c = copy; c && *c;) {
+        int width = utf8_length(c);
+        if (!width) *c = '_';
+        c += width ? width : 1;
+    }
+    return copy;
 }
 
 // The name of a scene that gives none. A file may be called what its outputs may not.
