@@ -71,10 +71,10 @@ static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeEr
     float length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     switch (shape->kind) {
     case SINGE_COLLIDER_PLANE: break;
-    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius < 1e4f; break;
+    case SINGE_COLLIDER_SPHERE: good = good && shape->radius > 0 && shape->radius <= 1e4f; break;
     case SINGE_COLLIDER_BOX: good = good && all_between(shape->half_size, 3, 1e-7f, 1e4f); break;
     case SINGE_COLLIDER_CAPSULE:
-        good = good && shape->radius > 0 && shape->radius < 1e4f && shape->height >= 0 && shape->height < 1e4f;
+        good = good && shape->radius > 0 && shape->radius <= 1e4f && shape->height >= 0 && shape->height <= 1e4f;
         break;
     case SINGE_COLLIDER_HEIGHTFIELD:
     case SINGE_COLLIDER_MESH: good = good && shape->solid; break;

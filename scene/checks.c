@@ -105,11 +105,12 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
         across += cross[i] * cross[i];
     }
     const float *up = camera->up;
-    if (up[0] == 0 && up[1] == 0 && up[2] == 0)
-        complain(reader, map->place, "the camera's up must not be zero");
+    const double least = 1.1e-12; // as the preview has it, which squares floats
+    if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < least)
+        complain(reader, map->place, "the camera's up must be longer than 1e-6");
     else if (!camera_given(map))
         return;
-    else if (!(length > 0))
+    else if (length < least)
         complain(reader, map->place, "the camera's eye and target are the same point");
     else if (!(across > 0))
         complain(reader, map->place, "the camera's up must point away from the line of sight");
@@ -120,8 +121,8 @@ void finish_preview(Reader *reader, const Node *map, void *object) {
     preview->camera_given = camera_given(node_find(map, "camera"));
     const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
-    if (direction && d[0] == 0 && d[1] == 0 && d[2] == 0)
-        complain(reader, direction->place, "the light's direction must not be zero");
+    if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)
+        complain(reader, direction->place, "the light's direction must be longer than 1e-9");
 }
 
 // Sheets without a name are numbered; two must not share one.

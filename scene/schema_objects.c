@@ -26,7 +26,7 @@ enum {
 
 static const SchemaRow key_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SceneKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
-    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, ANY, .doc = "where"},
+    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, PLACE, .doc = "where"},
     {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, TURN,
      .doc = "turned about the x axis, then y, then z, all fixed in the world"},
 };
@@ -114,13 +114,14 @@ static const SchemaRow source_rows[] = {
      .doc = "to here; `inf` is for ever"},
     SOURCE("temperature", temperature, DIM_TEMPERATURE, BALL | SPOT, KELVIN, "of the ball or the flame"),
     SOURCE("conductance", conductance, DIM_CONDUCTANCE, BALL | SPOT, FROM(0), "how well its heat reaches the sheet"),
-    SOURCE("radius", radius, DIM_LENGTH, BALL | SPOT, FROM(0), "full heat within it"),
+    SOURCE("radius", radius, DIM_LENGTH, BALL, WITHIN(0, 1e4), "full heat within it"),
+    SOURCE("radius", radius, DIM_LENGTH, SPOT, FROM(0), "full heat within it"),
     SOURCE("falloff", falloff, DIM_LENGTH, BALL | SPOT, FROM(0),
            "beyond the radius, over which the heat falls to nothing"),
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
      .kinds = SPOT, .flags = ROW_REQUIRED, ANY, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = BALL, .flags = ROW_SHORT, ANY, .doc = "its centre, when it does not move; this or `path`"},
+     .kinds = BALL, .flags = ROW_SHORT, PLACE, .doc = "its centre, when it does not move; this or `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
      .sub = &schema_key, .doc = "its way; this or `position`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneSource, picture), .kinds = PICTURE, .flags = ROW_REQUIRED,
@@ -143,10 +144,10 @@ static const SchemaRow collider_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
      .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
             "(solid below heights over a rectangle of its own x-y plane) or `mesh` (what a closed mesh encloses)"},
-    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e6), "of the sphere or the capsule"),
+    COLLIDER("radius", radius, DIM_LENGTH, SPHERE | CAPSULE, WITHIN(1e-6, 1e4), "of the sphere or the capsule"),
     {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX,
-     WITHIN(1e-6, 1e6), .doc = "half of the box's lengths along its own axes"},
-    COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e6), "between the centres of the capsule's caps"),
+     WITHIN(1e-6, 1e4), .doc = "half of the box's lengths along its own axes"},
+    COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e4), "between the centres of the capsule's caps"),
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
      .doc = "a closed mesh of triangles or polygons: OBJ, PLY, or what assimp reads, whose faces turn "
             "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
@@ -163,7 +164,7 @@ static const SchemaRow collider_rows[] = {
     {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
      WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
-     .flags = ROW_SHORT, ANY, .doc = "of its centre, when it does not move; instead of `path`"},
+     .flags = ROW_SHORT, PLACE, .doc = "of its centre, when it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,

@@ -11,6 +11,7 @@ static const float PLAN_CELLS_ACROSS = 42; ///< cells along the diagonal of the 
 static const float PLAN_CELL_LEAST = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
 static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MOST = 2e6;
 enum { PLAN_PARTS_MOST = 16, PLAN_COARSEST = 4 };
+enum { PLAN_SIDE_MOST = 4096 }; ///< cells along an axis: as many as a frame's file holds
 
 SingeResult gas_check(const SingeGasDef *def, SingeError *error) {
     const char *what = NULL;
@@ -53,6 +54,12 @@ static double plan_fit(GasPlan *plan, const float low[3], const float high[3], f
     return cells;
 }
 
+static int plan_longest(const GasPlan *plan) {
+    const int *n = plan->grid.n;
+    int longest = n[0] > n[1] ? n[0] : n[1];
+    return longest > n[2] ? longest : n[2];
+}
+
 static void plan_lay(GasPlan *plan, const Shell *shell) {
     float low[3] = {0}, high[3] = {0}, diagonal = 0, wanted = plan->settings.def.cell_size;
     bool first = true;
@@ -70,7 +77,8 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
     if (wanted > 0) cell = wanted;
     else if (cell < PLAN_CELL_LEAST) cell = PLAN_CELL_LEAST;
     if (cell < 1e-4f) cell = 1e-4f;
-    while (plan_fit(plan, low, high, cell) > (wanted > 0 ? PLAN_CELLS_MOST : PLAN_CELLS_USUAL)) cell *= 1.05f;
+    double most = wanted > 0 ? PLAN_CELLS_MOST : PLAN_CELLS_USUAL;
+    while (plan_fit(plan, low, high, cell) > most || plan_longest(plan) > PLAN_SIDE_MOST) cell *= 1.05f;
     plan->grid = plan_grid(plan->grid.n);
 }
 
