@@ -7,8 +7,8 @@
 #include "bench/strip.h"
 #include "cli/args.h"
 #include "cli/bench_materials.h"
+#include "cli/frame.h"
 #include "cli/job.h"
-#include "cli/pictures.h"
 #include "formats/printable.h"
 
 enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
@@ -36,7 +36,27 @@ typedef struct CheckTimes {
     double step, surface, picture; ///< s each
 } CheckTimes;
 
-static SingeResult time_steps(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+/// All that run makes of its first frame, but for the files.
+static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+    Frame frame = {0};
+    Pictures *pictures = NULL;
+    const uint8_t *rgb;
+    double begun = console_clock();
+    SingeResult result = frame_take_surface(sim, &frame, error);
+    times->surface = console_clock() - begun;
+    if (!result) result = frame_take_gas(sim, &frame, error);
+    if (!result && pictures_available()) result = pictures_open(job, &pictures, error);
+    if (!result && pictures) {
+        begun = console_clock();
+        result = frame_draw(&frame, pictures, &rgb, error);
+        times->picture = console_clock() - begun;
+    }
+    pictures_close(pictures);
+    frame_free(&frame);
+    return result;
+}
+
+static SingeResult time_steps(SingeSim *sim, CheckTimes *times, SingeError *error) {
     int count = 0;
     double begun = console_clock();
     while (count < CHECK_STEPS && (count == 0 || console_clock() - begun < check_seconds)) {
@@ -47,21 +67,7 @@ static SingeResult time_steps(const Job *job, SingeSim *sim, CheckTimes *times, 
         count++;
     }
     times->step = (console_clock() - begun) / count;
-    SingeSurface surface = {0};
-    begun = console_clock();
-    SingeResult result = singe_sim_surface(sim, &surface);
-    if (result) *error = *singe_sim_error(sim);
-    times->surface = console_clock() - begun;
-    Pictures *pictures = NULL;
-    if (!result && pictures_available()) result = pictures_open(job, &pictures, error);
-    if (!result && pictures) {
-        begun = console_clock();
-        if (!pictures_draw(pictures, &surface, NULL, 0, error)) result = error->code;
-        times->picture = console_clock() - begun;
-    }
-    pictures_close(pictures);
-    singe_surface_free(&surface);
-    return result;
+    return SINGE_OK;
 }
 
 /// What was read and what was done to it, sheet by sheet.
@@ -178,7 +184,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         job_note_long(&job, console, "burning a strip of each material");
         report_materials(job.scene, thickening);
         job_note_long(&job, console, "timing steps");
-        if (time_steps(&job, sim, &times, &error)) {
+        if (try_frame(&job, sim, &times, &error) || time_steps(sim, &times, &error)) {
             fflush(stdout);
             console_result(console, &error);
             code = EXIT_FAILED;

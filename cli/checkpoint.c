@@ -12,12 +12,13 @@
 /// snapshot's.
 typedef struct Trailer {
     char magic[8];
-    uint64_t snapshot_size, scene_hash, frame;
+    uint64_t snapshot_size, frame, step;
+    SceneHash hash;
     Totals totals;
     uint64_t checksum; ///< of everything before it
 } Trailer;
 
-static const char checkpoint_magic[8] = {'S', 'I', 'N', 'G', 'E', 'C', 'P', '3'};
+static const char checkpoint_magic[8] = {'S', 'I', 'N', 'G', 'E', 'C', 'P', '4'};
 
 /// FNV-1a over words of 8 bytes with a final mix; the rest byte by byte.
 static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
@@ -35,49 +36,81 @@ static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) {
 
 static const uint64_t hash_start = 14695981039346656037u;
 
+/// What is in front of an array says where it ends, and that it is there.
+static uint64_t hash_array(uint64_t hash, const void *data, size_t count, size_t size) {
+    uint64_t length = data ? count : 0;
+    hash = hash_bytes(hash, &length, sizeof length);
+    return length ? hash_bytes(hash, data, count * size) : hash;
+}
+
 static uint64_t hash_mesh(uint64_t hash, const Mesh *mesh) {
-    hash = hash_bytes(hash, mesh->positions, sizeof(float) * 3 * mesh->vertex_count);
-    if (mesh->corner_uv) hash = hash_bytes(hash, mesh->corner_uv, sizeof(float) * 8 * mesh->cell_count);
-    if (mesh->uv) hash = hash_bytes(hash, mesh->uv, sizeof(float) * 2 * mesh->vertex_count);
-    hash = hash_bytes(hash, mesh->cells, sizeof(uint32_t) * 4 * mesh->cell_count);
+    hash = hash_array(hash, mesh->positions, 3 * (size_t)mesh->vertex_count, sizeof(float));
+    hash = hash_array(hash, mesh->corner_uv, 8 * (size_t)mesh->cell_count, sizeof(float));
+    hash = hash_array(hash, mesh->uv, 2 * (size_t)mesh->vertex_count, sizeof(float));
+    hash = hash_array(hash, mesh->cells, 4 * (size_t)mesh->cell_count, sizeof(uint32_t));
+    hash = hash_array(hash, mesh->became, mesh->source_count, sizeof(uint32_t)); // which vertices pins name
     for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        hash = hash_bytes(hash, mesh->attributes[i].name, strlen(mesh->attributes[i].name));
-        hash = hash_bytes(hash, mesh->attributes[i].values, sizeof(float) * mesh->vertex_count);
+        hash = hash_array(hash, mesh->attributes[i].name, strlen(mesh->attributes[i].name), 1);
+        hash = hash_array(hash, mesh->attributes[i].values, mesh->vertex_count, sizeof(float));
     }
     return hash;
 }
 
 static uint64_t hash_picture(uint64_t hash, const SingePicture *picture) {
-    if (!picture->values) return hash;
     hash = hash_bytes(hash, &picture->width, sizeof picture->width);
-    return hash_bytes(hash, picture->values, sizeof(float) * (size_t)picture->width * (size_t)picture->height);
+    return hash_array(hash, picture->values, (size_t)picture->width * (size_t)picture->height, sizeof(float));
 }
 
-SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, uint64_t *hash, SingeError *error) {
-    Scene bare = *scene; // a longer run or other looks may go on from the same checkpoint
-    bare.frames = 1;
-    bare.preview = (ScenePreview){0};
+static uint64_t hash_solid(uint64_t hash, const SceneSolid *solid) {
+    const PreviewSolid *surface = &solid->surface;
+    hash = hash_array(hash, surface->vertices, 3 * (size_t)surface->vertex_count, sizeof(float));
+    hash = hash_array(hash, surface->triangles, 3 * (size_t)surface->triangle_count, sizeof(uint32_t));
+    return hash_array(hash, solid->heights, (size_t)solid->columns * solid->rows, sizeof(float));
+}
+
+static uint64_t hash_image(uint64_t hash, const Image *image) {
+    hash = hash_bytes(hash, &image->width, sizeof image->width);
+    return hash_array(hash, image->rgb, 3 * (size_t)image->width * (size_t)image->height, sizeof *image->rgb);
+}
+
+static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
+    for (uint32_t i = 0; i < assets->sheet_count; i++) {
+        hash = hash_mesh(hash, &assets->meshes[i]);
+        hash = hash_image(hash, &assets->images[i]);
+        for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->params[i][k]);
+    }
+    for (uint32_t i = 0; i < assets->source_count; i++) hash = hash_picture(hash, &assets->source_pictures[i]);
+    for (uint32_t i = 0; i < assets->collider_count; i++) hash = hash_solid(hash, &assets->solids[i]);
+    return hash;
+}
+
+static bool hash_scene(const Scene *scene, uint64_t *hash) {
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
-    if (file) scene_dump(&bare, SCENE_JSON, 0, file);
+    if (file) scene_dump(scene, SCENE_JSON, 0, file);
     const bool good = text_stream_end(file, &text);
-    if (good) {
-        *hash = hash_bytes(hash_start, text, size);
-        for (uint32_t i = 0; i < assets->sheet_count; i++) {
-            *hash = hash_mesh(*hash, &assets->meshes[i]);
-            for (int k = 0; k < SCENE_PARAM_SLOTS; k++) *hash = hash_picture(*hash, &assets->params[i][k]);
-        }
-        for (uint32_t i = 0; i < assets->source_count; i++) *hash = hash_picture(*hash, &assets->source_pictures[i]);
-    }
+    if (good) *hash = hash_bytes(hash_start, text, size);
     free(text);
-    if (good) return SINGE_OK;
+    return good;
+}
+
+SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash, SingeError *error) {
+    Scene bare = *scene; // a longer run or other looks may go on from the same checkpoint
+    bare.frames = 1;
+    bool good = hash_scene(&bare, &hash->looks);
+    bare.preview = (ScenePreview){0};
+    if (good && hash_scene(&bare, &hash->result)) {
+        hash->looks = hash_image(hash->looks, &assets->sky);
+        hash->result = hash_files(hash->result, assets);
+        return SINGE_OK;
+    }
     *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
     return SINGE_ERROR_MEMORY;
 }
 
-SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, int frame,
-                             uint64_t scene_hash, const Totals *totals, SingeError *error) {
+SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, Progress progress,
+                             SceneHash hash, const Totals *totals, SingeError *error) {
     uint8_t *bytes;
     size_t size;
     SingeResult result = singe_sim_save(sim, &bytes, &size);
@@ -91,7 +124,8 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
         return SINGE_ERROR_MEMORY;
     }
-    Trailer trailer = {.snapshot_size = size, .scene_hash = scene_hash, .frame = (uint64_t)frame, .totals = *totals};
+    Trailer trailer = {.snapshot_size = size, .hash = hash, .frame = (uint64_t)progress.frame,
+                       .step = (uint64_t)progress.step, .totals = *totals};
     memcpy(trailer.magic, checkpoint_magic, sizeof trailer.magic);
     trailer.checksum = hash_bytes(hash_bytes(hash_start, grown, size), &trailer, offsetof(Trailer, checksum));
     memcpy(grown + size, &trailer, sizeof trailer);
@@ -109,7 +143,7 @@ static SingeResult refuse(const Folder *folder, SingeResult code, const char *wh
     return code;
 }
 
-static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, uint64_t scene_hash, Trailer *trailer,
+static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, Trailer *trailer,
                                 SingeError *error) {
     if (bytes->size < sizeof *trailer) return refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
     size_t size = bytes->size - sizeof *trailer;
@@ -117,16 +151,17 @@ static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, uint64
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
         return refuse(folder, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
-    if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX)
+    if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX ||
+        trailer->step > INT_MAX)
         return refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
-    if (trailer->scene_hash != scene_hash)
+    if (trailer->hash.result != hash.result)
         return refuse(folder, SINGE_ERROR_STATE,
                       "the checkpoint is of another scene (the scene, its --set or a file it names has changed)",
                       error);
     return SINGE_OK;
 }
 
-SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, uint64_t scene_hash, Checkpoint *checkpoint,
+SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash, Checkpoint *checkpoint,
                             SingeError *error) {
     *checkpoint = (Checkpoint){0};
     if (access(folder->checkpoint, F_OK) != 0 && errno == ENOENT) return SINGE_OK;
@@ -134,12 +169,14 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, uint
     SingeResult result = file_read(folder->checkpoint, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
     Trailer trailer;
-    result = read_trailer(folder, &bytes, scene_hash, &trailer, error);
+    result = read_trailer(folder, &bytes, hash, &trailer, error);
     if (!result) {
         SingeError inner = {0};
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
         if (result) refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
-        else checkpoint->frame = (int)trailer.frame, checkpoint->totals = trailer.totals;
+        else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};
+        checkpoint->totals = trailer.totals;
+        checkpoint->other_looks = trailer.hash.looks != hash.looks;
     }
     bytes_free(&bytes);
     return result;

@@ -1,5 +1,5 @@
-// DIR/checkpoint.singe: a snapshot of the simulation, then a trailer with the frame it belongs to, the hash of the
-// scene and a checksum. Written whole or not at all, after everything of its frame.
+// DIR/checkpoint.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps since,
+// the hash of the scene and a checksum. Written whole or not at all, after everything of its frame.
 #ifndef CLI_CHECKPOINT_H
 #define CLI_CHECKPOINT_H
 
@@ -8,23 +8,36 @@
 #include "cli/totals.h"
 #include "scene/scene.h"
 
-/// A hash of all that the simulation's result depends on: the resolved scene without its number of frames and its
-/// preview, and the contents of its meshes and pictures.
-SINGE_NODISCARD SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, uint64_t *hash,
+/// What a checkpoint belongs to.
+typedef struct SceneHash {
+    uint64_t result; ///< of all that the simulation's result and its sheets' looks depend on
+    uint64_t looks;  ///< of the preview, which may differ when a run goes on
+} SceneHash;
+
+/// The result's: the resolved scene without its number of frames and its preview, and the contents of every file that it
+/// names for anything but the preview: meshes and pictures of sheets, sources and colliders, as they are used.
+SINGE_NODISCARD SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash,
                                                   SingeError *error);
 
-SINGE_NODISCARD SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, int frame,
-                                             uint64_t scene_hash, const Totals *totals, SingeError *error);
+/// Where a run is: behind a frame whose files are written, by so many steps of the next.
+typedef struct Progress {
+    int frame, step;
+} Progress;
+
+SINGE_NODISCARD SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator,
+                                             Progress progress, SceneHash hash, const Totals *totals,
+                                             SingeError *error);
 
 typedef struct Checkpoint {
-    int frame; ///< 0: there is no checkpoint
+    Progress progress; ///< frame 0: there is no checkpoint
     Totals totals;
+    bool other_looks; ///< the preview was another
     SingeSim *sim;
 } Checkpoint;
 
 /// Reads a checkpoint and makes its simulation. Errors: SINGE_ERROR_FORMAT and others for one that is damaged or of
 /// another version, SINGE_ERROR_STATE for one of another scene. No file: success with frame 0.
-SINGE_NODISCARD SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, uint64_t scene_hash,
+SINGE_NODISCARD SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash,
                                             Checkpoint *checkpoint, SingeError *error);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,8 @@ Folder folder_name(const char *path, const char *name) {
     folder.video = text_format("%s/preview.mp4", folder.path);
     folder.sheet = text_format("%s/sheet.png", folder.path);
     folder.gif = text_format("%s/preview.gif", folder.path);
+    folder.cache_lock = text_format("%s/cache.lock", folder.path);
+    folder.pictures_lock = text_format("%s/pictures.lock", folder.path);
     return folder;
 }
 
@@ -33,12 +36,16 @@ void folder_free(Folder *folder) {
     free(folder->video);
     free(folder->sheet);
     free(folder->gif);
+    free(folder->cache_lock);
+    free(folder->pictures_lock);
     *folder = (Folder){0};
 }
 
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error) {
     *error = (SingeError){.code = SINGE_ERROR_FILE, .stage = "output", .element = -1};
-    snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, strerror(reason));
+    // "too many levels of symbolic links" would be one: none is followed
+    const char *why = reason == ELOOP ? "it is a link" : reason ? strerror(reason) : "not a regular file";
+    snprintf(error->message, sizeof error->message, "%.200s: cannot %s: %s", path, what, why);
     return SINGE_ERROR_FILE;
 }
 
@@ -83,11 +90,13 @@ static char *frame_path(const Folder *folder, int which, int frame) {
 }
 
 SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error) {
-    SingeResult result = folder_make(folder->path, error);
+    SingeResult result = SINGE_OK;
     for (int i = 0; i < INNER_COUNT && !result; i++) {
         if (!is_asked(parts, i)) continue;
+        struct stat info;
         char *path = text_format("%s/%s", folder->path, inner[i].name);
-        result = make_one(path, error);
+        if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) result = folder_fail(path, "write", ELOOP, error);
+        if (!result) result = make_one(path, error);
         if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
         free(path);
     }
@@ -111,19 +120,41 @@ static int frame_of(const Folder *folder, const char *file, const char *ending, 
     return (int)strtol(digits, NULL, 10);
 }
 
-/// Whether this is what file_write adds to a name until the file is whole: ".PID-N.tmp".
+/// Whether this is what file_write and file_draft add to a name until the file is whole: ".PID-N.tmp", once for a
+/// draft and once for what is written in its place.
 static bool is_temporary(const char *rest) {
-    if (*rest++ != '.') return false;
-    size_t pid = strspn(rest, "0123456789");
-    if (pid == 0 || rest[pid] != '-') return false;
-    rest += pid + 1;
-    size_t attempt = strspn(rest, "0123456789");
-    return attempt > 0 && strcmp(rest + attempt, ".tmp") == 0;
+    for (int times = 0; times < 2; times++) {
+        if (*rest++ != '.') return false;
+        size_t pid = strspn(rest, "0123456789");
+        if (pid == 0 || rest[pid] != '-') return false;
+        rest += pid + 1;
+        size_t attempt = strspn(rest, "0123456789");
+        if (attempt == 0 || strncmp(rest + attempt, ".tmp", 4) != 0) return false;
+        rest += attempt + 4;
+        if (!*rest) return true;
+    }
+    return false;
 }
 
-static SingeResult remove_file(const char *path, int *removed, SingeError *error) {
-    if (unlink(path) == 0) (*removed)++;
-    else if (errno != ENOENT) return folder_fail(path, "remove", errno, error);
+/// Opens a folder, but no link to one. NULL with *result set, or good where nothing of ours can be there.
+static DIR *open_own(const char *path, SingeResult *result, SingeError *error) {
+    int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR *dir = fd < 0 ? NULL : fdopendir(fd);
+    bool not_ours = !dir && (errno == ENOENT || errno == ELOOP || errno == ENOTDIR);
+    *result = dir || not_ours ? SINGE_OK : folder_fail(path, "list", errno, error);
+    if (!dir && fd >= 0) close(fd);
+    return dir;
+}
+
+static SingeResult remove_at(DIR *dir, const char *path, const char *name, int *removed, SingeError *error) {
+    if (unlinkat(dirfd(dir), name, 0) == 0) (*removed)++;
+    else if (errno != ENOENT) {
+        int reason = errno;
+        char *file = text_format("%s/%s", path, name);
+        SingeResult result = folder_fail(file, "remove", reason, error);
+        free(file);
+        return result;
+    }
     return SINGE_OK;
 }
 
@@ -135,18 +166,16 @@ static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result
     return entry;
 }
 
-/// Removes frames, where `frames` is set, and what a killed run left half written. The folder need not be there.
+/// Removes frames, where `frames` is set, or else what a killed run left half written.
 static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
     char *path = text_format("%s/%s", folder->path, inner[which].name);
-    DIR *dir = opendir(path);
-    SingeResult result = dir || errno == ENOENT ? SINGE_OK : folder_fail(path, "list", errno, error);
+    SingeResult result;
+    DIR *dir = open_own(path, &result, error);
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
-        if (!frame_of(folder, entry->d_name, inner[which].ending, &rest)) continue;
-        if (!(*rest == 0 && frames) && !is_temporary(rest)) continue;
-        char *file = text_format("%s/%s", path, entry->d_name);
-        result = remove_file(file, removed, error);
-        free(file);
+        int frame = frame_of(folder, entry->d_name, inner[which].ending, &rest);
+        if (!frame || !(frames ? *rest == 0 : is_temporary(rest))) continue;
+        result = remove_at(dir, path, entry->d_name, removed, error);
     }
     if (dir) closedir(dir);
     free(path);
@@ -155,19 +184,16 @@ static SingeResult clean_frames(const Folder *folder, int which, bool frames, in
 
 /// The half-written ones of the files that exist once.
 static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
-    static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png"};
+    static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png", "preview.mp4", "preview.gif"};
     DIR *dir = opendir(folder->path);
     SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
         bool ours = false;
-        for (int i = 0; i < 3; i++) {
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
             size_t length = strlen(names[i]);
             ours = ours || (strncmp(entry->d_name, names[i], length) == 0 && is_temporary(entry->d_name + length));
         }
-        if (!ours) continue;
-        char *file = text_format("%s/%s", folder->path, entry->d_name);
-        result = remove_file(file, removed, error);
-        free(file);
+        if (ours) result = remove_at(dir, folder->path, entry->d_name, removed, error);
     }
     if (dir) closedir(dir);
     return result;
@@ -180,11 +206,18 @@ SingeResult folder_sweep(const Folder *folder, SingeError *error) {
     return result;
 }
 
+static SingeResult remove_file(const char *path, int *removed, SingeError *error) {
+    if (unlink(path) == 0) (*removed)++;
+    else if (errno != ENOENT) return folder_fail(path, "remove", errno, error);
+    return SINGE_OK;
+}
+
+SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error) {
+    return remove_file(folder->checkpoint, removed, error);
+}
+
 SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {
-    *removed = 0;
-    // the checkpoint goes first: without its frames it must not be resumed from
-    SingeResult result = remove_file(folder->checkpoint, removed, error);
-    if (!result) result = remove_file(folder->video, removed, error);
+    SingeResult result = remove_file(folder->video, removed, error);
     if (!result) result = remove_file(folder->gif, removed, error);
     for (int i = 0; i < INNER_COUNT && !result; i++) {
         result = clean_frames(folder, i, true, removed, error);
@@ -194,6 +227,11 @@ SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, 
         free(path);
     }
     return result;
+}
+
+bool folder_has(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
 }
 
 /// The smallest and greatest frame with a PLY; *last is 0 when there is none.

@@ -3,6 +3,8 @@
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
+#include <stdbool.h>
+
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "singe/base.h"
@@ -16,6 +18,7 @@ typedef struct Folder {
     char *video;      ///< DIR/preview.mp4
     char *sheet;      ///< DIR/sheet.png
     char *gif;        ///< DIR/preview.gif
+    char *cache_lock, *pictures_lock; ///< DIR/cache.lock, DIR/pictures.lock: while they are written
 } Folder;
 
 /// Names only; nothing is made. `path` NULL is out/NAME.
@@ -28,7 +31,8 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 /// What a run writes besides the surface: a folder of its own each.
 typedef struct FolderParts { bool pictures, gas, exr; } FolderParts;
 
-/// Makes the folder, those above it, ply/ and, as `parts` ask, frames/, gas/ and exr/ in it.
+/// Makes ply/ and, as `parts` ask, frames/, gas/ and exr/ in the folder, which must be there. A link in the place of one
+/// of them is refused: what it points at is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.
@@ -37,19 +41,25 @@ char *folder_png(const Folder *folder, int frame);
 char *folder_vdb(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
 
-/// Removes what an earlier run of the same name left (its frames, checkpoint, video, GIF), and nothing that is
-/// not named as such files are. *removed is the number of files. What `parts` do not ask for goes too when it is
+/// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
+SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
+
+/// Removes what else an earlier run of the same name left (its frames, video, GIF), and nothing that is not named
+/// as such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
 /// empty: frames/, gas/ and exr/.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 
 /// Removes what a killed run left half written under temporary names.
 SINGE_NODISCARD SingeResult folder_sweep(const Folder *folder, SingeError *error);
 
+/// Whether a file is there and holds something.
+bool folder_has(const char *path);
+
 /// Checks that there are PLYs of the frames asked for, from *first to *last, or sets both to all where *first is 0.
 /// A message has been printed unless the result is EXIT_GOOD.
 ExitCode folder_span(const Folder *folder, Console *console, int *first, int *last);
 
-/// Fills *error with the path and the system's reason. Returns SINGE_ERROR_FILE.
+/// Fills *error with the path and the system's reason, 0 for what is no regular file. Returns SINGE_ERROR_FILE.
 SingeResult folder_fail(const char *path, const char *what, int reason, SingeError *error);
 
 #endif

@@ -2,6 +2,9 @@
 
 #include <signal.h>
 #include <stddef.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
 
 // The one static of the program: a signal handler has no other way to pass a word on.
 static volatile sig_atomic_t interrupt_flag;
@@ -30,3 +33,23 @@ void interrupt_watch(void) {
 }
 
 bool interrupt_asked(void) { return interrupt_flag != 0; }
+
+/// Only what a signal handler may do.
+static void end_by_abort(int number) {
+    static const char text[] = "singe: error: preview: out of memory; frames that were written are whole\n";
+    (void)number;
+    ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)written;
+    _exit(EXIT_FAILED);
+}
+
+void interrupt_guard_begin(void) {
+    struct sigaction end = {.sa_handler = end_by_abort};
+    sigemptyset(&end.sa_mask);
+    sigaction(SIGABRT, &end, NULL);
+}
+
+void interrupt_guard_end(void) {
+    struct sigaction plain = {.sa_handler = SIG_DFL};
+    sigaction(SIGABRT, &plain, NULL);
+}

@@ -1,4 +1,5 @@
-// Ctrl-C and SIGTERM: the first asks the run to end after its frame, the second ends the program at once.
+// Signals. Ctrl-C and SIGTERM: the first asks the run to end after its step, the second ends the program at once. SIGABRT
+// while a library of C++ is at work: that of one which ran out of memory and cannot say so.
 #ifndef CLI_INTERRUPT_H
 #define CLI_INTERRUPT_H
 
@@ -12,5 +13,11 @@ void interrupt_watch(void);
 
 /// Whether the run was asked to end.
 bool interrupt_asked(void);
+
+/// Between the two an abort ends the program with a message and EXIT_FAILED, as running out of memory does elsewhere.
+/// Embree throws where the system gives no memory for its errors, and what it throws cannot be caught in C. All files are
+/// whole at that time, or under temporary names.
+void interrupt_guard_begin(void);
+void interrupt_guard_end(void);
 
 #endif

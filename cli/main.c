@@ -1,9 +1,9 @@
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/args.h"
 #include "cli/cli.h"
+#include "cli/streams.h"
 #include "formats/printable.h"
 #include "singe/singe.h"
 
@@ -33,17 +33,8 @@ static void help(void) {
            "Exit codes: 0 good, 1 the run failed or was interrupted, 2 bad input.\n");
 }
 
-/// What was printed must have arrived: a full disk or a closed pipe is a failure.
-static int finish(int code) {
-    errno = 0;
-    bool failed = fflush(stdout) != 0;
-    if (!failed && !ferror(stdout)) return code;
-    fprintf(stderr, "singe: error: cannot write to standard output%s%s\n", errno ? ": " : "",
-            errno ? strerror(errno) : "");
-    return code == EXIT_GOOD ? EXIT_FAILED : code;
-}
-
 int main(int argc, char **argv) {
+    if (streams_open()) return EXIT_FAILED;
     if (argc < 2) {
         fputs("singe: error: needs a command: run, check, render, measure, verify, bench, paper or validate\n"
               "see: singe --help\n", stderr);
@@ -51,14 +42,14 @@ int main(int argc, char **argv) {
     }
     const char *word = argv[1];
     for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(word, commands[i].name) == 0) return finish(commands[i].run(argc - 2, argv + 2));
+        if (strcmp(word, commands[i].name) == 0) return streams_finish(commands[i].run(argc - 2, argv + 2));
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
         help();
-        return finish(EXIT_GOOD);
+        return streams_finish(EXIT_GOOD);
     }
     if (strcmp(word, "--version") == 0) {
         printf("singe %s\n", singe_version());
-        return finish(EXIT_GOOD);
+        return streams_finish(EXIT_GOOD);
     }
     const char *near = args_nearest(word, commands, COMMAND_COUNT, sizeof commands[0]);
     fprintf(stderr, "singe: error: unknown %s '%s'", word[0] == '-' ? "option" : "command", shown(word).text);

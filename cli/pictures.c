@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "cli/interrupt.h"
+
 struct Pictures {
     const Scene *scene;
     const SceneAssets *assets;
@@ -31,7 +33,9 @@ static SingeResult open_def(const Job *job, const PreviewDef *def, Pictures **ma
     pictures->shapes = calloc(pictures->shape_max + 1, sizeof *pictures->shapes);
     pictures->rgb = malloc((size_t)pictures->def.width * (size_t)pictures->def.height * 3);
     SingeResult result = pictures->shapes && pictures->rgb ? SINGE_OK : no_memory(error);
+    interrupt_guard_begin();
     if (!result) result = preview_create(&pictures->def, (SingeAllocator){0}, &pictures->preview, error);
+    interrupt_guard_end();
     if (result) pictures_close(pictures);
     else *made = pictures;
     return result;
@@ -72,10 +76,12 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
         pictures->shapes = shapes, pictures->shape_max = count;
     }
     count = scene_shapes(pictures->scene, pictures->assets, time, pictures->shapes, pictures->shape_max);
-    if (preview_set_shapes(pictures->preview, pictures->shapes, count, error)) return NULL;
-    if (preview_set_gas(pictures->preview, gas, error)) return NULL;
-    if (preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error)) return NULL;
-    return pictures->rgb;
+    interrupt_guard_begin();
+    SingeResult result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
+    if (!result) result = preview_set_gas(pictures->preview, gas, error);
+    if (!result) result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);
+    interrupt_guard_end();
+    return result ? NULL : pictures->rgb;
 }
 
 SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
@@ -139,7 +145,9 @@ void pictures_size(const Pictures *pictures, int *width, int *height) {
 
 void pictures_close(Pictures *pictures) {
     if (!pictures) return;
+    interrupt_guard_begin();
     preview_destroy(pictures->preview);
+    interrupt_guard_end();
     free(pictures->shapes);
     free(pictures->rgb);
     free_layers(&pictures->layers);

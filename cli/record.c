@@ -106,13 +106,13 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     fputs("\n}\n", file);
 }
 
-SingeResult record_write(const Record *record, const Folder *folder, const Job *job, SingeError *error) {
+SingeResult record_write(const Record *record, const char *path, const Job *job, SingeError *error) {
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     if (file) write_all(file, record, job);
     SingeResult result = SINGE_ERROR_MEMORY;
-    if (text_stream_end(file, &text)) result = file_write(folder->record, text, size, error);
+    if (text_stream_end(file, &text)) result = file_write(path, text, size, error);
     else *error = (SingeError){.code = result, .stage = "run.json", .element = -1};
     free(text);
     return result;

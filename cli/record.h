@@ -22,7 +22,7 @@ typedef struct Record {
 
 Record record_make(const char *scene_path);
 
-/// Writes the file whole or leaves the one that was there.
-SINGE_NODISCARD SingeResult record_write(const Record *record, const Folder *folder, const Job *job, SingeError *error);
+/// Writes the file whole or leaves the one that was there. `path` is the folder's, or a draft of it.
+SINGE_NODISCARD SingeResult record_write(const Record *record, const char *path, const Job *job, SingeError *error);
 
 #endif

@@ -5,13 +5,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/args.h"
 #include "cli/contact_sheet.h"
 #include "cli/folder.h"
+#include "cli/frame.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
+#include "cli/lock.h"
 #include "cli/pictures.h"
 #include "cli/text.h"
 #include "cli/video.h"
@@ -51,6 +52,7 @@ typedef struct Render {
     Pictures *pictures;
     ContactSheet sheet;
     int first, last; ///< frames to draw
+    Lock lock;       ///< of the pictures
 } Render;
 
 /// Two whole numbers with `between` between them. Where `single` is allowed one number stands for both.
@@ -117,50 +119,19 @@ static ExitCode parse_options(int argc, char **argv, RenderOptions *o, bool *don
 
 // ---- drawing
 
-/// The gas of a frame; none where the cache has no file of it.
-static SingeResult read_gas(Render *render, int frame, Gas *gas, SingeError *error) {
-    Bytes bytes = {0};
-    SingeResult result = SINGE_OK;
-    char *path = folder_vdb(&render->folder, frame);
-    if (access(path, F_OK) == 0 || errno != ENOENT) {
-        result = file_read(path, (SingeAllocator){0}, &bytes, error);
-        if (!result) result = vdb_read_gas(path, bytes.data, bytes.size, (SingeAllocator){0}, gas, NULL, error);
-        bytes_free(&bytes);
-    }
-    free(path);
-    return result;
-}
-
-static SingeResult draw_frame(Render *render, int frame, const uint8_t **rgb, SingeError *error) {
-    Bytes bytes = {0};
-    SingeSurface surface = {0};
-    Gas gas = {0};
-    double time;
-    char *path = folder_ply(&render->folder, frame);
-    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
-    if (!result) {
-        result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &surface, &time, error);
-        bytes_free(&bytes);
-    }
-    if (!result) result = read_gas(render, frame, &gas, error);
-    if (!result && !(*rgb = pictures_draw(render->pictures, &surface, &gas.view, time, error)))
-        result = error->code ? error->code : SINGE_ERROR_STATE;
-    singe_surface_free(&surface);
-    gas_free(&gas);
-    free(path);
+static SingeResult draw_frame(Render *render, int number, const uint8_t **rgb, SingeError *error) {
+    Frame frame;
+    SingeResult result = frame_read(&render->folder, number, &frame, error);
+    if (!result) result = frame_draw(&frame, render->pictures, rgb, error);
+    frame_free(&frame);
     return result;
 }
 
 static SingeResult write_frame(Render *render, int frame, const uint8_t *rgb, SingeError *error) {
-    int width, height;
-    pictures_size(render->pictures, &width, &height);
-    char *path = folder_png(&render->folder, frame);
-    SingeResult result = png_write(path, width, height, rgb, error);
-    free(path);
-    if (result || !render->options->exr) return result;
-    path = folder_exr(&render->folder, frame);
-    result = pictures_write_layers(render->pictures, path, error);
-    free(path);
+    char *png = folder_png(&render->folder, frame);
+    char *exr = render->options->exr ? folder_exr(&render->folder, frame) : NULL;
+    SingeResult result = frame_write_picture(render->pictures, rgb, png, exr, error);
+    free(png), free(exr);
     return result;
 }
 
@@ -194,6 +165,14 @@ static SingeResult draw_all(Render *render, bool *interrupted, SingeError *error
     return png_write(render->folder.sheet, render->sheet.width, render->sheet.height, render->sheet.rgb, error);
 }
 
+/// Processes may draw parts of a run side by side; who draws all of it makes the video, and is alone.
+static SingeResult hold_pictures(Render *render, SingeError *error) {
+    bool kept, part = render->options->first > 0;
+    SingeResult result = lock_take(&render->lock, render->folder.pictures_lock, "pictures", part, &kept, error);
+    if (!kept) console_warn(render->console, "%s: no locks there: nothing else may write it", render->folder.path);
+    return result;
+}
+
 static ExitCode render_frames(Render *render) {
     const RenderOptions *o = render->options;
     SingeError error = {0};
@@ -201,6 +180,7 @@ static ExitCode render_frames(Render *render) {
     bool interrupted = false;
     SingeResult result = pictures_open(&render->job, &render->pictures, &error);
     FolderParts parts = {.pictures = !o->only_sheet, .exr = o->exr};
+    if (!result && !o->only_sheet) result = hold_pictures(render, &error);
     if (!result) result = folder_create(&render->folder, parts, &error);
     if (!result && o->exr) result = pictures_keep_layers(render->pictures, &error);
     if (!result && o->columns) {
@@ -233,7 +213,7 @@ int command_render(int argc, char **argv) {
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);
-        Render render = {.console = &console, .options = &options};
+        Render render = {.console = &console, .options = &options, .lock = LOCK_NONE};
         code = job_reopen(&render.job, &console, options.folder, &options.sets, options.threads);
         if (!code) {
             render.folder = folder_name(options.folder, render.job.scene->name);
@@ -243,6 +223,7 @@ int command_render(int argc, char **argv) {
         if (!code) code = render_frames(&render);
         contact_sheet_free(&render.sheet);
         pictures_close(render.pictures);
+        lock_release(&render.lock);
         folder_free(&render.folder);
         job_close(&render.job);
     }

@@ -48,7 +48,7 @@ static int64_t kept_size(const Bytes *bytes, int frames) {
     return (int64_t)at;
 }
 
-static SingeResult cut(StatsFile *file, int frames_kept, SingeError *error) {
+SingeResult stats_cut(StatsFile *file, int frames_kept, SingeError *error) {
     Bytes bytes = {0};
     SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
@@ -65,14 +65,21 @@ static SingeResult cut(StatsFile *file, int frames_kept, SingeError *error) {
     return SINGE_OK;
 }
 
-SingeResult stats_open(StatsFile *file, const Folder *folder, int frames_kept, SingeError *error) {
-    int flags = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | (frames_kept ? 0 : O_TRUNC);
+SingeResult stats_open(StatsFile *file, const Folder *folder, SingeError *error) {
+    struct stat info;
+    // without O_NONBLOCK a named pipe would wait here for its reader
+    int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
     *file = (StatsFile){.path = folder->stats, .fd = open(folder->stats, flags, 0666)};
-    if (file->fd < 0) return folder_fail(file->path, "write", errno, error);
-    SingeResult result =
-        frames_kept ? cut(file, frames_kept, error) : append(file, stats_header, sizeof stats_header - 1, error);
-    if (result) stats_close(file);
-    return result;
+    if (file->fd < 0) return folder_fail(file->path, "write", errno == ENXIO ? 0 : errno, error);
+    if (fstat(file->fd, &info) == 0 && S_ISREG(info.st_mode)) return SINGE_OK;
+    stats_close(file);
+    return folder_fail(file->path, "write", 0, error);
+}
+
+SingeResult stats_begin(StatsFile *file, SingeError *error) {
+    if (ftruncate(file->fd, 0) != 0) return folder_fail(file->path, "write", errno, error);
+    file->size = 0;
+    return append(file, stats_header, sizeof stats_header - 1, error);
 }
 
 SingeResult stats_write(StatsFile *file, int frame, const SingeStats *s, const Totals *totals, const FrameCost *cost,
@@ -95,8 +102,8 @@ SingeResult stats_write(StatsFile *file, int frame, const SingeStats *s, const T
 }
 
 SingeResult stats_sync(StatsFile *file, SingeError *error) {
-    // a pipe or a special file has nothing to sync
-    if (fsync(file->fd) == 0 || errno == EINVAL || errno == EROFS) return SINGE_OK;
+    // file systems that cannot flush say so by EINVAL
+    if (fsync(file->fd) == 0 || errno == EINVAL || errno == ENOTSUP) return SINGE_OK;
     return folder_fail(file->path, "write", errno, error);
 }
 

@@ -17,9 +17,12 @@ typedef struct FrameCost {
     uint64_t triangles, fine_triangles;
 } FrameCost;
 
-/// Opens the file: empty with its header when `frames_kept` is 0, else cut behind that many frames' lines, which
-/// must be there.
-SINGE_NODISCARD SingeResult stats_open(StatsFile *file, const Folder *folder, int frames_kept, SingeError *error);
+/// Opens the file and changes nothing in it. A link, a pipe or a device in its place is refused.
+SINGE_NODISCARD SingeResult stats_open(StatsFile *file, const Folder *folder, SingeError *error);
+/// Empties the file and writes the header.
+SINGE_NODISCARD SingeResult stats_begin(StatsFile *file, SingeError *error);
+/// Cuts the file behind the lines of so many frames, which must be there.
+SINGE_NODISCARD SingeResult stats_cut(StatsFile *file, int frames_kept, SingeError *error);
 /// Appends a line; a line that does not fit on the disk is taken back whole.
 SINGE_NODISCARD SingeResult stats_write(StatsFile *file, int frame, const SingeStats *stats, const Totals *totals,
                                         const FrameCost *cost, SingeError *error);

@@ -11,8 +11,11 @@
 #include <unistd.h>
 
 #include "cli/text.h"
+#include "formats/formats.h"
 
 extern char **environ;
+
+enum { WHY_SIZE = sizeof(((SingeError *)0)->message) };
 
 /// The text with every % doubled, as ffmpeg's frame patterns want it.
 static char *pattern_escape(const char *text) {
@@ -55,7 +58,7 @@ static void tell_command(Console *console, const char *what, VideoResult result,
 }
 
 /// Runs the program and waits. Unless it ended well, `why` says why not.
-static VideoResult spawn(char *const *arguments, char why[160]) {
+static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t shielded; // what the program ignores the child must not
@@ -72,14 +75,14 @@ static VideoResult spawn(char *const *arguments, char why[160]) {
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (reason) {
-        snprintf(why, 160, "cannot run ffmpeg (%s)", strerror(reason));
+        snprintf(why, WHY_SIZE, "cannot run ffmpeg (%s)", strerror(reason));
         return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;
     }
     int status = 0; // kept where the system has reaped the child itself; then the file tells
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return VIDEO_MADE;
-    if (WIFEXITED(status)) snprintf(why, 160, "ffmpeg failed (exit %d)", WEXITSTATUS(status));
-    else snprintf(why, 160, "ffmpeg was stopped (signal %d)", WTERMSIG(status));
+    if (WIFEXITED(status)) snprintf(why, WHY_SIZE, "ffmpeg failed (exit %d)", WEXITSTATUS(status));
+    else snprintf(why, WHY_SIZE, "ffmpeg was stopped (signal %d)", WTERMSIG(status));
     return VIDEO_FAILED;
 }
 
@@ -92,31 +95,48 @@ typedef struct Movie {
 
 enum { OPTIONS_MAX = 16 };
 
+/// Runs ffmpeg into a draft, whose name is put into the arguments, and publishes what it has written.
+static VideoResult write_movie(const Movie *movie, char *const *arguments, char **output, char why[WHY_SIZE]) {
+    SingeError error = {0};
+    char *draft;
+    if (file_draft(movie->path, &draft, &error)) {
+        snprintf(why, WHY_SIZE, "%s", error.message);
+        return VIDEO_FAILED;
+    }
+    char *part = text_format("file:%s", draft);
+    *output = part;
+    VideoResult result = spawn(arguments, why);
+    free(part);
+    if (result == VIDEO_MADE && !folder_has(draft)) {
+        snprintf(why, WHY_SIZE, "ffmpeg wrote nothing into preview.%s", movie->format);
+        result = VIDEO_FAILED;
+    }
+    if (result != VIDEO_MADE) {
+        file_discard(draft);
+        return result;
+    }
+    if (!file_publish(draft, movie->path, &error)) return VIDEO_MADE;
+    snprintf(why, WHY_SIZE, "%s", error.message);
+    return VIDEO_FAILED;
+}
+
 static VideoResult movie_make(Console *console, const Folder *folder, const Movie *movie, double fps, int first,
                               int last) {
-    char *path = pattern_escape(folder->path), *name = pattern_escape(folder->name), why[160];
+    char *path = pattern_escape(folder->path), *name = pattern_escape(folder->name), why[WHY_SIZE];
     // "file:" keeps a colon in a path from being read as a protocol, and a dash as an option
     char *input = text_format("file:%s/frames/%s.%%04d.png", path, name);
-    char *part = text_format("file:%s.part", movie->path), *final = text_format("file:%s", movie->path);
+    char *final = text_format("file:%s", movie->path);
     char *rate = text_format("%.9g", fps), *start = text_format("%d", first);
     char *count = text_format("%d", last - first + 1);
     char *arguments[24 + OPTIONS_MAX] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate",
                                          rate, "-start_number", start, "-i", input, "-frames:v", count};
     int n = 15;
     for (int i = 0; movie->options[i] && i < OPTIONS_MAX; i++) arguments[n++] = (char *)movie->options[i];
-    arguments[n++] = "-f", arguments[n++] = (char *)movie->format, arguments[n] = part;
-    VideoResult result = spawn(arguments, why);
-    const char *written = part + 5;
-    if (result == VIDEO_MADE && rename(written, movie->path) != 0) {
-        snprintf(why, sizeof why, "cannot write preview.%s (%s)", movie->format, strerror(errno));
-        result = VIDEO_FAILED;
-    }
-    if (result != VIDEO_MADE) {
-        unlink(written);
-        arguments[n] = final;
-        tell_command(console, movie->what, result, why, arguments);
-    }
-    free(path), free(name), free(input), free(part), free(final), free(rate), free(start), free(count);
+    arguments[n++] = "-f", arguments[n++] = (char *)movie->format, arguments[n] = final;
+    VideoResult result = write_movie(movie, arguments, &arguments[n], why);
+    arguments[n] = final;
+    if (result != VIDEO_MADE) tell_command(console, movie->what, result, why, arguments);
+    free(path), free(name), free(input), free(final), free(rate), free(start), free(count);
     return result;
 }
 

@@ -5,13 +5,20 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "cli/args.h"
+#include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/contact_sheet.h"
+#include "cli/interrupt.h"
 #include "cli/text.h"
+#include "formats/utf8.h"
 
 static void expect_member(const char *json, const char *name, const char *expected) {
     const char *value;
@@ -48,19 +55,28 @@ static void refuses_cut_json(void **state) {
 
 static void unquotes_what_it_quotes(void **state) {
     (void)state;
-    const char *texts[] = {"", "plain", "a \"b\" \\ c", "tab\tnewline\n\x01", "\xc3\xa4/\xe2\x82\xac"};
+    const char *texts[] = {"", "plain", "a \"b\" \\ c", "tab\tnewline\n\x01", "\xc3\xa4/\xe2\x82\xac",
+                           // no UTF-8: a stray byte, one cut short, too long a form, a surrogate, beyond Unicode
+                           "\xff", "a\xe2\x82", "\xc0\xaf", "\xed\xb2\x80", "\xf4\x90\x80\x80", "\x80 \xc3\xa4\xc3"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char *json = NULL;
         size_t size = 0;
         FILE *file = open_memstream(&json, &size);
         text_json_string(file, texts[i]);
         fclose(file);
+        for (size_t at = 0; at < size; at += (size_t)utf8_length(json + at)) assert_int_not_equal(utf8_length(json + at), 0);
         char *back = text_json_unquote(json, size);
         assert_non_null(back);
         assert_string_equal(back, texts[i]);
         free(back);
         free(json);
     }
+    // as other writers of JSON put it
+    char *other = text_json_unquote("\"\\u00e4\\/\\uD83D\\uDD25\\n\"", 24);
+    assert_string_equal(other, "\xc3\xa4/\xf0\x9f\x94\xa5\n");
+    free(other);
+    static const char *const bad[] = {"\"\\u12\"", "\"\\q\"", "\"\\\"", "\"\\u0000\"", "\"\\u12g4\""};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_null(text_json_unquote(bad[i], strlen(bad[i])));
     assert_null(text_json_unquote("12", 2));
     assert_null(text_json_unquote("\"", 1));
 }
@@ -134,11 +150,37 @@ static void writes_durations(void **state) {
     assert_string_equal(text, "0 s");
 }
 
+/// How a child ends that aborts within the guard, or behind it.
+static int ends_by(bool within) {
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        struct rlimit none = {0, 0};
+        setrlimit(RLIMIT_CORE, &none);
+        interrupt_guard_begin();
+        if (!within) interrupt_guard_end();
+        abort();
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+static void an_abort_of_a_library_is_an_error(void **state) {
+    (void)state;
+    int status = ends_by(true);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), EXIT_FAILED);
+    status = ends_by(false);
+    assert_true(WIFSIGNALED(status));
+    assert_int_equal(WTERMSIG(status), SIGABRT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json),
         cmocka_unit_test(unquotes_what_it_quotes),
         cmocka_unit_test(finds_the_nearest_word), cmocka_unit_test(reads_arguments), cmocka_unit_test(averages_tiles),
-        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations)};
+        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations), cmocka_unit_test(an_abort_of_a_library_is_an_error)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

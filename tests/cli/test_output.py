@@ -1,6 +1,8 @@
 """What a run leaves, and that it does not depend on threads."""
 
+import json
 import os
+import shutil
 import unittest
 
 from support import COLUMNS, HAS_FFMPEG, HAS_PREVIEW, Case
@@ -110,7 +112,7 @@ class Output(Case):
         for number, (script, why) in enumerate((
             ("exit 3", "ffmpeg failed (exit 3)"),
             ("kill -9 $$", "ffmpeg was stopped (signal 9)"),
-            ("exit 0", "cannot write preview.mp4"),
+            ("exit 0", "ffmpeg wrote nothing into preview.mp4"),
         )):
             out, env = f"o{number}", self.fake_ffmpeg(script)
             with self.subTest(script):
@@ -139,6 +141,25 @@ class Output(Case):
     def test_odd_folder_and_size(self):
         self.run_scene("it's 100% %04d: a b", "--frames", "2", "--set", "preview.size=[65, 49]", preview=True)
         self.assertTrue(os.path.exists(self.path("it's 100% %04d: a b", "preview.mp4")))
+
+    def test_names_that_are_no_utf8(self):
+        """run.json is good JSON whatever the folders are called, and is found again by it."""
+        folder = os.fsencode(self.dir) + b"/f\xff \xc3"
+        os.mkdir(folder)
+        scene = os.path.join(folder, b"b\xe4r.yaml")
+        shutil.copy(self.scene, scene)
+        out = os.path.join(folder, b"o\x80")
+        self.singe("run", scene, "-o", out, "--frames", "2", "--no-preview", errors="surrogateescape")
+        with open(os.path.join(out, b"run.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        self.assertEqual(os.fsencode(record["scene_file"]), scene)
+        self.assertEqual(os.fsencode(record["scene_folder"]), os.path.realpath(folder))
+        self.assertEqual(record["name"], "b_r")
+        self.assertEqual(os.listdir(os.path.join(out, b"ply"))[0][:4], b"b_r.")
+        self.singe("verify", out, errors="surrogateescape")
+        if HAS_PREVIEW:
+            self.singe("render", out, errors="surrogateescape")
+            self.assertEqual(len(os.listdir(os.path.join(out, b"frames"))), 2)
 
     def test_files_read_back(self):
         """Header of a PLY, and as many bytes as it announces."""

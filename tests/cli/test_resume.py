@@ -4,8 +4,10 @@ import os
 import random
 import shutil
 import signal
+import struct
 import time
 import unittest
+import zlib
 
 from support import HAS_FFMPEG, HAS_PREVIEW, Case
 
@@ -24,9 +26,9 @@ class Resume(Case):
         except FileNotFoundError:
             return -1
 
-    def start_until(self, out, frame, *args):
+    def start_until(self, out, frame, *args, **options):
         """Starts a run and comes back as soon as that frame is in its stats."""
-        run = self.start("run", self.scene, "-o", self.path(out), *args)
+        run = self.start("run", self.scene, "-o", self.path(out), *args, **options)
         self.addCleanup(run.stderr.close)
         self.addCleanup(lambda: run.poll() is None and run.kill())
         end = time.monotonic() + 60
@@ -109,15 +111,44 @@ class Resume(Case):
     def test_terminate(self):
         self.interrupted(signal.SIGTERM)
 
+    def test_ctrl_c_between_steps(self):
+        """It does not wait for the frame, and nothing of it is lost."""
+        self.scene = self.write_scene(frames=4, cells=20, steps=300)
+        self.run_scene("whole", "--quiet")
+        stopped = 0
+        for attempt in range(3):
+            out = f"i{attempt}"
+            run = self.start_until(out, 2, "--no-preview", "--threads", "1")
+            time.sleep(0.02 + 0.03 * attempt)
+            begun = time.monotonic()
+            run.send_signal(signal.SIGINT)
+            _, err = run.communicate(timeout=60)
+            self.assertLess(time.monotonic() - begun, 5)
+            self.assertEqual(run.returncode, 1, err)
+            done = self.record(out)["frames_done"]
+            self.assertEqual((self.record(out)["result"], len(self.plys(out)), len(self.stats(out))),
+                             ("interrupted", done, done))
+            self.singe("verify", self.path(out))
+            stopped += self.record(out)["totals"]["steps"] % 300 != 0
+            self.assertIn(f"going on from frame {done}", self.run_scene(out, "--resume")[1])
+            self.same_as_whole(out)
+        self.assertGreater(stopped, 0, "never stopped within a frame")
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
     def test_second_ctrl_c_ends_at_once(self):
-        self.scene = self.write_scene(frames=100, cells=60, steps=400)
-        run = self.start_until("i", 1, "--no-preview")
-        time.sleep(0.1)
+        """While the video is made, which the first one waits for."""
+        self.scene = self.write_scene(frames=100000)
+        run = self.start_until("i", 1, env=self.fake_ffmpeg(f"touch {self.path('made')}; exec sleep 100"))
         run.send_signal(signal.SIGINT)
-        time.sleep(0.1)
+        end = time.monotonic() + 60
+        while not os.path.exists(self.path("made")):
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
         self.assertIsNone(run.poll(), "the first only asks")
         run.send_signal(signal.SIGINT)
         self.assertEqual(run.wait(timeout=2), -signal.SIGINT)
+        self.run_scene("i", "--resume", "--set", f"frames={self.record('i')['frames_done'] + 2}")
+        self.no_temporaries("i")
 
     def test_nothing_to_resume(self):
         _, err = self.run_scene("new", "--resume", "--frames", "2")
@@ -161,6 +192,104 @@ class Resume(Case):
         self.run_scene("o", "--resume", "--frames", "4")
         mesh(0.001)
         self.assertIn("another scene", self.run_scene("o", "--resume", expect=2)[1])
+
+    CUBE = (-1, 1)
+
+    def cube(self, name, half):
+        with open(self.path(name), "w") as file:
+            for x in self.CUBE:
+                for y in self.CUBE:
+                    for z in self.CUBE:
+                        file.write(f"v {x * half} {y * half} {z * half}\n")
+            file.write("f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n")
+
+    def picture(self, name, value):
+        """A grey picture of 4 x 4 pixels."""
+        rows = b"".join(b"\0" + bytes([value, 128, 7, 200]) for _ in range(4))
+        with open(self.path(name), "wb") as file:
+            file.write(b"\x89PNG\r\n\x1a\n")
+            for kind, data in ((b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 0, 0, 0, 0)), (b"IDAT", zlib.compress(rows)),
+                               (b"IEND", b"")):
+                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+
+    def test_other_files_are_refused(self):
+        """Every file that a scene reads, but for the preview's."""
+        def material(thickness):
+            with open(self.path("m.yaml"), "w") as file:
+                file.write(f"base: newsprint\nthickness: {thickness} mm\n"
+                           "grammage: {from: 50 g/m2, to: 60 g/m2, picture: rate.png}\n")
+
+        extra = ("colliders:\n  - {kind: mesh, mesh: c.obj, position: [0, 0, -10 cm]}\n"
+                 "  - {kind: heightfield, picture: heights.png, size: [1, 1], heights: [-30 cm, -20 cm]}\n")
+        self.scene = self.write_scene(frames=5, extra=extra)
+        with open(self.scene) as file:
+            text = file.read()
+        text = text.replace("    translate:", "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
+        text = text.replace("sources:\n", "sources:\n  - {kind: picture, picture: flux.png, flux: 100}\n", 1)
+        text = text.replace("samples: 1}", "samples: 1, environment: {picture: sky.png}}")
+        with open(self.scene, "w") as file:
+            file.write(text)
+        pictures = ["rate.png", "flux.png", "heights.png", "print.png", "sky.png"]
+        for name in pictures:
+            self.picture(name, 100)
+        self.cube("c.obj", 0.02)
+        material(1)
+        self.run_scene("o", "--frames", "2", "--quiet")
+        changes = {name: (lambda n=name: self.picture(n, 101), lambda n=name: self.picture(n, 100))
+                   for name in pictures[:-1]}
+        changes["c.obj"] = (lambda: self.cube("c.obj", 0.021), lambda: self.cube("c.obj", 0.02))
+        changes["m.yaml"] = (lambda: material(1.1), lambda: material(1))
+        for name, (change, restore) in changes.items():
+            with self.subTest(name):
+                change()
+                self.assertIn("another scene", self.run_scene("o", "--resume", "--frames", "4", expect=2)[1])
+                self.assertEqual(len(self.plys("o")), 2)
+                restore()
+        self.run_scene("o", "--resume", "--frames", "3")
+        self.picture("sky.png", 101)
+        _, err = self.run_scene("o", "--resume", "--frames", "4", preview=True)
+        self.assertEqual("the preview is another now" in err, HAS_PREVIEW)
+        self.run_scene("whole", "--frames", "4", "--quiet")
+        self.same_as_whole("o")
+
+    def test_missing_frames_are_refused(self):
+        self.run_scene("o", "--frames", "6", "--quiet")
+        for name in "ply/tiny.0003.ply", "gas/tiny.0001.vdb", "ply/tiny.0006.ply":
+            for emptied in False, True:
+                with self.subTest(name=name, emptied=emptied):
+                    os.rename(self.path("o", name), self.path("kept"))
+                    if emptied:
+                        open(self.path("o", name), "w").close()
+                    _, err = self.run_scene("o", "--resume", expect=2)
+                    self.assertIn(name + " is missing or empty", err)
+                    self.assertIn("without --resume", err)
+                    self.assertEqual(len(self.stats("o")), 6)
+                    os.rename(self.path("kept"), self.path("o", name))
+        self.run_scene("o", "--resume", "--frames", "7")
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_missing_pictures_are_drawn(self):
+        """The same ones, so that what is complete is."""
+        def pictures(out):
+            found = {}
+            for name in sorted(os.listdir(self.path(out, "frames"))):
+                with open(self.path(out, "frames", name), "rb") as file:
+                    found[name] = file.read()
+            return found
+
+        self.run_scene("whole", "--frames", "8", "--quiet", preview=True)
+        self.run_scene("o", "--frames", "5", "--quiet")
+        _, err = self.run_scene("o", "--resume", "--frames", "8", preview=True)
+        self.assertIn("drawing 5 pictures that are missing", err)
+        self.assertEqual(pictures("o"), pictures("whole"))
+        os.remove(self.path("o", "frames", "tiny.0002.png"))
+        open(self.path("o", "frames", "tiny.0008.png"), "w").close()
+        self.run_scene("o", "--resume", "--frames", "8", preview=True)
+        self.assertEqual(pictures("o"), pictures("whole"))
+        self.assertEqual(os.path.exists(self.path("o", "preview.mp4")), HAS_FFMPEG)
+        os.remove(self.path("o", "frames", "tiny.0002.png"))
+        _, err = self.run_scene("o", "--resume", "--frames", "8")
+        self.assertNotIn("drawing", err)
 
     def test_fewer_frames_than_done(self):
         self.run_scene("o", "--frames", "5", "--quiet")

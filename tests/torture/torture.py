@@ -259,7 +259,7 @@ def made_up_faults(bench, place, trial, left, expected):
         if what in bench.made_up:
             return bench.made_up[what]
     done, faults = place.singe(trial.scenario.goes_on, check=False), []
-    if done.returncode == 2 and {n: d for n, d in left.items() if not n.endswith(".lock")} == expected.before:
+    if done.returncode == 2 and {n: d for n, d in left.items() if not n.endswith((".tmp", ".lock"))} == expected.before:
         pass  # it is another run's as it was before
     elif done.returncode != 0:
         faults.append(f"--resume afterwards: exit code {done.returncode}: {done.stderr.strip()[-200:]}")

@@ -1,0 +1,75 @@
+// singe run, inside: a run in progress, and its parts. run.c is the command, run_begin.c how a run begins and goes on,
+// run_frame.c what a frame is and leaves.
+#ifndef CLI_RUN_H
+#define CLI_RUN_H
+
+#include "cli/checkpoint.h"
+#include "cli/folder.h"
+#include "cli/frame.h"
+#include "cli/job.h"
+#include "cli/lock.h"
+#include "cli/pictures.h"
+#include "cli/record.h"
+#include "cli/stats.h"
+
+typedef struct RunOptions {
+    const char *scene, *output;
+    SetList sets;
+    int threads;
+    bool resume, no_preview, exr, quiet;
+} RunOptions;
+
+/// A file of the frame in hand.
+typedef struct FrameFile {
+    char *path;
+    char *draft; ///< where it is written until it takes its place; NULL: at once
+} FrameFile;
+enum { FRAME_FILES_MOST = 4 };
+
+/// A run in progress.
+typedef struct Run {
+    Console *console;
+    Job job;
+    Folder folder;
+    Lock cache_lock, pictures_lock;
+    SingeSim *sim;
+    Pictures *pictures; ///< NULL without a preview
+    bool layers;        ///< written as EXR, too
+    Frame frame;
+    FrameFile files[FRAME_FILES_MOST];
+    int file_count;
+    StatsFile stats;
+    Record record;
+    Totals *totals;             ///< the record's
+    SingeTimers timers;         ///< as last read
+    SceneHash hash;
+    double started, wall_before; ///< s, clock at the start and time spent before a resumption
+    double checkpoint_time, checkpoint_cost, frame_seconds;
+    int first;                  ///< frame to begin with
+    int step;                   ///< steps that are done of the frame in hand
+    bool begun;                 ///< what is in the folder is this run's: its first frame stands, or it goes on
+} Run;
+
+/// What the run writes besides the surface.
+FolderParts run_parts(const Run *run);
+
+/// Reads, builds and locks all that the run needs, and with --resume goes back to its checkpoint. Nothing of an earlier
+/// run has been touched but for half-written files.
+ExitCode run_prepare(Run *run, const RunOptions *options);
+
+/// Puts the first frame of a run from the start, which is written whole, in the place of an earlier run's files.
+SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
+
+/// Draws pictures that frames of before lack. False in *whole when Ctrl-C came in between.
+SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
+
+/// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.
+SINGE_NODISCARD SingeResult run_advance(Run *run, SingeError *error);
+
+/// Writes all files of a frame and its line.
+SINGE_NODISCARD SingeResult run_write_frame(Run *run, int frame, SingeStats *stats, SingeError *error);
+
+/// Writes a checkpoint when one is due, or must be.
+SINGE_NODISCARD SingeResult run_write_checkpoint(Run *run, Progress progress, bool must, SingeError *error);
+
+#endif

@@ -1,0 +1,155 @@
+"""What a run from the start does to what lies in its folder: nothing before its own first frame stands."""
+
+import hashlib
+import os
+import resource
+import shutil
+import unittest
+
+from support import HAS_EXR, HAS_PREVIEW, Case
+
+
+class Begin(Case):
+    def tree(self, out):
+        """Digest of every file, by name; where links point."""
+        found = {}
+        for folder, names, files in os.walk(self.path(out)):
+            for name in names + files:
+                path = os.path.join(folder, name)
+                if os.path.islink(path):
+                    found[path] = os.readlink(path)
+                elif os.path.isfile(path):
+                    with open(path, "rb") as file:
+                        found[path] = hashlib.sha256(file.read()).hexdigest()
+        return found
+
+    def limited(self, *args, kind=resource.RLIMIT_FSIZE, most, expect=1):
+        def limit():
+            resource.setrlimit(kind, (most, most))
+
+        return self.singe(*args, expect=expect, preexec_fn=limit)
+
+    def other_run(self, *more):
+        return ["run", self.scene, "-o", self.path("o"), "--set", "sheets.0.grid.cells=[30, 30]", *more]
+
+    def test_a_first_frame_that_fails_leaves_the_earlier_run(self):
+        """Whichever of its files it is."""
+        args = ["--exr"] if HAS_EXR and HAS_PREVIEW else []
+        self.run_scene("o", *args, preview=True)
+        before = self.tree("o")
+        self.run_scene("p", "--set", "sheets.0.grid.cells=[30, 30]", "--frames", "1", *args, preview=True)
+        sizes = sorted({os.path.getsize(p) for p in self.tree("p") if p.endswith((".ply", ".vdb", ".png", ".exr"))})
+        self.assertGreaterEqual(len(sizes), 2)
+        for most in [10] + sizes[1:]:
+            with self.subTest(most=most):
+                _, err = self.limited(*self.other_run(*args), most=most - 1)
+                self.assertIn("File too large", err)
+                self.assertIn("is as it was", err)
+                self.assertEqual(self.tree("o"), before)
+        self.assertEqual(self.run_scene("o", "--resume", "--frames", "7", *args, preview=True)[1].count("frame 6"), 1)
+
+    def test_a_full_folder_leaves_the_earlier_run(self):
+        self.run_scene("o", preview=True)
+        os.rename(self.path("o", "stats.csv"), self.path("stats.csv"))
+        os.mkdir(self.path("o", "stats.csv"))
+        before = self.tree("o")
+        self.assertIn("stats.csv", self.singe(*self.other_run(), expect=1)[1])
+        self.assertEqual(self.tree("o"), before)
+
+    def test_a_refused_scene_leaves_the_earlier_run(self):
+        self.run_scene("o", preview=True)
+        before = self.tree("o")
+        for bad in "sheets.0.grid.cells=[0, 1]", "sheets.0.material.thickness=inf", "pins=[{vertices: [4000000]}]":
+            with self.subTest(bad):
+                self.singe(*self.other_run("--set", bad), expect=2)
+                self.assertEqual(self.tree("o"), before)
+
+    def test_what_check_calls_good_begins(self):
+        """Extremes that the parts behind the simulation refused when it ran."""
+        lines_of_all = ["frames: 2", "steps: 2", "preview: {size: [32, 32], samples: 1}", "gas: no",
+                        "sheets: [{grid: {size: [0.1, 0.1], cells: [6, 6]}}]"]
+        for number, extra in enumerate((
+            "gas: {height: 100, cell_size: 1 mm}",
+            "colliders: [{kind: sphere, radius: 1e6}]",
+            "colliders: [{kind: sphere, radius: 10 km, position: [0, 0, -10 km]}]",
+            "colliders: [{kind: capsule, radius: 1 mm, height: 1e6}]",
+            "colliders: [{kind: box, half_size: [1, 1, 1e6]}]",
+            "colliders: [{kind: box, half_size: [1 cm, 1 cm, 1 cm], position: [0, 0, 1e6]}]",
+            "colliders: [{kind: box, half_size: [1 cm, 1 cm, 1 cm], path: [{time: 0}, {time: 1 s, position: [1e6, 0, 0]}]}]",
+            "sources: [{kind: ball, radius: 1e6, position: [0, 0, 0]}]",
+            "sources: [{kind: ball, radius: 1 cm, path: [{time: 0}, {time: 1e-3 s, position: [0, 1e5, 0]}]}]",
+            "preview: {size: [32, 32], samples: 1, camera: {eye: [0, 0, 1e-7], target: [0, 0, 0], up: [0, 1, 0]}}",
+            "preview: {size: [32, 32], samples: 1, camera: {eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1e-7, 0]}}",
+            "preview: {size: [32, 32], samples: 1, light: {direction: [0, 0, 1e-12]}}",
+        )):
+            with self.subTest(extra):
+                scene, key = self.path(f"s{number}.yaml"), extra.split(":")[0]
+                lines = [line for line in lines_of_all if not line.startswith(key)] + [extra]
+                with open(scene, "w") as file:
+                    file.write("\n".join(lines) + "\n")
+                code = self.code_of("check", scene)
+                if code:
+                    _, err = self.singe("check", scene, expect=2)
+                    self.assertIn(f"s{number}.yaml:{len(lines)}:", err)
+                self.singe("run", scene, "-o", self.path(f"o{number}"), expect=code)
+
+    def code_of(self, *args):
+        run = self.start(*args)
+        run.communicate(timeout=120)
+        return run.returncode
+
+    def test_links_in_the_folder_are_not_followed(self):
+        """What they point at is not ours. The folder itself may be one."""
+        os.makedirs(self.path("theirs", "frames"))
+        for name in "stats.csv", "run.json", "checkpoint.singe", "preview.mp4", "frames/tiny.0001.png":
+            with open(self.path("theirs", name), "w") as file:
+                file.write("theirs")
+        before = self.tree("theirs")
+        os.mkdir(self.path("real"))
+        os.symlink("real", self.path("o"))
+        for inner in [*(["frames"] if HAS_PREVIEW else []), "gas", "ply"]:
+            os.symlink(self.path("theirs"), self.path("o", inner))
+            self.assertIn(f"o/{inner}: cannot write: it is a link", self.run_scene("o", expect=1, preview=True)[1])
+            os.remove(self.path("o", inner))
+            shutil.rmtree(self.path("real"))
+            os.mkdir(self.path("real"))
+        os.symlink(self.path("theirs", "stats.csv"), self.path("o", "stats.csv"))
+        self.assertIn("o/stats.csv: cannot write: it is a link", self.run_scene("o", expect=1)[1])
+        os.remove(self.path("o", "stats.csv"))
+        # those that a rename replaces, and a folder that is only cleaned
+        for name in "run.json", "checkpoint.singe", "preview.mp4":
+            os.symlink(self.path("theirs", name), self.path("o", name))
+        shutil.rmtree(self.path("o", "frames"), ignore_errors=True)
+        os.symlink(self.path("theirs", "frames"), self.path("o", "frames"))
+        self.run_scene("o")
+        os.remove(self.path("o", "frames"))
+        self.run_scene("o", preview=True)
+        self.assertEqual(self.tree("theirs"), before)
+        self.assertEqual(self.record("o")["result"], "complete")
+        self.assertFalse([n for n in os.listdir(self.path("o")) if os.path.islink(self.path("o", n))])
+
+    def test_pipes_do_not_hang(self):
+        for name in "stats.csv", "run.json", "checkpoint.singe", "preview.mp4", "ply":
+            with self.subTest(name):
+                out = "o" + name
+                os.mkdir(self.path(out))
+                os.mkfifo(self.path(out, name))
+                expect = 0 if name in ("checkpoint.singe", "preview.mp4") else 1  # which are removed first
+                _, err = self.run_scene(out, expect=expect, preview=True, timeout=30)
+                if expect:
+                    self.assertIn(name, err)
+        os.remove(self.path("ostats.csv", "stats.csv"))
+        os.mkfifo(self.path("ostats.csv", "checkpoint.singe"))
+        self.run_scene("ostats.csv", "--resume", expect=1, timeout=30)
+
+    def test_drafts_of_a_killed_run_go(self):
+        self.run_scene("o", "--quiet")
+        for name in "ply/tiny.0001.ply.12-0.tmp.12-0.tmp", "preview.mp4.12-3.tmp", "preview.gif.12-0.tmp":
+            with open(self.path("o", name), "w") as file:
+                file.write("half")
+        self.run_scene("o", "--resume")
+        self.no_temporaries("o")
+
+
+if __name__ == "__main__":
+    unittest.main()

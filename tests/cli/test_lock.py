@@ -1,0 +1,109 @@
+"""Two processes at one folder: who writes what, and that no lock outlives its process."""
+
+import os
+import signal
+import socket
+import time
+import unittest
+
+from support import HAS_PREVIEW, Case
+
+
+class Lock(Case):
+    def begin(self, out, *args):
+        """A run that has begun, and goes on for long."""
+        scene = self.write_scene("long.yaml", frames=100000, cells=20)
+        run = self.start("run", scene, "-o", self.path(out), "--no-preview", *args)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(lambda: run.poll() is None and run.kill())
+        return self.until(run, lambda: os.path.exists(self.path(out, "ply", "long.0002.ply")))
+
+    def until(self, process, done):
+        end = time.monotonic() + 60
+        while not done() and process.poll() is None:
+            self.assertLess(time.monotonic(), end, "does not come forward")
+            time.sleep(0.005)
+        return process
+
+    def end(self, process, number=signal.SIGKILL):
+        process.send_signal(number)
+        process.wait(timeout=60)
+
+    def test_second_run_is_refused(self):
+        run = self.begin("o")
+        before = self.record("o")
+        _, err = self.run_scene("o", expect=1)
+        self.assertIn(f"its frames are being written by process {run.pid} on {socket.gethostname()}", err)
+        _, err = self.run_scene("o", "--resume", expect=1)
+        self.assertIn(f"process {run.pid} ", err)
+        self.assertIsNone(run.poll())
+        self.assertEqual(self.record("o"), before)
+        self.end(run, signal.SIGINT)
+        self.assertFalse([n for n in os.listdir(self.path("o")) if n.endswith(".lock")])
+        self.singe("verify", self.path("o"))
+        self.run_scene("o")
+        self.singe("verify", self.path("o"))
+
+    def test_two_at_once(self):
+        """One of them runs; the other has touched nothing."""
+        runs = []
+        for pace in 12, 6:
+            scene = self.write_scene(f"pace{pace}.yaml", frames=12, cells=30, extra="name: both\n")
+            runs.append(self.start("run", scene, "-o", self.path("o"), "--no-preview", "-q", "--set", f"pace={pace}"))
+        errors = [run.communicate(timeout=120)[1] for run in runs]
+        codes = [run.returncode for run in runs]
+        self.assertIn(sorted(codes), ([0, 1], [0, 0]), errors)  # [0, 0]: one after the other
+        self.singe("verify", self.path("o"))
+        winner = codes.index(0)
+        if codes[1 - winner]:
+            self.assertIn("are being written by process", errors[1 - winner])
+            self.assertEqual(self.record("o")["scene"]["pace"], (12, 6)[winner])
+
+    def test_a_killed_run_holds_nothing(self):
+        self.end(self.begin("o"))
+        self.run_scene("o")
+        self.assertEqual(self.record("o")["result"], "complete")
+
+    def test_links_and_pipes_in_the_place_of_a_lock(self):
+        os.mkdir(self.path("o"))
+        with open(self.path("theirs"), "w") as file:
+            file.write("theirs")
+        os.symlink(self.path("theirs"), self.path("o", "cache.lock"))
+        self.assertIn("o/cache.lock: cannot write: it is a link", self.run_scene("o", expect=1)[1])
+        with open(self.path("theirs")) as file:
+            self.assertEqual(file.read(), "theirs")
+        os.remove(self.path("o", "cache.lock"))
+        os.mkfifo(self.path("o", "cache.lock"))
+        self.assertIn("cache.lock", self.run_scene("o", expect=1, timeout=20)[1])
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_renders_of_parts_run_side_by_side(self):
+        self.run_scene("o", "--frames", "4", "--quiet")
+        slow = ["--set", "preview.samples=4000", "--set", "preview.size=[640, 480]", "--threads", "1"]
+        first = self.start("render", self.path("o"), "--frames", "1-2", *slow)
+        self.addCleanup(first.stderr.close)
+        self.addCleanup(lambda: first.poll() is None and first.kill())
+        self.until(first, lambda: os.path.exists(self.path("o", "pictures.lock")))
+        self.singe("render", self.path("o"), "--frames", "3-4")
+        self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), ["tiny.0003.png", "tiny.0004.png"])
+        self.singe("render", self.path("o"), "--only-sheet")  # writes no frames
+        for args in ["render", self.path("o")], ["run", self.scene, "-o", self.path("o")]:
+            _, err = self.singe(*args, expect=1)
+            self.assertIn(f"its pictures are being written by process {first.pid} ", err)
+        self.assertIsNone(first.poll(), "the test's own premise")
+        self.end(first)
+        self.singe("render", self.path("o"))
+        self.assertFalse([n for n in os.listdir(self.path("o")) if n.endswith(".lock")])
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_pictures_of_a_run_without(self):
+        """While a run draws none itself, its frames may be drawn."""
+        run = self.begin("o")
+        self.singe("render", self.path("o"), "--frames", "1-2")
+        self.assertEqual(len(os.listdir(self.path("o", "frames"))), 2)
+        self.assertIsNone(run.poll())
+        self.end(run)
+
+
+if __name__ == "__main__":
+    unittest.main()
