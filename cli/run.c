@@ -136,6 +136,11 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
     console_note(run->console, "front %.1f mm/s, hottest %.0f C, %.0f %% burnt, %u pieces, %u particles left",
                  1e3 * stats.front_speed, run->totals->hottest - 273.15, 100 * stats.burnt_fraction, stats.pieces,
                  stats.particles);
+    if (!stats.ledgers_close)
+        console_warn(run->console,
+                     "the ledgers do not close: of heat, %.2g of the largest entry is missing, of mass %.2g (more than "
+                     "%g); are steps of fire so short that temperatures hardly change?",
+                     stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
     double frames = record->frames_done > 0 ? record->frames_done : 1;
     console_note(run->console, "drawn %u triangles at last, %.0f %% of them near the front; %.1f ms a surface",
                  record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),

@@ -159,6 +159,9 @@ typedef struct SingeTimers {
 /// All 0 before the commit.
 SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);
 
+/// A ledger closes while its error is at most this. Sound runs stay below 1e-5.
+#define SINGE_LEDGER_BOUND 1e-3
+
 /// Numbers about the present state, computed when asked for.
 typedef struct SingeStats {
     double time;                   ///< s
@@ -183,6 +186,9 @@ typedef struct SingeStats {
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
     double front_speed;
     uint32_t tears;                ///< vertices that tears have split
+    /// Whether both ledger errors are at most SINGE_LEDGER_BOUND. They are not where steps of fire are so short that
+    /// temperatures change by less than a float's last digit: rounding is right in the mean alone.
+    bool ledgers_close;
 } SingeStats;
 
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);

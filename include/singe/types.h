@@ -208,7 +208,8 @@ struct SingeView;
 
 /// A caller's heat source: add to the arrays, one entry a particle, over view->particle_count.
 /// Heat flux into a layer is flux + conductance * (temperature - T) in W/m2, where
-/// `conductance_temperature` sums conductance * temperature. Must not depend on call order.
+/// `conductance_temperature` sums conductance * temperature. A flux below 0 cools down to 1 K. Must not depend on call
+/// order.
 typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flux, float *conductance,
                          float *conductance_temperature);
 
@@ -219,13 +220,15 @@ typedef struct SingeSourceDef {
     size_t struct_size;
     SingeSourceKind kind;
     float start, end;          ///< s, when it acts; any, end may be INFINITY
-    float temperature;         ///< K, of ball and spot, > 0
-    float conductance;         ///< W/(m2 K), of ball and spot, >= 0
+    float temperature;         ///< K, of ball and spot, 1e-3 to 1e5
+    float conductance;         ///< W/(m2 K), of ball and spot, 0 to 1e9
     float radius, falloff;     ///< m, of ball and spot, >= 0
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
     const SingePoseKey *path;  ///< [path_count] positions only
     SingePicture picture;      ///< picture source
-    float flux;                ///< W/m2 into each layer where the picture is white; below 0 it cools
+    /// W/m2 into each layer where the picture is white, at most 1e15 with picture and strength; below 0 it cools, down to
+    /// 1 K
+    float flux;
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;     ///< not saved: set it again after a load

@@ -240,7 +240,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
                              "the temperature of particle %lld is not a positive finite number", (long long)fault);
     }
     pass->least = (float)least, pass->most = (float)most;
-    pass->slack = most > least ? tolerance * (most - least) + 1e-6 * most : INFINITY; // what was asked for; rounding
+    pass->slack = tolerance * fmax(most - least, 0) + 1e-6 * most; // what was asked for, and rounding
     pass->direction = 0;
     pass->turn = 0;
     bool converged = conduct_solve(pass, residual, tolerance * tolerance * whole, counters), within = true;

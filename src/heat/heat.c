@@ -12,15 +12,20 @@
 // h, dt  s         scene time; fire time dt = h pace
 //
 // Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the
-// end of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. Losses are implicit too,
+// end of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. A flux below 0 takes no more than
+// brings T* to 1 K. Losses are implicit too,
 // with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
 //   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/F.
 //
 // Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C eta (-dm), with the unburnt
 // capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
+#include <math.h>
+
 #include "heat/plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
+static const float HEAT_COLDEST = 1; // K, to which a flux below 0 can cool
+static const float HEAT_RATE_MAX = 1e30f; // all is lost in a step
 
 void heat_blocks(HeatPass *pass, SingeTaskFn *run) { pool_for(pass->pool, pass->plan->blocks, 1, run, pass); }
 
@@ -53,13 +58,21 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float g = plan->source_conductance[i];
         float flux = (plan->flux[i] + (plan->source_temperature[i] - g * T1)) / (1 + warmth * g);
         float T2 = T1 + warmth * flux;
+        if (T2 < HEAT_COLDEST && flux < 0 && flux > -INFINITY) { // and no further
+            T2 = T1 < HEAT_COLDEST ? T1 : HEAT_COLDEST;
+            flux = (T2 - T1) / warmth;
+        }
         float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
-        float rate = warmth * exchange / burnt * slower; // dt K
+        float rate = fminf(warmth * exchange / burnt * slower, HEAT_RATE_MAX); // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;
+        if (rate > 1) { // where little is left, the difference would have no digits
+            plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
+            plan->delta[i] = plan->star[i] - T;
+        }
         ledger[0] += (double)flux * matter->area[i] * dt;
         ledger[1] += (double)loss * matter->capacity[i];
         ledger[2] += (double)combustion * matter->capacity[i];

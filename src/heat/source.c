@@ -11,25 +11,34 @@ static SingeResult source_bad(SingeError *error, const char *what) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "source", -1, "%s", what);
 }
 
-static bool source_positive(float x) { return x > 0 && isfinite(x); }
+static bool source_in(float x, float least, float most) { return x >= least && x <= most; }
 static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
+
+/// W/m2, of a picture: far beyond any fire, and finite whatever a step makes of it.
+static const float SOURCE_FLUX_MAX = 1e15f;
 
 static SingeResult source_check_picture(const SingeSourceDef *def, SingeError *error) {
     const SingePicture *picture = &def->picture;
     if (picture->width < 1 || picture->height < 1 || !picture->values) return source_bad(error, "the picture is empty");
     if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
+    float whitest = 0, strongest = def->strength_count ? 0 : 1;
     size_t count = (size_t)picture->width * (size_t)picture->height;
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
+        whitest = fmaxf(whitest, fabsf(picture->values[k]));
         if (!isfinite(picture->values[k]))
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
                              "value %lld of the picture is not finite", (long long)k);
+    }
     if (def->strength_count && !def->strength) return source_bad(error, "strength is missing");
     for (uint32_t k = 0; k < def->strength_count; k++) {
         const SingeValueKey *key = &def->strength[k];
         if (!isfinite(key->time) || !isfinite(key->value) || (k && !(key->time > key[-1].time)))
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", k,
                              "key %u of strength: times must increase and all be finite", k);
+        strongest = fmaxf(strongest, fabsf(key->value));
     }
+    if (!((double)fabsf(def->flux) * (double)whitest * (double)strongest <= (double)SOURCE_FLUX_MAX))
+        return source_bad(error, "flux times strength and picture must be at most 1e15 W/m2");
     return SINGE_OK;
 }
 
@@ -38,9 +47,10 @@ static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
     switch (def->kind) {
     case SINGE_SOURCE_BALL:
     case SINGE_SOURCE_SPOT:
-        if (!source_positive(def->temperature)) return source_bad(error, "temperature must be above 0 K and finite");
-        if (!source_not_negative(def->conductance))
-            return source_bad(error, "conductance must be at least 0 and finite");
+        if (!source_in(def->temperature, 1e-3f, 1e5f))
+            return source_bad(error, "temperature must be between 0.001 and 100000 K");
+        if (!source_in(def->conductance, 0, 1e9f))
+            return source_bad(error, "conductance must be between 0 and 1e9 W/(m2 K)");
         if (!source_not_negative(def->radius)) return source_bad(error, "radius must be at least 0 and finite");
         if (!source_not_negative(def->falloff)) return source_bad(error, "falloff must be at least 0 and finite");
         if (def->path_count < 1 || !def->path) return source_bad(error, "a ball or spot needs a path");
@@ -242,17 +252,26 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
 }
 
 /// Gas that is hotter than a particle heats it, and it loses nothing to air that is not there: what the losses take by
-/// convection to the ambient is given back. What is hotter than the gas has the losses to still air alone.
+/// convection to the ambient is given back. What is hotter than the gas has the losses to still air alone, and nothing
+/// is given back that would bring it there.
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     HeatPlan *plan = job->pass->plan;
     const GasState *gas = &job->pass->state->gas;
     const float *temperature = job->pass->state->heat.temperature, ambient = plan->settings.ambient_temperature;
-    const Field convection = job->pass->shell->matter.convection;
+    const float *mass = job->pass->state->burn.mass;
+    const Matter *matter = &job->pass->shell->matter;
     for (int i = begin; i < end; i++)
         if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
             source_add(plan, (uint32_t)i, gas->conductance[i], gas->temperature[i]);
-            plan->flux[i] += field_at(convection, (uint32_t)i) * (temperature[i] - ambient);
+            float convection = field_at(matter->convection, (uint32_t)i), hot = gas->temperature[i], T = temperature[i];
+            float back = convection * (T - ambient);
+            // what the losses take by convection: at the gas's temperature, to which no more than this may bring it; or
+            // what they give, where it is colder than the air
+            float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
+            float real = convection / (left * plan->thickening[matter->sheet[i]]);
+            float most = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
+            plan->flux[i] += T > ambient ? fminf(back, most) : fmaxf(back, real * (T - ambient));
         }
 }
 

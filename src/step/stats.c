@@ -139,6 +139,8 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
                        fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
     double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
     stats->ledger_error = most > 0 ? fabs(error) / most : 0;
+    stats->ledgers_close =
+        stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
 
 SingeStats singe_sim_stats(const SingeSim *sim) {

@@ -43,6 +43,13 @@ class Output(Case):
         self.assertLess(float(rows[-1]["ledger_error"]), 1e-5)
         self.assertLess(float(rows[-1]["mass_ledger_error"]), 1e-6)
 
+    def test_ledgers_that_do_not_close(self):
+        _, err = self.run_scene("good")
+        self.assertNotIn("ledgers", err)
+        _, err = self.run_scene("bad", "--set", "pace=1e-6", "--set", "sheets.0.material.temperature=400 K")
+        self.assertIn("warning: the ledgers do not close", err)
+        self.assertGreater(float(self.stats("bad")[-1]["ledger_error"]), 1e-3)
+
     def test_record(self):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")
         record = self.record("o")

@@ -219,7 +219,7 @@ static void poison(void *context, const struct SingeView *view, float *flux, flo
 
 static void a_bad_temperature_is_named_and_kept_out(void **unused) {
     (void)unused;
-    float values[] = {NAN, INFINITY, -1e9f};
+    float values[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default(3, 2, 0.002f, 0.002f);
         def.material.diffusivity = singe_param(0);
@@ -240,6 +240,32 @@ static void a_bad_temperature_is_named_and_kept_out(void **unused) {
         assert_true(rig.state.heat.heat_in == 0);
         rig_close(&rig);
     }
+}
+
+/// From any temperature that a float has, in any step: what is left is between the ambient one and what it was.
+static void any_heat_ends_finite(void **unused) {
+    (void)unused;
+    static const float starts[] = {1e-30f, 1e-3f, 1, 292, 294, 1e4f, 1e6f, 1e12f, 1e20f, 1e38f};
+    static const float steps[] = {1e-9f, 1e-3f, 10, 1e7f};
+    for (size_t k = 0; k < sizeof starts / sizeof *starts; k++)
+        for (size_t s = 0; s < 4; s++) {
+            RigDef def = lossy();
+            def.material.convection = singe_param(1e5f);
+            Rig rig;
+            rig_open(&rig, &def);
+            fill(&rig, starts[k]);
+            rig.h = steps[s];
+            double before = rig_content(&rig, 1);
+            rig_step(&rig);
+            float least = fminf(starts[k], 293), most = fmaxf(starts[k], 293);
+            for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+                if (!(rig.state.heat.temperature[i] >= least * 0.9999f && rig.state.heat.temperature[i] <= most))
+                    fail_msg("%g K, step of %g s: %g K", (double)starts[k], (double)steps[s],
+                             (double)rig.state.heat.temperature[i]);
+            double change = rig_content(&rig, 1) - before, scale = fmax(fabs(rig.state.heat.heat_lost), fabs(change));
+            CHECK_NEAR(rig.state.heat.heat_lost, -change, 1e-4 * scale + 2e-6 * fabs(before) + 1e-12);
+            rig_close(&rig);
+        }
 }
 
 static void running_out_of_memory_is_clean(void **unused) {
@@ -287,6 +313,7 @@ int main(void) {
         cmocka_unit_test(heavier_halves_heat_slower),
         cmocka_unit_test(losses_are_each_particles_own),
         cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
+        cmocka_unit_test(any_heat_ends_finite),
         cmocka_unit_test(running_out_of_memory_is_clean),
     };
     return cmocka_run_group_tests_name("heat_exchange", tests, NULL, NULL);

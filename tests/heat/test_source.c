@@ -246,6 +246,59 @@ static void callback_adds_to_the_rest(void **unused) {
     rig_close(&rig);
 }
 
+/// A flux below 0 cools, as fast as it says, and to 1 K; the ledger has what it took.
+static void a_sink_stops_at_1_kelvin(void **unused) {
+    (void)unused;
+    static const float fluxes[] = {-1e3f, -1e6f, -1e15f};
+    const float white = 1;
+    for (int k = 0; k < 3; k++) {
+        RigDef def = inert(3, 3);
+        Rig rig;
+        rig_open(&rig, &def);
+        SingeSourceDef source = singe_default_source();
+        source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){1, 1, &white}, source.flux = fluxes[k];
+        rig_source(&rig, &source);
+        double before = rig_content(&rig, 1);
+        for (int step = 0; step < 50; step++) rig_step(&rig);
+        double expected = fmax(300 + 50 * 0.002 * (double)fluxes[k] / PER_AREA, 1);
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+            CHECK_NEAR(rig.state.heat.temperature[i], expected, 2e-3);
+        CHECK_NEAR(rig.state.heat.heat_in, rig_content(&rig, 1) - before, 1e-4 * fabs(rig.state.heat.heat_in));
+        rig_close(&rig);
+    }
+}
+
+/// What gas gives and gives back never brings a particle beyond it, however long the step and thick the front.
+static void hot_gas_heats_up_to_itself(void **unused) {
+    (void)unused;
+    static const float starts[] = {250, 300, 500, 999}, convections[] = {14, 1e3f, 1e7f};
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++) {
+            RigDef def = inert(3, 3);
+            def.material.convection = singe_param(convections[c]);
+            def.material.thickening = 50;
+            Rig rig;
+            rig_open(&rig, &def);
+            rig.h = 0.5f;
+            float conductance[25], temperature[25];
+            assert_int_equal(rig.shell.particle_count, 25);
+            for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
+                rig.state.heat.temperature[i] = starts[k];
+                conductance[i] = 10, temperature[i] = 1000;
+            }
+            rig.state.gas.warm = true;
+            rig.state.gas.conductance = conductance, rig.state.gas.temperature = temperature;
+            for (int step = 0; step < 20; step++) {
+                rig_step(&rig);
+                for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+                    if (!(rig.state.heat.temperature[i] >= 249 && rig.state.heat.temperature[i] <= 1000.01f))
+                        fail_msg("from %g K, convection %g: %g K", (double)starts[k], (double)convections[c],
+                                 (double)rig.state.heat.temperature[i]);
+            }
+            rig_close(&rig);
+        }
+}
+
 // --- refusals ------------------------------------------------------------------------------------------------
 
 static void bad_defs_are_refused(void **unused) {
@@ -254,7 +307,7 @@ static void bad_defs_are_refused(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     const float pixels[] = {0, NAN}, good_pixels[] = {0, 1};
-    const SingeValueKey keys[] = {{1, 0}, {1, 2}};
+    const SingeValueKey keys[] = {{1, 0}, {1, 2}}, strong[] = {{0, -1e4f}};
     SingeSourceDef bad[20];
     int count = 0;
     SingeSourceDef spot = ball(&MIDDLE, 1, 150, 0.01f, 0), picture = singe_default_source();
@@ -262,6 +315,8 @@ static void bad_defs_are_refused(void **unused) {
     bad[count] = spot, bad[count++].temperature = 0;
     bad[count] = spot, bad[count++].temperature = NAN;
     bad[count] = spot, bad[count++].conductance = -1;
+    bad[count] = spot, bad[count++].temperature = 2e5f;
+    bad[count] = spot, bad[count++].conductance = 2e9f;
     bad[count] = spot, bad[count++].radius = INFINITY;
     bad[count] = spot, bad[count++].falloff = -1;
     bad[count] = spot, bad[count++].path_count = 0;
@@ -273,6 +328,8 @@ static void bad_defs_are_refused(void **unused) {
     bad[count] = picture, bad[count++].picture.values = NULL;
     bad[count] = picture, bad[count++].picture.values = pixels;
     bad[count] = picture, bad[count++].flux = NAN;
+    bad[count] = picture, bad[count++].flux = -2e15f;
+    bad[count] = picture, bad[count].flux = 1e12f, bad[count].strength = strong, bad[count++].strength_count = 1;
     bad[count] = picture, bad[count].strength = keys, bad[count++].strength_count = 2;
     for (int k = 0; k < count; k++) {
         size_t held = rig.memory.held;
@@ -295,6 +352,7 @@ int main(void) {
         cmocka_unit_test(contact_takes_the_sides_it_is_told),
         cmocka_unit_test(contact_heat_goes_through_the_sheet),
         cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
+        cmocka_unit_test(a_sink_stops_at_1_kelvin),             cmocka_unit_test(hot_gas_heats_up_to_itself),
         cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);
