@@ -27,6 +27,8 @@
 #include <math.h>
 #include <string.h>
 
+static const float STRENGTH_MAX = 1e30f;
+
 /// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
 static float fall(float x, float k, float p) {
     if (p == 0.0f) return k > x ? x : k;
@@ -54,6 +56,7 @@ static float lower_mass(const Matter *matter, uint32_t i, float mass, float exce
     float x = (mass - least) / span, k = field_at(matter->mass_rate, i) * dt * excess / span;
     if (field_at(matter->pre_exponential, i) > 0) k = arrhenius_rate(matter, i, excess) * dt;
     if (x <= 0 || k <= 0) return mass;
+    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinite it would be NaN times an x^p that vanishes
     float lowered = mass - span * fall(x, k, field_at(matter->ash_exponent, i));
     return lowered < least ? least : lowered;
 }

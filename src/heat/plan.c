@@ -3,6 +3,8 @@
 
 /// More is a mistake in the material: on cells of a millimetre its front would be a nanometre thick.
 static const float PLAN_THICKENING_MAX = 1e6f;
+/// m2/s, times a step and a temperature it is still a float.
+static const float PLAN_CONDUCTANCE_MAX = 1e20f;
 
 /// Means of a sheet's parameters over its particles, for the front thickening.
 static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
@@ -62,6 +64,18 @@ static SingeResult plan_thicken(HeatPlan *plan, const Shell *shell, SingeError *
     return SINGE_OK;
 }
 
+/// Refuses what would not stay finite in a step.
+static SingeResult plan_check(const HeatPlan *plan, const Shell *shell, SingeError *error) {
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+        for (uint32_t k = 0; k < shell->springs[c].count; k++)
+            if (!(plan->conductance[plan->spring_first[c] + k] <= PLAN_CONDUCTANCE_MAX))
+                return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1,
+                                 "sheet '%s': its diffusivity, or its layer_exchange, is too large for its cells and "
+                                 "thickening",
+                                 shell->sheets[shell->matter.sheet[shell->springs[c].ends[k][0]]].name);
+    return SINGE_OK;
+}
+
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **out,
                              SingeError *error) {
     *out = NULL;
@@ -80,6 +94,9 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
     }
     if (!result) {
         heat_operator(plan, shell);
+        result = plan_check(plan, shell, error);
+    }
+    if (!result) {
         result = heat_matrix_create(memory, plan, shell);
         if (shell->spare_count == 0) FREE(memory, plan->conductance, plan->springs);
         if (!result) result = heat_rest_create(memory, plan);

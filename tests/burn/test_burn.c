@@ -99,6 +99,25 @@ static void exponents_follow_their_solutions(void **unused) {
     }
 }
 
+/// However fast and whatever the exponent: what is left is a number from m_min on.
+static void any_rate_leaves_a_mass(void **unused) {
+    (void)unused;
+    const float exponents[] = {0, 0.01f, 0.5f, 1, 2, 3, 30, 300};
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
+        for (int k = 0; k < 2; k++) {
+            SingeMaterialDef material = plain_material();
+            material.ash_exponent = singe_param(exponents[e]), material.mass_rate = singe_param(k ? 3e38f : 1);
+            BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
+            heat_all(b, 5000);
+            b->state.burn.mass[0] = 0.3f;
+            for (int n = 0; n < 3; n++) {
+                assert_int_equal(step(b, NULL, 10, 1, 1), SINGE_OK);
+                assert_true(b->state.burn.mass[0] >= 0.15f && b->state.burn.mass[0] <= 0.3f);
+            }
+            burning_sheet_free(b);
+        }
+}
+
 /// dx/dt = -A exp(-E/(R T)) x^p at a T of each particle's own, as hot as the ceiling lets it count.
 static void kinetics_follow_arrhenius(void **unused) {
     (void)unused;
@@ -376,6 +395,7 @@ int main(void) {
         cmocka_unit_test(rate_stops_growing_at_its_ceiling),
         cmocka_unit_test(ceilings_may_vary),
         cmocka_unit_test(exponents_follow_their_solutions),
+        cmocka_unit_test(any_rate_leaves_a_mass),
         cmocka_unit_test(kinetics_follow_arrhenius),
         cmocka_unit_test(no_step_passes_the_least_mass),
         cmocka_unit_test(ignites_once_and_in_order),

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double SIGMA = 5.670374e-8;
 
@@ -268,6 +269,25 @@ static void any_heat_ends_finite(void **unused) {
         }
 }
 
+/// Refused with the sheet's name, and not found in a step.
+static void what_conducts_beyond_floats_is_refused(void **unused) {
+    (void)unused;
+    for (int k = 0; k < 4; k++) {
+        RigDef def = rig_default(3, 2, 0.002f, 0.002f);
+        Rig rig;
+        rig_open(&rig, &def); // a shell to try other materials on
+        HeatPlan *plan = NULL;
+        if (k < 2) rig.shell.matter.diffusivity.values[0] = k == 0 ? 1e30f : 1e15f;
+        if (k == 2) rig.shell.matter.layer_exchange.values[0] = 3e38f;
+        rig.shell.sheets[0].material.thickening = k == 1 ? 1e10f : 1;
+        SingeResult result = heat_plan_create(&rig.memory, &rig.shell, &rig.settings, &plan, &rig.error);
+        assert_int_equal(result, k < 3 ? SINGE_ERROR_ARGUMENT : SINGE_OK);
+        if (k < 3) assert_non_null(strstr(rig.error.message, "sheet 'sheet': its diffusivity"));
+        heat_plan_free(&rig.memory, plan);
+        rig_close(&rig);
+    }
+}
+
 static void running_out_of_memory_is_clean(void **unused) {
     (void)unused;
     RigDef def = rig_default(3, 2, 0.002f, 0.002f);
@@ -314,6 +334,7 @@ int main(void) {
         cmocka_unit_test(losses_are_each_particles_own),
         cmocka_unit_test(a_bad_temperature_is_named_and_kept_out),
         cmocka_unit_test(any_heat_ends_finite),
+        cmocka_unit_test(what_conducts_beyond_floats_is_refused),
         cmocka_unit_test(running_out_of_memory_is_clean),
     };
     return cmocka_run_group_tests_name("heat_exchange", tests, NULL, NULL);
