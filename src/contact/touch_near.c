@@ -123,12 +123,15 @@ Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t) {
     return (a + *s * u) - (c + *t * v);
 }
 
-static float sweep_distance(const TouchSweep *sweep, float time) {
-    Quad x[4];
+static Quad sweep_apart(const TouchSweep *sweep, float time, Quad x[4]) {
     float weight[3], s, t;
     for (int i = 0; i < 4; i++) x[i] = sweep->place[i] + time * sweep->way[i];
-    Quad apart = sweep->edges ? touch_from_segment(x[0], x[1], x[2], x[3], &s, &t)
-                              : touch_from_triangle(x[0], x[1], x[2], x[3], weight);
+    return sweep->edges ? touch_from_segment(x[0], x[1], x[2], x[3], &s, &t)
+                        : touch_from_triangle(x[0], x[1], x[2], x[3], weight);
+}
+
+static float sweep_distance(const TouchSweep *sweep, float time) {
+    Quad x[4], apart = sweep_apart(sweep, time, x);
     return sqrtf(quad_dot(apart, apart));
 }
 
@@ -141,15 +144,35 @@ static float sweep_approach(const TouchSweep *sweep) {
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
 
+/// How long from `time` on two planes across the shortest way between the two keep them `keep` apart, which move along
+/// with the nearest of their points.
+static float sweep_planes(const TouchSweep *sweep, float time, float keep) {
+    Quad x[4], normal = sweep_apart(sweep, time, x);
+    int own = sweep->edges ? 2 : 1;
+    float longest = 2, height[4], speed[4];
+    normal = normal / sqrtf(quad_dot(normal, normal));
+    for (int i = 0; i < 4; i++) height[i] = quad_dot(x[i] - x[0], normal), speed[i] = quad_dot(sweep->way[i], normal);
+    for (int i = 0; i < own; i++)
+        for (int j = own; j < 4; j++) {
+            float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
+            if (!(left > 0)) return 0;
+            if (nearing > 0) longest = fminf(longest, left / nearing);
+        }
+    return longest;
+}
+
 float touch_sweep(const TouchSweep *sweep, float gap, float noise) {
-    enum { ROUNDS = 64 };
+    enum { ROUNDS = 64, SIMPLE_ROUNDS = 12 };
     float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
     bool close = distance <= 2 * gap; // then it may only part
     if (close && sweep_distance(sweep, 1) < distance - noise) return 0;
-    float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * (distance - keep);
+    // impacts part what meets by more than `stop`, however far it has come
+    float keep = close ? 0.5f * distance : gap, stop = keep + 0.1f * fminf(distance - keep, 10 * gap);
     if (approach < distance - keep) return 2;
     for (int round = 0; round < ROUNDS; round++) {
         float next = time + 0.9f * (distance - keep) / approach;
+        // what slides by, fast for its distance, makes small steps only
+        if (round >= SIMPLE_ROUNDS) next = fmaxf(next, time + 0.9f * sweep_planes(sweep, time, keep));
         if (next > 1) return 2;
         distance = sweep_distance(sweep, next);
         if (!(distance > stop)) return time;
