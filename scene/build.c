@@ -2,6 +2,7 @@
 #include "scene/faults.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
+#include "scene/warnings.h"
 
 #include <stdlib.h>
 
@@ -217,5 +218,7 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
         singe_sim_destroy(builder.sim);
     else
         *sim = builder.sim;
+    if (!result)
+        scene_warn(scene, assets, &hooks->log);
     return result;
 }

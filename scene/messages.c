@@ -139,6 +139,22 @@ void message_add(SceneMessages *messages, const SceneText *text, ScenePlace plac
     items[messages->count++] = message;
 }
 
+void message_warn(const SingeLog *log, const SceneText *text, ScenePlace place, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    char *what = text_format(format, arguments), *origin = text_origin(text, place);
+    va_end(arguments);
+    const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
+    char *line = size ? malloc(size) : NULL;
+    if (line)
+        snprintf(line, size, "%s: %s", origin, what);
+    if (log->write) // without memory it comes without its place
+        log->write(log->context, SINGE_LOG_WARNING, line ? line : format);
+    free(line);
+    free(what);
+    free(origin);
+}
+
 static bool place_before(ScenePlace a, ScenePlace b) {
     if (a.set != b.set)
         return a.set < b.set;

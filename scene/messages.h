@@ -23,6 +23,10 @@ typedef struct SceneText {
 void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
+/// Tells the log a warning with its place. A log that is zeroed is told nothing.
+void message_warn(const SingeLog *log, const SceneText *text, ScenePlace place, const char *format, ...)
+    SINGE_PRINTF(4, 5);
+
 /// Puts the messages from `first` on into the order of the file, those of material files and of --set behind them.
 void messages_sort(SceneMessages *messages, uint32_t first);
 

@@ -264,7 +264,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
 /// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
-/// or the first other object.
+/// or the first other object. What is certain to have no effect is told to the log of `hooks`, with its place.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 

@@ -200,7 +200,8 @@ static const SchemaRow pin_rows[] = {
     {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
      .doc = "places [x, y, z] in the world at the start"},
     {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
-     .doc = "what is this near to one of the points is held; 0 holds the nearest vertex of each"},
+     .doc = "what is this near to one of the points is held, and the nearest vertex of each in any case; a point that "
+            "misses the sheet by a tenth of its diagonal is warned of"},
     {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
      .doc = "numbers of the mesh's vertices, from 0"},
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,

@@ -199,6 +199,53 @@ static void test_bad_meshes(void **state) {
     rmdir(folder);
 }
 
+static void keep_line(void *context, SingeLogLevel level, const char *line) {
+    char *lines = context;
+    if (level == SINGE_LOG_WARNING)
+        strcat(strcat(lines, line), "\n");
+}
+
+/// What can be simulated and has no effect is warned of, with its place.
+static void test_warnings(void **state) {
+    (void)state;
+    static const struct { const char *more, *warning; } cases[] = {
+        {"pins: [{points: [[0, 0, 0]], radius: 1 mm}]", NULL},
+        {"pins: [{points: [[0, 0, 0]]}]", NULL},
+        {"pins: [{points: [[0, 0, 0], [0, 0, 5 cm]], radius: 1 cm}]",
+         "t.yaml:3:8: the pin's point [0, 0, 0.05] m misses the sheet: it holds the nearest vertex alone, 0.05 m away\n"},
+        {"pins: [{points: [[0, 0, 5 cm]], radius: 6 cm}]", NULL},
+        {"pins: [{points: [[0, 0, 3 cm]], radius: 0}]", NULL},
+        {"pins: [{points: [[0, 0, 5]], radius: 0}]", "t.yaml:3:8: the pin's point [0, 0, 5] m misses the sheet"},
+        {"pins: [{points: [[0, 0, 5]], radius: 0}, {points: [[0, 0, 7]]}]", "[0, 0, 7] m misses the sheet"},
+        {"sources: [{kind: spot, position: [0, 0, 0]}]", NULL},
+        {"sources: [{kind: spot, position: [0, 0, 0], conductance: 0}]",
+         "t.yaml:3:11: the source heats nothing: its conductance is 0\n"},
+        {"sources: [{kind: spot, position: [0, 0, 0], radius: 0, falloff: 0}]", "its radius and its falloff are 0\n"},
+        {"sources: [{kind: spot, position: [0, 0, 0], start: 1, end: 1}]", "it ends as it starts\n"},
+        {"frames: 25\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", "t.yaml:4:11: the source heats nothing: it starts"},
+        {"frames: 26\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[400], lines[2000] = "";
+        snprintf(text, sizeof text, "%s%s\n", SHEET, cases[i].more);
+        SceneMessages messages = {0};
+        SceneAssets assets;
+        SingeSim *sim;
+        Scene *scene;
+        SingeSimDef hooks = singe_default_sim();
+        hooks.log = (SingeLog){keep_line, lines};
+        assert_int_equal(scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_OK);
+        assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
+        assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
+        if (cases[i].warning ? !strstr(lines, cases[i].warning) : lines[0])
+            fail_msg("%s: %s", cases[i].more, lines);
+        singe_sim_destroy(sim);
+        scene_assets_free(&assets);
+        scene_free(scene);
+        scene_messages_free(&messages);
+    }
+}
+
 static const char cube[] = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 0 0 20\nv 20 0 20\nv 20 20 20\nv 0 20 20\n"
                            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n%s";
 
@@ -439,7 +486,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rotation),   cmocka_unit_test(test_sim),
         cmocka_unit_test(test_refused),    cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_solids), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_warnings), cmocka_unit_test(test_solids), cmocka_unit_test(test_preview),
         cmocka_unit_test(test_mesh_files),
         cmocka_unit_test(test_examples),   cmocka_unit_test(test_camera_finds_the_sheets),
     };

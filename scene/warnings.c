@@ -1,0 +1,82 @@
+// What is certain to have no effect, or not the one that was meant, though it can be simulated.
+#include "scene/messages.h"
+#include "scene/warnings.h"
+
+#include <math.h>
+
+/// Distance from a point to the mesh's nearest vertex, m.
+static double nearest_vertex(const Mesh *mesh, const float point[3]) {
+    double least = INFINITY;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double sum = 0;
+        for (size_t i = 0; i < 3; i++) {
+            double way = (double)mesh->positions[3 * (size_t)v + i] - (double)point[i];
+            sum += way * way;
+        }
+        least = fmin(least, sum);
+    }
+    return sqrt(least);
+}
+
+static double diagonal(const Mesh *mesh) {
+    double sum = 0;
+    for (size_t i = 0; i < 3; i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            low = fmin(low, (double)mesh->positions[3 * (size_t)v + i]);
+            high = fmax(high, (double)mesh->positions[3 * (size_t)v + i]);
+        }
+        sum += (high - low) * (high - low);
+    }
+    return sqrt(sum);
+}
+
+/// A point that misses its sheet: farther beyond its radius than a tenth of the sheet's diagonal. What is a cell or two
+/// off still holds the vertex that was meant.
+static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const ScenePin *pin, const SingeLog *log) {
+    const Mesh *mesh = &assets->meshes[pin->sheet_index];
+    const double reach = (double)pin->radius + 0.1 * diagonal(mesh);
+    for (uint32_t k = 0; k < pin->point_count; k++) {
+        const float *p = pin->points[k].position;
+        const double gap = nearest_vertex(mesh, p);
+        if (!(gap > reach))
+            continue;
+        message_warn(log, scene->text, pin->place,
+                     "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds the nearest vertex alone, %.3g m away",
+                     (double)p[0], (double)p[1], (double)p[2], gap);
+        return; // one of them is enough
+    }
+}
+
+static bool is_weak(const SceneSource *source) {
+    bool weak = source->strength_count > 0;
+    for (uint32_t i = 0; i < source->strength_count; i++)
+        weak = weak && source->strength[i].value == 0;
+    return weak;
+}
+
+/// A source that can heat nothing, whatever moves where.
+static void warn_of_source(const Scene *scene, const SceneSource *source, const SingeLog *log) {
+    const SingeSourceDef *def = &source->def;
+    const double end = (scene->frames - 1) / (double)scene->fps;
+    const char *why = NULL;
+    if (def->kind == SINGE_SOURCE_PICTURE && (def->flux == 0 || is_weak(source)))
+        why = "its flux is 0";
+    else if (def->kind != SINGE_SOURCE_PICTURE && def->conductance == 0)
+        why = "its conductance is 0";
+    else if (def->kind != SINGE_SOURCE_PICTURE && def->radius + def->falloff == 0)
+        why = "its radius and its falloff are 0";
+    else if (def->end <= def->start)
+        why = "it ends as it starts";
+    else if (scene->frames > 1 && (double)def->start >= end)
+        why = "it starts after the last frame";
+    if (why)
+        message_warn(log, scene->text, source->place, "the source heats nothing: %s", why);
+}
+
+void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
+    for (uint32_t i = 0; i < scene->source_count && log->write; i++)
+        warn_of_source(scene, &scene->sources[i], log);
+    for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
+        warn_of_pin(scene, assets, &scene->pins[i], log);
+}
