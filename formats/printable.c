@@ -1,7 +1,8 @@
 #include "formats/printable.h"
 
-#include <stdint.h>
 #include <string.h>
+
+#include "formats/utf8.h"
 
 /// Characters of Unicode that are controls, have no width of their own or turn the direction of writing.
 static const struct Range {
@@ -13,17 +14,12 @@ static const struct Range {
 };
 
 /// Length of the UTF-8 character at `c`, and its code; 0 where the bytes are not one.
-static int character_at(const unsigned char *c, const unsigned char *end, uint32_t *code) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    int length = *c < 0x80 ? 1 : *c >= 0xc2 && *c < 0xe0 ? 2 : *c >= 0xe0 && *c < 0xf0 ? 3 : *c >= 0xf0 && *c < 0xf5 ? 4 : 0;
+static int character_at(const char *c, const char *end, uint32_t *code) {
+    const int length = utf8_length(c);
     if (length == 0 || end - c < length) return 0;
-    *code = length == 1 ? *c : *c & (0x7fu >> length);
-    for (int i = 1; i < length; i++) {
-        if ((c[i] & 0xc0) != 0x80) return 0;
-        *code = *code << 6 | (c[i] & 0x3fu);
-    }
-    bool surrogate = *code >= 0xd800 && *code < 0xe000;
-    return *code < least[length] || *code > 0x10ffff || surrogate ? 0 : length;
+    *code = length == 1 ? (unsigned char)*c : (unsigned char)*c & (0x7fu >> length);
+    for (int i = 1; i < length; i++) *code = *code << 6 | ((unsigned char)c[i] & 0x3fu);
+    return length;
 }
 
 static bool is_unseen(uint32_t code) {
@@ -34,9 +30,9 @@ static bool is_unseen(uint32_t code) {
 }
 
 size_t printable_character(const char **at, const char *end, char piece[PRINTABLE_PIECE]) {
-    const unsigned char *c = (const unsigned char *)*at;
-    uint32_t code = *c;
-    int length = character_at(c, (const unsigned char *)end, &code);
+    const char *c = *at;
+    uint32_t code = (unsigned char)*c;
+    int length = character_at(c, end, &code);
     *at += length ? length : 1;
     if (length && !is_unseen(code)) {
         memcpy(piece, c, (size_t)length);
@@ -45,7 +41,7 @@ size_t printable_character(const char **at, const char *end, char piece[PRINTABL
     }
     const char *names = "\nn\tt\rr", *name = code < 0x20 && code ? strchr(names, (int)code) : NULL;
     if (name && length) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\%c", name[1]);
-    if (length <= 1) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\x%02x", (unsigned)*c);
+    if (length <= 1) return (size_t)snprintf(piece, PRINTABLE_PIECE, "\\x%02x", (unsigned)(unsigned char)*c);
     return (size_t)snprintf(piece, PRINTABLE_PIECE, code > 0xffff ? "\\U%08x" : "\\u%04x", (unsigned)code);
 }
 
@@ -100,10 +96,8 @@ Shown shown_path(const char *path) {
 }
 
 void printable_trim(char *text) {
-    size_t length = strlen(text), back = 0;
-    while (back < 3 && back < length && ((unsigned char)text[length - 1 - back] & 0xc0) == 0x80) back++;
-    if (back == length) return;
-    uint32_t code;
-    unsigned char *start = (unsigned char *)text + length - 1 - back;
-    if (*start >= 0xc0 && !character_at(start, (unsigned char *)text + length, &code)) *start = 0;
+    size_t length = strlen(text), back = length ? 1 : 0;
+    while (back && back < 4 && back < length && ((unsigned char)text[length - back] & 0xc0) == 0x80) back++;
+    char *last = text + length - back;
+    if (back && (unsigned char)*last >= 0xc0 && !utf8_length(last)) *last = 0;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "formats/printable.h"
+#include "formats/utf8.h"
 #include "scene/yaml.h"
 
 enum { DEPTH_MOST = YAML_DEPTH };
@@ -153,14 +154,8 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     bool begins = true; // a line, as libfyaml counts them: behind a lone \r and behind a byte order mark too
     const unsigned char *c = (const unsigned char *)bytes, *end = c + size;
     while (c < end) {
-        int more = *c < 0x80                 ? 0
-                   : *c >= 0xc2 && *c < 0xe0 ? 1
-                   : *c >= 0xe0 && *c < 0xf0 ? 2
-                   : *c >= 0xf0 && *c < 0xf5 ? 3
-                                             : -1;
-        bool good = more >= 0 && end - c > more && (*c >= 0x20 || *c == '\n' || *c == '\r' || *c == '\t');
-        for (int i = 1; good && i <= more; i++)
-            good = (c[i] & 0xc0) == 0x80;
+        const int length = utf8_length((const char *)c); // a zero follows all texts
+        const bool good = length && end - c >= length && (*c >= 0x20 || *c == '\n' || *c == '\r' || *c == '\t');
         if (!good) {
             builder_fail(builder, place_at(builder, line, column),
                          "this byte is not text; a scene is UTF-8 without control characters");
@@ -171,12 +166,12 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
                          "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
-        bool mark = c == (const unsigned char *)bytes && more == 2 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
+        bool mark = c == (const unsigned char *)bytes && length == 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
         begins = *c == '\n' || *c == '\r' || mark;
         column++;
         if (*c == '\n')
             line++, column = 1;
-        c += more + 1;
+        c += length;
     }
     return true;
 }
