@@ -1,0 +1,89 @@
+"""What the pages say of numbers and options is what the program has."""
+
+import json
+import os
+import re
+import unittest
+
+from support import Case
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+
+
+def page(name):
+    with open(os.path.join(ROOT, "docs", name), encoding="utf-8") as file:
+        return file.read()
+
+
+def documented(text):
+    """(material, key, value) of the tables of docs/materials.md, as they are written."""
+    rows = []
+    for name, section in re.findall(r"^### ([^\n]+)\n(.*?)(?=^##)", text, re.MULTILINE | re.DOTALL):
+        material = name.lower().replace(" ", "-")
+        for keys, value in re.findall(r"^\| (`[^|]+`) \| ([^|]*?) \| ", section, re.MULTILINE):
+            keys = re.findall(r"`([^`]+)`", keys)
+            values = value.split(", ")
+            unit = re.search(r" [^0-9. ].*$", values[-1])  # that of the last is that of all
+            if not value:
+                continue  # described elsewhere
+            assert len(keys) == len(values), (keys, value)
+            for key, one in zip(keys, values):
+                rows.append((material, key, one if " " in one or not unit else one + unit.group()))
+    return rows
+
+
+class Docs(Case):
+    def materials(self, texts):
+        """The resolved materials of one sheet each."""
+        sheets = [{"grid": {"size": [0.1, 0.1], "cells": [2, 2], "jitter": 0}, "translate": [i, 0, 0], "material": text}
+                  for i, text in enumerate(texts)]
+        with open(self.path("all.yaml"), "w", encoding="utf-8") as file:
+            json.dump({"frames": 1, "gas": False, "contact": False, "sheets": sheets}, file, ensure_ascii=False)
+        self.singe("run", self.path("all.yaml"), "-o", self.path("o"), "--no-preview", "--quiet")
+        return [sheet["material"] for sheet in self.record("o")["scene"]["sheets"]]
+
+    def test_materials(self):
+        rows = documented(page("materials.md"))
+        self.assertGreater(len(rows), 40)
+        names = sorted({material for material, _, _ in rows})
+        self.assertEqual(names, ["cotton", "newsprint", "office-paper", "tissue"])
+        said = []
+        for material, key, value in rows:
+            patches = re.fullmatch(r"([0-9.]+) to ([0-9.]+) in patches of (.*)", value)
+            if patches:  # their detail and seed are not told
+                low, high, scale = patches.groups()
+                value = {"from": low, "to": high, "noise": {"scale": scale, "octaves": 2, "seed": 2}}
+            given = {"base": material}
+            inner = given
+            *outer, last = key.split(".")
+            for name in outer:
+                inner = inner.setdefault(name, {})
+            inner[last] = value.replace(" %", "%") if isinstance(value, str) else value
+            said.append(given)
+        resolved = self.materials(names + said)
+        built_in = dict(zip(names, resolved))
+        for (material, key, value), changed in zip(rows, resolved[len(names):]):
+            with self.subTest(material=material, key=key, value=value):
+                plain = dict(built_in[material])
+                plain.pop("measured", None), changed.pop("measured", None)  # not taken over by what is changed
+                self.assertEqual(changed, plain)
+
+    def test_options(self):
+        """The synopsis of docs/cli.md has every option of every command, and no other."""
+        synopsis = re.search(r"```\n(singe run.*?)```", page("cli.md"), re.DOTALL).group(1)
+        synopsis = re.sub(r"\n +", " ", synopsis)
+        for command in "run", "check", "render", "measure", "verify", "paper", "validate":
+            with self.subTest(command):
+                line = re.search(rf"^singe {command} .*$", synopsis, re.MULTILINE).group()
+                listed = set(re.findall(r"\[(?:-\w\|)?(--?[a-z-]+)", line))
+                help = re.findall(r"^  (?:-(\w), |    )--([a-z-]+)", self.singe(command, "--help")[0], re.MULTILINE)
+                for letter, name in help:
+                    if name == "help":
+                        continue
+                    self.assertTrue({f"--{name}", f"-{letter}"} & listed, name)
+                    listed -= {f"--{name}", f"-{letter}"}
+                self.assertFalse(listed)
+
+
+if __name__ == "__main__":
+    unittest.main()
