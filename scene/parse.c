@@ -117,7 +117,7 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
     *scene = NULL;
     SingeResult result = file_read_most(path, SCENE_BYTES_MOST, (SingeAllocator){0}, &bytes, &error);
     if (result) {
-        message_add(messages, &text, (ScenePlace){0}, "a scene cannot be read: %s", error.message);
+        message_add(messages, &text, (ScenePlace){0}, "%s", error.message);
         return result;
     }
     const char *slash = strrchr(path, '/');

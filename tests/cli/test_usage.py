@@ -3,6 +3,7 @@
 import os
 import re
 import resource
+import signal
 import subprocess
 import time
 import unittest
@@ -152,9 +153,17 @@ class Usage(Case):
                 _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
                 self.assertIn("and there are 4.3 GB", err)
 
+    def test_check_can_be_interrupted(self):
+        check = self.start("check", self.scene, "--set", "sheets.0.grid.cells=[450, 450]")
+        self.assertIn("building", check.stderr.readline())
+        time.sleep(0.3)
+        check.send_signal(signal.SIGINT)
+        self.assertEqual(check.wait(timeout=5), -signal.SIGINT)
+        check.stderr.close()
+
     def test_memory_is_as_it_was_said(self):
         for more in "contact=no", "contact=yes":
-            out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[150, 150]", "--set", more)
+            out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[80, 80]", "--set", more)
             said = 1e3 * float(re.search(r"^needs +about ([0-9.]+) GB", out).group(1)) - 40 - 40 * 64 * 48e-6
             held = float(re.search(r"^memory +([0-9.]+) MB$", out, re.MULTILINE).group(1))
             self.assertGreater(said, held)
