@@ -1,4 +1,4 @@
-// Meshes by assimp's C interface: glTF, GLB, FBX, COLLADA, 3DS and X3D. It is much code that was not written for
+// Meshes by assimp's C interface: FBX, COLLADA, 3DS, X3D and glTF 1. It is much code that was not written for
 // hostile files, so it runs in a child process, which puts polygons as mesh_answer.h has them. Nothing is triangulated,
 // smoothed or joined there: mesh_make does that by position. All meshes of all nodes are taken with their transforms,
 // in the order of a walk over the nodes.
@@ -211,7 +211,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
     Walk walk = {.scene = scene, .name = source->name, .error = error, .answer = answer,
-                 .most = (128u << 20) + 64 * (uint64_t)source->size};
+                 .most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * (uint64_t)source->size};
     return put_scene(&walk);
 }
 

@@ -1,9 +1,6 @@
-#ifndef _XOPEN_SOURCE
-#define _XOPEN_SOURCE 700 // realpath
-#endif
-
 #include "assimp_files.h"
 
+#include "beside.h"
 #include "support.h"
 
 #include <stdlib.h>
@@ -47,42 +44,12 @@ static enum aiReturn opened_seek(struct aiFile *file, size_t offset, enum aiOrig
 
 // ---- which files
 
-/// Whether a path has a part "..".
-static bool goes_up(const char *path) {
-    for (const char *part = path; part; part = strchr(part, '/'), part += part != NULL)
-        if (strncmp(part, "..", 2) == 0 && (part[2] == 0 || part[2] == '/' || part[2] == '\\')) return true;
-    return strstr(path, "..\\") != NULL;
-}
-
-/// Whether links, too, lead to a place in the folder or below.
-static bool leads_inside(const char *folder, const char *path) {
-    char *real_folder = realpath(folder, NULL), *real = realpath(path, NULL);
-    size_t length = real_folder ? strlen(real_folder) : 0;
-    if (length == 1) length = 0; // "/"
-    bool inside = real_folder && real && strncmp(real, real_folder, length) == 0 && real[length] == '/';
-    free(real_folder);
-    free(real);
-    return inside;
-}
-
-/// Whether a path is that of a file in the folder of `name` or below.
-static bool is_beside(const char *name, const char *path) {
-    const char *slash = strrchr(name, '/');
-    size_t length = slash ? (size_t)(slash - name) + 1 : 0;
-    const char *inside = path + length;
-    if (strncmp(path, name, length) != 0 || *inside == '/' || *inside == 0 || goes_up(inside)) return false;
-    char *folder = length ? strndup(name, length) : strdup(".");
-    bool good = folder && leads_inside(folder, path);
-    free(folder);
-    return good;
-}
-
 static void note_refused(Source *source, const char *why) {
     if (!source->refused) source->refused = why;
 }
 
 static bool open_beside(Source *source, const char *path, Opened *opened) {
-    if (!is_beside(source->name, path)) {
+    if (!beside_is(source->name, path)) {
         note_refused(source, "; it refers to what is no file in its folder or below");
         return false;
     }

@@ -1,4 +1,4 @@
-// glTF and the like in a build without assimp: nothing is read.
+// FBX and the like in a build without assimp: nothing is read.
 #include "formats.h"
 #include "support.h"
 
@@ -11,5 +11,5 @@ SingeResult assimp_read(const char *name, const uint8_t *bytes, size_t size, Sin
     (void)bytes, (void)size, (void)allocator;
     memset(polygons, 0, sizeof *polygons);
     return refuse(error, SINGE_ERROR_STATE, "mesh", -1,
-                  "%s: this singe was built without assimp; it reads OBJ, PLY, STL and OFF", short_name(name));
+                  "%s: this singe was built without assimp; it reads OBJ, PLY, STL, OFF and glTF 2", short_name(name));
 }

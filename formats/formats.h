@@ -63,7 +63,11 @@ SINGE_NODISCARD SingeResult off_read(const char *name, const uint8_t *bytes, siz
                                      Polygons *polygons, SingeError *error);
 SINGE_NODISCARD SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                      Polygons *polygons, SingeError *error);
-/// glTF, GLB, FBX, COLLADA, 3DS and X3D by assimp, from a file in memory. Vertices are assimp's, faces as in the file;
+/// glTF 2 and GLB: triangles of the scene's nodes, with their transforms. Opens the plain files that it refers to, in the
+/// folder of `name` and below. Version 1 is given to assimp_read.
+SINGE_NODISCARD SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
+                                      Polygons *polygons, SingeError *error);
+/// FBX, COLLADA, 3DS, X3D and glTF 1 by assimp, from a file in memory. Vertices are assimp's, faces as in the file;
 /// all of a scene's meshes with their nodes' transforms. assimp runs in a child process with limits (isolate.h): what
 /// crashes it, takes 512 MiB and 32 times the file's size of memory, or 10 s and 1 s for each 2 MB, is an error.
 /// Reading opens plain files in the folder of `name` and below, and no others. Call it while there is one thread.

@@ -67,7 +67,7 @@ static const SchemaRow sheet_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
      .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneSheet, mesh),
-     .doc = "a file of triangles, quads or polygons: OBJ, PLY, or what assimp reads ([meshes.md](meshes.md)); this or "
+     .doc = "a file of triangles, quads or polygons: OBJ, PLY, glTF and others ([meshes.md](meshes.md)); this or "
             "`grid`"},
     {"grid", ROW_MAP, DIM_NONE, AT(SceneSheet, grid), EXTRA(SceneSheet, grid.given), .sub = &schema_grid,
      .doc = "a rectangle made by the program"},
@@ -149,7 +149,7 @@ static const SchemaRow collider_rows[] = {
      WITHIN(1e-6, 1e4), .doc = "half of the box's lengths along its own axes"},
     COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e4), "between the centres of the capsule's caps"),
     {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
-     .doc = "a closed mesh of triangles or polygons: OBJ, PLY, or what assimp reads, whose faces turn "
+     .doc = "a closed mesh of triangles or polygons: OBJ, PLY, glTF and others, whose faces turn "
             "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
             "turned"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),

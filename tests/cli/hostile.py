@@ -201,6 +201,9 @@ HOSTILE = {
         'no property "x"',
     ),
     # indices out of range, in every format
+    "buffer.glb": (glb(length=1 << 40), ""),
+    "index.gltf": (gltf(indices=(0, 1, 2, 0, 2, 999999)), "index 5 (from 0): vertex 999999 is out of range"),
+    "index.glb": (glb((0, 1, 999999, 0, 2, 3)), "index 2 (from 0): vertex 999999 is out of range"),
     "index.dae": (dae(f"<node>{USE}</node>", indices="0 1 2 0 2 999999"), "999999"),
     "index.x3d": (x3d(x3d_shape("0 1 2 999999 -1")), ""),
     "index.3ds": (three_ds(indices=(0, 1, 2, 0, 2, 60000)), "index"),
@@ -209,5 +212,5 @@ HOSTILE = {
     "index.obj": (obj(999999), "index.obj:5:"),
     # what is no file of its kind
     "blend.dae": (b"BLENDER-v279" + b"\0" * 100, "does not begin"),
-    "text.glb": (b"hello", "does not begin"),
+    "text.glb": (b"hello", "not glTF"),
 }

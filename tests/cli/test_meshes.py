@@ -9,7 +9,7 @@ from hostile import GOOD, HOSTILE, SQUARE, TWO, gltf, struct
 from support import SINGE, Case
 
 HAS_ASSIMP = os.environ["SINGE_ASSIMP"] == "1"
-OWN = (".obj", ".ply", ".off", ".stl")
+OWN = (".obj", ".ply", ".off", ".stl", ".gltf", ".glb")
 SANITIZED = os.environ["SINGE_SANITIZED"] == "1"
 SECONDS = 30
 MEGABYTES = 4000 if SANITIZED else 750
@@ -61,7 +61,6 @@ class Meshes(Case):
                 self.assertLess(megabytes, MEGABYTES)
                 os.remove(self.path(name))
 
-    @unittest.skipUnless(HAS_ASSIMP, "without assimp")
     def test_files_beside(self):
         data = SQUARE + struct.pack("<6I", *TWO)
         os.mkdir(self.path("in"))
