@@ -36,22 +36,36 @@ typedef struct CheckTimes {
     double step, surface, picture; ///< s each
 } CheckTimes;
 
-/// All that run makes of its first frame, but for the files.
-static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
-    Frame frame = {0};
+/// Rays that the timed picture has about at most: one of more is drawn with fewer samples, and its time is scaled.
+static const double check_rays = 16e6;
+
+static double pixels_of(const ScenePreview *preview) { return (double)preview->size[0] * (double)preview->size[1]; }
+
+static SingeResult try_picture(const Job *job, const Frame *frame, double *seconds, SingeError *error) {
     Pictures *pictures = NULL;
     const uint8_t *rgb;
+    int *samples = &job->scene->preview.samples;
+    const int wanted = *samples;
+    while (*samples > 1 && pixels_of(&job->scene->preview) * *samples > check_rays) *samples /= 2;
+    SingeResult result = pictures_open(job, &pictures, error);
+    if (!result) {
+        double begun = console_clock();
+        result = frame_draw(frame, pictures, &rgb, error);
+        *seconds = (console_clock() - begun) * wanted / *samples;
+    }
+    *samples = wanted;
+    pictures_close(pictures);
+    return result;
+}
+
+/// All that run makes of its first frame, but for the files and, where a picture takes long, some of its samples.
+static SingeResult try_frame(const Job *job, SingeSim *sim, CheckTimes *times, SingeError *error) {
+    Frame frame = {0};
     double begun = console_clock();
     SingeResult result = frame_take_surface(sim, &frame, error);
     times->surface = console_clock() - begun;
     if (!result) result = frame_take_gas(sim, &frame, error);
-    if (!result && pictures_available()) result = pictures_open(job, &pictures, error);
-    if (!result && pictures) {
-        begun = console_clock();
-        result = frame_draw(&frame, pictures, &rgb, error);
-        times->picture = console_clock() - begun;
-    }
-    pictures_close(pictures);
+    if (!result && pictures_available()) result = try_picture(job, &frame, &times->picture, error);
     frame_free(&frame);
     return result;
 }
@@ -184,6 +198,7 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         job_note_long(&job, console, "burning a strip of each material");
         report_materials(job.scene, thickening);
         job_note_long(&job, console, "timing steps");
+        if (pictures_available() && pixels_of(&job.scene->preview) > check_rays) console_note(console, "drawing");
         if (try_frame(&job, sim, &times, &error) || time_steps(sim, &times, &error)) {
             fflush(stdout);
             console_result(console, &error);

@@ -153,6 +153,14 @@ class Usage(Case):
                 _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
                 self.assertIn("and there are 4.3 GB", err)
 
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_check_of_large_pictures(self):
+        """A picture that takes hours is timed with fewer samples."""
+        begun = time.monotonic()
+        out, _ = self.singe("check", self.scene, "--set", "preview={size: [1024, 1024], samples: 4096}")
+        self.assertLess(time.monotonic() - begun, 60)
+        self.assertGreater(int(re.search(r"a picture (\d+) ms", out).group(1)), 20000)
+
     def test_check_can_be_interrupted(self):
         check = self.start("check", self.scene, "--set", "sheets.0.grid.cells=[450, 450]")
         self.assertIn("building", check.stderr.readline())
