@@ -2,6 +2,7 @@
 # make demo    installs what it needs (Debian 12), builds, burns the letter and says where its video is
 # make pictures  draws the pictures of the documentation again, after make build
 # make check   installs, builds and runs every test; the last thing printed is the test runner's summary
+# make fuzz-long HOURS=8, make soak HOURS=1: what runs for as long as it is let
 
 FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
@@ -14,7 +15,11 @@ LONG_EXAMPLES = LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|
 # tests of what stands outside those folders, or of how fast it is
 NO_COVERAGE = mesh_zoo|cli_wrinkles|cli_rim|cli_crossings|cli_validate|cli_paper_.*|step_cost|step_instructions|front|spread|install
 
-.PHONY: all demo check check-examples torture coverage pictures build build-asan build-fuzz build-shared build-tsan clean
+# of make fuzz-long and of make soak
+HOURS ?= 1
+MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
+
+.PHONY: all demo check check-examples torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -73,6 +78,24 @@ coverage:
 	find build-coverage -name '*.gcda' -delete
 	ctest --preset coverage -j2 -E '^($(MEASURING)|$(NO_COVERAGE)|example_.*)$$'
 	scripts/coverage.py build-coverage
+
+# all fuzz targets for HOURS, two at a time; what they find and their corpora stay in build-fuzz/fuzz. Then how much of
+# each folder these corpora reach
+fuzz-long: build-fuzz
+	tests/fuzz/run.sh build-fuzz $(HOURS)h
+	cmake --preset coverage
+	cmake --build --preset coverage --target fuzz_targets
+	find build-coverage -name '*.gcda' -delete
+	for target in build-fuzz/fuzz/*/; do \
+	    name=$$(basename $$target); \
+	    build-coverage/tests/fuzz/fuzz_$$name $$target/corpus tests/fuzz/seeds/$$name 2>/dev/null || exit 1; \
+	done
+	scripts/coverage.py build-coverage --no-bars
+
+# random scenes for HOURS, or MINUTES, under the sanitizers: check, run, verify, resume; findings stay in build-asan/soak
+soak: build-asan
+	tests/soak/soak.py build-asan/cli/singe build-asan/tests/soak/draw_scene --minutes $(MINUTES) \
+	    --seed $${SEED:-$$(date +%s)} --work build-asan/soak
 
 pictures:
 	scripts/draw_gallery.sh

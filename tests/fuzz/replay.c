@@ -1,4 +1,4 @@
-// Gives a fuzz target the files of a folder, one after the other, and no bytes at all: what libFuzzer does with a corpus.
+// Gives a fuzz target the files of folders, one after the other, and no bytes at all: what libFuzzer does with a corpus.
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,20 +28,27 @@ static int give(const char *folder, const char *name) {
     return 0;
 }
 
-int main(int argc, char **argv) {
-    DIR *folder = argc == 2 ? opendir(argv[1]) : NULL;
+/// Counts the files in *given. Returns how many could not be read.
+static int give_all(const char *name, int *given) {
+    int failed = 0;
+    DIR *folder = opendir(name);
     if (!folder) {
-        fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
-        return 2;
+        perror(name);
+        return 1;
     }
-    int given = 0, failed = 0;
-    LLVMFuzzerTestOneInput((const uint8_t *)"", 0);
     for (struct dirent *entry; (entry = readdir(folder));) {
         if (entry->d_name[0] == '.') continue;
-        failed += give(argv[1], entry->d_name);
-        given++;
+        failed += give(name, entry->d_name);
+        ++*given;
     }
     closedir(folder);
+    return failed;
+}
+
+int main(int argc, char **argv) {
+    int given = 0, failed = 0;
+    LLVMFuzzerTestOneInput((const uint8_t *)"", 0);
+    for (int i = 1; i < argc; i++) failed += give_all(argv[i], &given);
     fprintf(stderr, "%d files\n", given);
     return failed || !given;
 }

@@ -1,11 +1,15 @@
 #!/bin/sh
-# Runs every fuzz target for some seconds, two at a time: run.sh BUILD_DIR [SECONDS]. Fails when one of them finds
-# something; what it found is left in BUILD_DIR/fuzz/TARGET/.
+# Runs every fuzz target for some seconds, or all of them for some hours, two at a time: run.sh BUILD_DIR [SECONDS |
+# HOURSh]. Fails when one of them finds something; what it found is left in BUILD_DIR/fuzz/TARGET/.
 set -u
-build=${1:?usage: run.sh BUILD_DIR [SECONDS]}
+build=${1:?usage: run.sh BUILD_DIR [SECONDS | HOURSh]}
 seconds=${2:-30}
 seeds=$(cd "$(dirname "$0")" && pwd)/seeds
 build=$(cd "$build" && pwd) || exit 2
+case $seconds in *h)
+    targets=$(find "$build/tests/fuzz" -maxdepth 1 -name 'fuzz_*' -type f -perm -u+x | wc -l)
+    seconds=$(echo "${seconds%h} $targets" | awk '{printf "%d", $1 * 3600 * 2 / $2}')
+esac
 export UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 
 # Leaves its summary in BUILD_DIR/fuzz/TARGET/summary.
