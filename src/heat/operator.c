@@ -66,13 +66,15 @@ static double operator_less(double weight, double leak, float diffusivity) {
     return weight > 0 && diffusivity > 0 ? fmax(0.1 * weight, weight - leak / (double)diffusivity) : weight;
 }
 
-/// The power of two that a cell's sides are as long as, m: what divides by it is the same to the bit, and its products
-/// fit a float, however large or small the cell is.
+/// The power of two that a cell is as wide as, m: what divides by it is the same to the bit, and its products fit a
+/// float, however large or small the cell is.
 static int operator_scale(const Shell *shell, uint32_t cell) {
-    float longest = 0;
-    for (int k = 0; k < 4; k++)
-        longest = fmaxf(longest, shell->springs[SINGE_BLUE].rest[shell->cell_springs[cell].blue[k]]);
-    return ilogbf(longest);
+    const float *first = shell->rest_position[shell->cells[cell][0]];
+    float widest = 0;
+    for (int k = 1; k < 4; k++)
+        for (int d = 0; d < 3; d++)
+            widest = fmaxf(widest, fabsf(shell->rest_position[shell->cells[cell][k]][d] - first[d]));
+    return ilogbf(widest);
 }
 
 static void operator_corners(const Shell *shell, uint32_t cell, int scale, Vec x[4]) {

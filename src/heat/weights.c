@@ -139,9 +139,10 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
 
 /// k of most entropy, with a sum of 1. Returns sqrt(1 - r^2).
 static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) {
-    double lambda[2] = {0}, mean[2], slope[3];
+    double lambda[2] = {0}, mean[2], slope[3], moved = 1;
     weights_mean(s, lambda, k, mean, slope);
-    for (int n = 0; n < ITERATIONS && hypot(mean[0], mean[1]) > 1e-12; n++) {
+    for (int n = 0; n < ITERATIONS && moved > 1e-9 && hypot(mean[0], mean[1]) > 1e-12; n++) {
+        double before[2] = {lambda[0], lambda[1]};
         // Newton's step, at most 1 long: the mean is the gradient of a convex function of lambda
         double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
         double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
@@ -149,6 +150,7 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
         lambda[0] += u / shorter, lambda[1] += v / shorter;
         double steep = fmax(hypot(lambda[0], lambda[1]) / STEEPEST, 1);
         lambda[0] /= steep, lambda[1] /= steep;
+        moved = hypot(lambda[0] - before[0], lambda[1] - before[1]);
         weights_mean(s, lambda, k, mean, slope);
     }
     return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));
