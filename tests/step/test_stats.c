@@ -1,4 +1,5 @@
 // The numbers: ledgers over a whole burning run, and each statistic against the view.
+#include "base/random.h"
 #include "step/scenes.h"
 
 #include <math.h>
@@ -24,6 +25,32 @@ static void ledgers_close(void **state) {
     assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
                 stats.burnt_fraction > 0.3);
     singe_sim_destroy(scene.sim);
+}
+
+/// Cells as bad as they come burn away, and nothing is ever colder than the air.
+static void bad_cells_burn_and_stay_above_the_air(void **state) {
+    (void)state;
+    for (uint32_t seed = 0; seed < 2; seed++) {
+        SingeSimDef def = scene_def();
+        def.solver.tearing = seed == 1;
+        SingeMaterialDef material = scene_quick_material();
+        TestMesh mesh = test_grid(20, 20, 0.01f, 0.01f);
+        for (uint32_t v = 0; v < mesh.vertex_count; v++)
+            for (uint32_t k = 0; k < 2; k++)
+                mesh.positions[3 * v + k] += 0.0084f * (random_unit(random_hash(v, k, seed, 9)) - 0.5f);
+        SingeSim *sim = test_sim(&def, mesh, &material);
+        test_spot(sim, 0.1f, 0.1f, 0, 0.05f, 1500, 1000);
+        for (int step = 0; step < 160; step++) {
+            test_ok(sim, singe_sim_step(sim));
+            SingeView view = singe_sim_view(sim);
+            for (uint32_t i = 0; i < view.particle_count; i++)
+                if (!(view.temperature[i] > def.ambient_temperature - 0.1f))
+                    fail_msg("step %d: particle %u has %g K", step, i, (double)view.temperature[i]);
+        }
+        SingeStats stats = singe_sim_stats(sim);
+        assert_true(stats.particles < 800 && stats.ledgers_close); // of 841
+        singe_sim_destroy(sim);
+    }
 }
 
 /// Steps so short that a float hardly notices what they bring: said, not hidden.
@@ -180,6 +207,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ledgers_close),
         cmocka_unit_test(ledgers_that_do_not_close_are_told),
+        cmocka_unit_test(bad_cells_burn_and_stay_above_the_air),
         cmocka_unit_test(a_front_runs_along_a_strip),
         cmocka_unit_test(combustion_is_eta_times_mass),
         cmocka_unit_test(statistics_match_the_view),
