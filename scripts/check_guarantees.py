@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Checks that each promise of docs/guarantees.md and SECURITY.md names tests, and that these exist.
+
+usage: check_guarantees.py ROOT BUILD FILE...
+
+A promise is an item of a list. It ends with its tests in brackets: [step_threads: any_number_of_threads;
+cli_resume: kill_and_resume]. Before the colon stands a test of ctest, or a make target of the Makefile, behind it the
+case in that test's sources: a C function, or a Python method with "test_" before it. A promise that no test can show
+ends with [not tested: REASON]; what is only described has no place in a list.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+
+def ctest_names(build):
+    """The tests of a build, without those whose tools are missing on this machine."""
+    shown = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, capture_output=True, text=True, check=True)
+    return {test["name"] for test in json.loads(shown.stdout)["tests"]}
+
+
+def make_targets(root):
+    with open(os.path.join(root, "Makefile")) as file:
+        return {"make " + name for name in re.findall(r"^([a-z-]+):", file.read(), re.M)}
+
+
+def cases(root):
+    """Every function of the tests' sources."""
+    found = set()
+    for folder, _, files in os.walk(os.path.join(root, "tests")):
+        for name in files:
+            path = os.path.join(folder, name)
+            if name.endswith((".c", ".h")):
+                pattern = r"\b(?:void|int) (\w+)\("
+            elif name.endswith(".py"):
+                pattern = r"\bdef (?:test_)?(\w+)\("
+            else:
+                continue
+            with open(path) as file:
+                text = file.read()
+            names = re.findall(pattern, text)
+            found.update(n.removeprefix("test_") for n in names)
+    return found
+
+
+def promises(path):
+    """Items of lists: (line, text)."""
+    items = []
+    with open(path) as file:
+        for number, line in enumerate(file, 1):
+            if re.match(r"\s*- ", line):
+                items.append([number, line.strip()])
+            elif items and items[-1] and line.startswith("  ") and line.strip():
+                items[-1][1] += " " + line.strip()
+            else:
+                items.append(None)
+    return [item for item in items if item]
+
+
+def complaints(root, build, files):
+    tests = ctest_names(build) | make_targets(root)
+    known = cases(root)
+    for file in files:
+        found = promises(os.path.join(root, file))
+        if not found:
+            yield f"{file}: no promise"
+        for line, text in found:
+            last = re.search(r"\[([^\[\]]+)\]$", text)
+            if not last:
+                yield f"{file}:{line}: no test is named at the end of this promise"
+            elif not re.match(r"not tested: \S", last.group(1)):
+                for name in last.group(1).split(";"):
+                    test, _, case = (part.strip() for part in name.partition(":"))
+                    if test not in tests:
+                        yield f"{file}:{line}: no test '{test}'"
+                    for one in filter(None, (c.strip() for c in case.split(","))):
+                        if one not in known:
+                            yield f"{file}:{line}: no case '{one}'"
+
+
+def main():
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
+    found = list(complaints(sys.argv[1], sys.argv[2], sys.argv[3:]))
+    print("\n".join(found) or "every promise has its tests")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
