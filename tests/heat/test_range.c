@@ -168,6 +168,27 @@ static void so_does_the_umbrella(void **unused) {
         for (int k = 0; k < 2; k++) check_range(&meshes[m], &material, k ? 10 : 1e-2f, (uint32_t)m);
 }
 
+/// Steps that end within their range by force are the same for any number of threads.
+static void threads_do_not_matter(void **unused) {
+    (void)unused;
+    enum { THREADS = 3 };
+    RigDef def = rig_default(120, 90, 0.002f, 0.002f);
+    def.shape = slivers;
+    Rig rig[2];
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig[k], &def);
+        rig[k].h = 50;
+        if (k) assert_int_equal(pool_create(&rig[k].memory, (SingeTasks){0}, THREADS, &rig[k].pool), SINGE_OK);
+        for (uint32_t i = 0; i < rig[k].shell.particle_count; i++)
+            rig[k].state.heat.temperature[i] = rig_random(i, 3) < 0.5f ? 300 : 1300;
+        for (int step = 0; step < 3; step++) rig_step(&rig[k]);
+    }
+    assert_true(rig[0].counters.bounded > 0 && rig[1].counters.bounded == rig[0].counters.bounded);
+    assert_memory_equal(rig[0].state.heat.temperature, rig[1].state.heat.temperature,
+                        rig[0].shell.particle_count * sizeof(float));
+    for (int k = 0; k < 2; k++) rig_close(&rig[k]);
+}
+
 // --- cells of their own ----------------------------------------------------------------------------------------
 
 /// Exact for linear T in the mean: sum of c p p' = A 1, in the cell's plane.
@@ -241,6 +262,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(conduction_keeps_to_its_range),
         cmocka_unit_test(so_does_the_umbrella),
+        cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(cells_conduct_nothing_negative),
         cmocka_unit_test(neighbours_make_up_for_a_side),
     };
