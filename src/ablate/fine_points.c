@@ -200,8 +200,14 @@ static void evaluate_cells(void *context, int begin, int end) {
                 for (int i = 0; i + j < splits; i++) // the line i + j = k is the next triangle's i = 0
                     fine->values[fine_point(fine, cell, side, splits, i, j)] =
                         fine_value(fine, fine_point_place(cell, side, splits, i, j));
-        if (differs(fine, cell, splits)) fine->flags[cell] |= FINE_SPLIT;
     }
+}
+
+/// Not while cells are evaluated, which look at the flags of others.
+static void mark_split(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (int n = begin; n < end; n++)
+        if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
 }
 
 SingeResult fine_points(Fine *fine, SingeError *error) {
@@ -215,5 +221,6 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_centres, fine);
     pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);
     pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
+    pool_for(fine->pool, (int)fine->near_count, 64, mark_split, fine);
     return SINGE_OK;
 }
