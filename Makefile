@@ -43,7 +43,7 @@ build-shared:
 # what threads share, under the thread sanitizer
 build-tsan:
 	cmake --preset tsan
-	cmake --build --preset tsan --target test_base_pool test_step_threads
+	cmake --build --preset tsan --target threaded_tests
 
 demo:
 	scripts/setup.sh
@@ -56,7 +56,7 @@ check:
 	scripts/check_arrows.sh
 	$(MAKE) build build-asan build-fuzz build-shared build-tsan
 	build-shared/cli/singe --version
-	ctest --preset tsan -R "^(base_pool|step_threads)$$"
+	ctest --preset tsan -j2 -L '^threads$$'
 	ctest --preset asan -j2 -E '^($(MEASURING))$$'
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 	ctest --preset release -j2 -E '^example_($(LONG_EXAMPLES))$$'

@@ -76,10 +76,16 @@ static long crossings(SingeSim *sim) {
     return count;
 }
 
+#ifdef SINGE_THREADS_ONLY
+enum { HEAP = 16, HEAP_STEPS = 40 };
+#else
+enum { HEAP = 36, HEAP_STEPS = 100 };
+#endif
+
 /// A sheet on edge that falls into folds.
 static SingeSim *heap(int threads, bool contact) {
     SingeSim *sim = new_sim(threads, contact);
-    add_flat(sim, &(Flat){36, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 0.4f, 4e-3f, NULL);
+    add_flat(sim, &(Flat){HEAP, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 0.4f, 4e-3f, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
     return sim;
@@ -204,7 +210,7 @@ static void any_number_of_threads(void **unused) {
     SingeSim *one = heap(1, true), *three = heap(3, true), *again;
     uint8_t *a, *b;
     size_t na, nb;
-    steps(one, 100), steps(three, 100);
+    steps(one, HEAP_STEPS), steps(three, HEAP_STEPS);
     // and from a snapshot between two searches
     assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
     SingeSimDef hooks = singe_default_sim();
