@@ -2,12 +2,15 @@
 
 #include <signal.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
 
-// The one static of the program: a signal handler has no other way to pass a word on.
+// The statics of the program: a signal handler has no other way to pass a word on, nor to be told one.
 static volatile sig_atomic_t interrupt_flag;
+enum { DRAFTS_MOST = 8 };
+static const char *volatile interrupt_drafts[DRAFTS_MOST];
 
 static void note_signal(int number) {
     (void)number;
@@ -17,7 +20,30 @@ static void note_signal(int number) {
     sigaction(SIGTERM, &plain, NULL);
 }
 
+/// Only what a signal handler may do.
+static void remove_drafts(void) {
+    for (int i = 0; i < DRAFTS_MOST; i++)
+        if (interrupt_drafts[i]) unlink(interrupt_drafts[i]);
+}
+
+static void replace_draft(const char *old, const char *draft) {
+    for (int i = 0; i < DRAFTS_MOST; i++)
+        if (interrupt_drafts[i] == old) {
+            interrupt_drafts[i] = draft;
+            return;
+        }
+}
+
+void interrupt_own(const char *draft) {
+    if (draft) replace_draft(NULL, draft);
+}
+
+void interrupt_disown(const char *draft) {
+    if (draft) replace_draft(draft, NULL);
+}
+
 void interrupt_shield(void) {
+    atexit(remove_drafts);
     struct sigaction ignore = {.sa_handler = SIG_IGN};
     sigaction(SIGPIPE, &ignore, NULL);
     sigaction(SIGXFSZ, &ignore, NULL);
@@ -40,6 +66,7 @@ static void end_by_abort(int number) {
     (void)number;
     ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
     (void)written;
+    remove_drafts();
     _exit(EXIT_FAILED);
 }
 

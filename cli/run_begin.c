@@ -126,8 +126,10 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
 static SingeResult replace_record(Run *run, int *removed, SingeError *error) {
     char *draft;
     SingeResult result = file_draft(run->folder.record, &draft, error);
+    interrupt_own(draft);
     if (!result) result = record_write(&run->record, draft, &run->job, error);
     if (!result) result = folder_forget(&run->folder, removed, error);
+    interrupt_disown(draft);
     if (result) {
         file_discard(draft);
         return result;
@@ -144,6 +146,7 @@ SingeResult run_take_over(Run *run, SingeError *error) {
         console_note(run->console, "removed %d files of an earlier run of '%s' in %s", removed, run->folder.name,
                      run->folder.path);
     for (int i = 0; i < run->file_count && !result; i++) {
+        interrupt_disown(run->files[i].draft);
         result = file_publish(run->files[i].draft, run->files[i].path, error);
         run->files[i].draft = NULL;
     }

@@ -69,13 +69,16 @@ static SingeResult file_begin(Run *run, char *path, const char **name, SingeErro
     *name = path;
     if (run->begun) return SINGE_OK;
     SingeResult result = file_draft(path, &file->draft, error);
-    if (!result) *name = file->draft;
-    return result;
+    if (result) return result;
+    interrupt_own(file->draft);
+    *name = file->draft;
+    return SINGE_OK;
 }
 
 /// Drafts that have not taken their places go.
 static void files_end(Run *run) {
     for (int i = 0; i < run->file_count; i++) {
+        interrupt_disown(run->files[i].draft);
         file_discard(run->files[i].draft);
         free(run->files[i].path);
     }

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cli/interrupt.h"
 #include "cli/text.h"
 #include "formats/formats.h"
 
@@ -103,10 +104,12 @@ static VideoResult write_movie(const Movie *movie, char *const *arguments, char 
         snprintf(why, WHY_SIZE, "%s", error.message);
         return VIDEO_FAILED;
     }
+    interrupt_own(draft);
     char *part = text_format("file:%s", draft);
     *output = part;
     VideoResult result = spawn(arguments, why);
     free(part);
+    interrupt_disown(draft);
     if (result == VIDEO_MADE && !folder_has(draft)) {
         snprintf(why, WHY_SIZE, "ffmpeg wrote nothing into preview.%s", movie->format);
         result = VIDEO_FAILED;

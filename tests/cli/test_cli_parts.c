@@ -150,6 +150,8 @@ static void writes_durations(void **state) {
     assert_string_equal(text, "0 s");
 }
 
+static char mine[64], kept[64]; ///< drafts of that child: owned to its end, and not
+
 /// How a child ends that aborts within the guard, or behind it.
 static int ends_by(bool within) {
     fflush(NULL);
@@ -157,6 +159,8 @@ static int ends_by(bool within) {
     if (child == 0) {
         struct rlimit none = {0, 0};
         setrlimit(RLIMIT_CORE, &none);
+        interrupt_own(mine), interrupt_own(kept);
+        interrupt_disown(kept);
         interrupt_guard_begin();
         if (!within) interrupt_guard_end();
         abort();
@@ -168,9 +172,18 @@ static int ends_by(bool within) {
 
 static void an_abort_of_a_library_is_an_error(void **state) {
     (void)state;
+    char *const drafts[] = {mine, kept};
+    for (int i = 0; i < 2; i++) {
+        snprintf(drafts[i], sizeof mine, "/tmp/singe-draft-XXXXXX");
+        int file = mkstemp(drafts[i]);
+        assert_true(file >= 0);
+        close(file);
+    }
     int status = ends_by(true);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), EXIT_FAILED);
+    assert_int_equal(access(mine, F_OK), -1);
+    assert_int_equal(unlink(kept), 0);
     status = ends_by(false);
     assert_true(WIFSIGNALED(status));
     assert_int_equal(WTERMSIG(status), SIGABRT);
