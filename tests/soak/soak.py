@@ -70,9 +70,9 @@ class Soak:
     def look(self, folder):
         """One scene. Returns what became of it."""
         scene = os.path.join(folder, "scene.json")
-        code, _ = self.call(folder, "check", "check", scene, codes=(GOOD, INPUT))
-        if code == INPUT:
-            return "refused"
+        code, _ = self.call(folder, "check", "check", scene, codes=(GOOD, FAILED, INPUT))
+        if code != GOOD:
+            return "refused"  # also where a step of it fails
         outs = [os.path.join(folder, name) for name in ("one", "two", "parts")]
         runs = [self.call(folder, f"run-{n}", "run", scene, "-o", out, "--threads", str(n), "--no-preview",
                           codes=(GOOD, FAILED)) for n, out in ((1, outs[0]), (2, outs[1]))]
