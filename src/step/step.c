@@ -66,7 +66,7 @@ static SingeResult step_stages(SingeSim *sim) {
     HeatCounters heat = {0};
     TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat, &heat,
                   error));
-    if (heat.unconverged || heat.bounded) sim_log_unconverged(sim);
+    if (heat.unconverged) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
