@@ -112,32 +112,38 @@ static void report_shell(const SingeCensus *c) {
 
 enum { CHECK_MATERIALS = 4, CHECK_STRIP_STEPS = 40000 };
 
-/// What a strip of the material does in steps of that length, a second's work at most. False where it does not burn.
-static bool front_of(const BenchMaterial *material, float step, StripResult *result) {
+/// What a strip of the material does in steps of that length, a second's work at most; a speed of 0 where it does not
+/// burn. Fails only without memory.
+static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
-    SingeError error;
     setup.time_step = step, setup.steps_most = CHECK_STRIP_STEPS;
-    return step < 10 && strip_burn(&setup, result, &error) == SINGE_OK && result->speed > 0;
+    SingeResult result = step < 10 ? strip_burn(&setup, front, error) : SINGE_ERROR_ARGUMENT;
+    if (result || !(front->speed > 0)) *front = (StripResult){0};
+    return result == SINGE_ERROR_MEMORY ? result : SINGE_OK;
 }
 
 /// Says how fast the material burns, and whether the scene's steps are too long for it. Lighter paper burns faster, and
 /// a front that is thickened by F burns as it would in steps 1/F as long.
-static void report_front(const Scene *scene, const BenchMaterial *material, float thickening) {
+static SingeResult report_front(const Scene *scene, const BenchMaterial *material, float thickening,
+                                SingeError *error) {
     StripResult front, rough;
     const float pace = scene->sim.pace, weight = material->def.grammage.value / 0.080f;
     const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
-    if (!front_of(material, fine, &front)) return;
+    SingeResult result = front_of(material, fine, &front, error);
+    if (result || !(front.speed > 0)) return result;
     printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
     if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
     float step = scene->sim.time_step * pace * (float)front.thickening / thickening;
-    if (step <= fine) return;
-    double slower = front_of(material, step, &rough) ? 1 - rough.speed / front.speed : 1;
+    if (step <= fine || (result = front_of(material, step, &rough, error))) return result;
+    double slower = 1 - rough.speed / front.speed;
     if (slower > 0.1) printf("\n              in steps this long %.0f %% slower: raise `steps`", 100 * slower);
+    return SINGE_OK;
 }
 
 /// The sheets' materials, those of a name and weight once, and how fast their fire is going to be.
-static void report_materials(const Scene *scene, float thickening) {
-    for (uint32_t i = 0, told = 0; i < scene->sheet_count && told < CHECK_MATERIALS; i++) {
+static SingeResult report_materials(const Scene *scene, float thickening, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (uint32_t i = 0, told = 0; !result && i < scene->sheet_count && told < CHECK_MATERIALS; i++) {
         const SceneMaterial *material = &scene->sheets[i].material;
         const float grammage = material->def.grammage.value;
         uint32_t j = 0;
@@ -146,10 +152,11 @@ static void report_materials(const Scene *scene, float thickening) {
         BenchMaterial bench = bench_material(material);
         printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",
                1e3 * (double)grammage);
-        report_front(scene, &bench, thickening);
+        result = report_front(scene, &bench, thickening, error);
         printf("\n");
         told++;
     }
+    return result;
 }
 
 static void report_times(const Job *job, const CheckTimes *times, float thickening) {
@@ -196,10 +203,13 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
         report_meshes(&job);
         report_shell(&census);
         job_note_long(&job, console, "burning a strip of each material");
-        report_materials(job.scene, thickening);
-        job_note_long(&job, console, "timing steps");
-        if (pictures_available() && pixels_of(&job.scene->preview) > check_rays) console_note(console, "drawing");
-        if (try_frame(&job, sim, &times, &error) || time_steps(sim, &times, &error)) {
+        SingeResult result = report_materials(job.scene, thickening, &error);
+        if (!result) job_note_long(&job, console, "timing steps");
+        if (!result && pictures_available() && pixels_of(&job.scene->preview) > check_rays)
+            console_note(console, "drawing");
+        if (!result) result = try_frame(&job, sim, &times, &error);
+        if (!result) result = time_steps(sim, &times, &error);
+        if (result) {
             fflush(stdout);
             console_result(console, &error);
             code = EXIT_FAILED;

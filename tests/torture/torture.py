@@ -325,7 +325,7 @@ def make_trials(scenario, expected, options, rng):
             continue
         few = options.sample and scenario.slow
         for error, after in list(modes(kind))[:1 if few else None]:
-            for at in numbers(expected.calls[kind], 1 if few else options.sample, rng):
+            for at in numbers(expected.calls[kind], max(1, options.sample // 8) if few else options.sample, rng):
                 yield Trial(scenario, kind, error, after, at)
 
 
