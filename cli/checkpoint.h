@@ -1,5 +1,5 @@
-// DIR/checkpoint.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps since,
-// the hash of the scene and a checksum. Written whole or not at all, after everything of its frame.
+// DIR/checkpoint.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps
+// since, the hash of the scene and a checksum. Written whole or not at all, after everything of its frame.
 #ifndef CLI_CHECKPOINT_H
 #define CLI_CHECKPOINT_H
 
@@ -14,8 +14,8 @@ typedef struct SceneHash {
     uint64_t looks;  ///< of the preview, which may differ when a run goes on
 } SceneHash;
 
-/// The result's: the resolved scene without its number of frames and its preview, and the contents of every file that it
-/// names for anything but the preview: meshes and pictures of sheets, sources and colliders, as they are used.
+/// The result's: the resolved scene without its number of frames and its preview, and the contents of every file that
+/// it names for anything but the preview: meshes and pictures of sheets, sources and colliders, as they are used.
 SINGE_NODISCARD SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash,
                                                   SingeError *error);
 

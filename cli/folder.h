@@ -31,8 +31,8 @@ SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 /// What a run writes besides the surface: a folder of its own each.
 typedef struct FolderParts { bool pictures, gas, exr; } FolderParts;
 
-/// Makes ply/ and, as `parts` ask, frames/, gas/ and exr/ in the folder, which must be there. A link in the place of one
-/// of them is refused: what it points at is not ours.
+/// Makes ply/ and, as `parts` ask, frames/, gas/ and exr/ in the folder, which must be there. A link in the place of
+/// one of them is refused: what it points at is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.
@@ -44,8 +44,8 @@ char *folder_exr(const Folder *folder, int frame);
 /// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
-/// Removes what else an earlier run of the same name left (its frames, video, GIF), and nothing that is not named
-/// as such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
+/// Removes what else an earlier run of the same name left (its frames, video, GIF), and nothing that is not named as
+/// such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
 /// empty: frames/, gas/ and exr/.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 

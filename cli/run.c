@@ -127,7 +127,8 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         console_result(run->console, &write_error);
         return EXIT_FAILED;
     }
-    if (!run->begun && !ours) console_note(run->console, "what an earlier run left in %s is as it was", run->folder.path);
+    if (!run->begun && !ours)
+        console_note(run->console, "what an earlier run left in %s is as it was", run->folder.path);
     char took[32];
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,

@@ -1,8 +1,8 @@
 // How a run begins: from the start, over what an earlier run left, or from a checkpoint.
 //
 // An earlier run is left alone until the first frame of the new one and its run.json stand beside it, whole, under
-// temporary names. Then the earlier run's checkpoint goes, run.json becomes the new run's, the earlier run's frames go, the
-// frame takes its name, and stats.csv starts anew: so frames of two runs never lie side by side.
+// temporary names. Then the earlier run's checkpoint goes, run.json becomes the new run's, the earlier run's frames go,
+// the frame takes its name, and stats.csv starts anew: so frames of two runs never lie side by side.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -48,7 +48,8 @@ static ExitCode expect_frames(Run *run, int last) {
         const char *missing = !folder_has(ply) ? ply : gas && !folder_has(vdb) ? vdb : NULL;
         if (missing)
             console_error(run->console,
-                          "resume: %s is missing or empty, and the checkpoint is at frame %d; run without --resume to start over",
+                          "resume: %s is missing or empty, and the checkpoint is at frame %d; run without --resume to "
+                          "start over",
                           missing, last);
         free(ply), free(vdb);
         if (missing) return EXIT_INPUT;

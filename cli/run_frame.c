@@ -1,6 +1,6 @@
-// A frame of a run. Its order is PLY, VDB, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on the
-// disk. The first one of a run from the start is written under temporary names, so that an earlier run stays until it is
-// whole.
+// A frame of a run. Its order is PLY, VDB, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on
+// the disk. The first one of a run from the start is written under temporary names, so that an earlier run stays until
+// it is whole.
 #include <math.h>
 #include <stdlib.h>
 

@@ -21,7 +21,8 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     return kept;
 }
 
-// "dir/letter.yaml" → "letter". Bytes that are no UTF-8 become '_': the name is in run.json, whose reader knows no other.
+// "dir/letter.yaml" → "letter". Bytes that are no UTF-8 become '_': the name is in run.json, whose reader knows no
+// other.
 static char *stem(SceneArena *arena, const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);

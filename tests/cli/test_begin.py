@@ -75,7 +75,7 @@ class Begin(Case):
             "colliders: [{kind: capsule, radius: 1 mm, height: 1e6}]",
             "colliders: [{kind: box, half_size: [1, 1, 1e6]}]",
             "colliders: [{kind: box, half_size: [1 cm, 1 cm, 1 cm], position: [0, 0, 1e6]}]",
-            "colliders: [{kind: box, half_size: [1 cm, 1 cm, 1 cm], path: [{time: 0}, {time: 1 s, position: [1e6, 0, 0]}]}]",
+            "colliders: [{kind: box, half_size: [1, 1, 1], path: [{time: 0}, {time: 1 s, position: [1e6, 0, 0]}]}]",
             "sources: [{kind: ball, radius: 1e6, position: [0, 0, 0]}]",
             "sources: [{kind: ball, radius: 1 cm, path: [{time: 0}, {time: 1e-3 s, position: [0, 1e5, 0]}]}]",
             "preview: {size: [32, 32], samples: 1, camera: {eye: [0, 0, 1e-7], target: [0, 0, 0], up: [0, 1, 0]}}",

@@ -64,7 +64,8 @@ static void unquotes_what_it_quotes(void **state) {
         FILE *file = open_memstream(&json, &size);
         text_json_string(file, texts[i]);
         fclose(file);
-        for (size_t at = 0; at < size; at += (size_t)utf8_length(json + at)) assert_int_not_equal(utf8_length(json + at), 0);
+        for (size_t at = 0; at < size; at += (size_t)utf8_length(json + at))
+            assert_int_not_equal(utf8_length(json + at), 0);
         char *back = text_json_unquote(json, size);
         assert_non_null(back);
         assert_string_equal(back, texts[i]);
@@ -194,6 +195,7 @@ int main(void) {
         cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json),
         cmocka_unit_test(unquotes_what_it_quotes),
         cmocka_unit_test(finds_the_nearest_word), cmocka_unit_test(reads_arguments), cmocka_unit_test(averages_tiles),
-        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations), cmocka_unit_test(an_abort_of_a_library_is_an_error)};
+        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations),
+        cmocka_unit_test(an_abort_of_a_library_is_an_error)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

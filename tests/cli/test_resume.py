@@ -224,7 +224,8 @@ class Resume(Case):
         self.scene = self.write_scene(frames=5, extra=extra)
         with open(self.scene) as file:
             text = file.read()
-        text = text.replace("    translate:", "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
+        text = text.replace("    translate:",
+                            "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
         text = text.replace("sources:\n", "sources:\n  - {kind: picture, picture: flux.png, flux: 100}\n", 1)
         text = text.replace("samples: 1}", "samples: 1, environment: {picture: sky.png}}")
         with open(self.scene, "w") as file:
