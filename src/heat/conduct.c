@@ -58,21 +58,24 @@ static inline uint32_t conduct_slice_end(uint32_t i, uint32_t last) {
 
 static void conduct_start_group(const HeatPass *pass, uint32_t group, double sums[4]) {
     HeatPlan *plan = pass->plan;
-    float ambient = plan->settings.ambient_temperature;
+    float ambient = plan->settings.ambient_temperature, least = INFINITY, most = 0;
+    double residual = sums[0], whole = sums[1];
     uint32_t last = heat_group_last(plan, group), next;
     for (uint32_t i = group * HEAT_GROUP; i < last; i = next) {
         next = conduct_slice_end(i, last);
         HeatLanes inflow = conduct_inflow(&plan->matrix, plan->star, i);
         for (uint32_t row = 0; i < next; i++, row++) {
             float r = plan->residual[i] = pass->dt * inflow[row];
-            float b = plan->measure[i] * (plan->star[i] - ambient), inverse = plan->matrix.inverse[i];
+            float star = plan->star[i], b = plan->measure[i] * (star - ambient), inverse = plan->matrix.inverse[i];
             plan->correction[i] = plan->search[i] = 0;
-            sums[0] += (double)r * r * inverse;
-            sums[1] += (double)b * b * inverse;
-            if (!plan->alive[i]) continue;
-            sums[2] = fmin(sums[2], (double)plan->star[i]), sums[3] = fmax(sums[3], (double)plan->star[i]);
+            residual += (double)r * r * inverse;
+            whole += (double)b * b * inverse;
+            least = plan->alive[i] && star < least ? star : least;
+            most = plan->alive[i] && star > most ? star : most;
         }
     }
+    sums[0] = residual, sums[1] = whole;
+    sums[2] = fmin(sums[2], (double)least), sums[3] = fmax(sums[3], (double)most);
 }
 
 /// Residual, right-hand side, and the range of T*.

@@ -65,11 +65,13 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
-        float rate = fminf(warmth * exchange / burnt * slower, HEAT_RATE_MAX); // dt K
+        float rate = warmth * exchange / burnt * slower; // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;
         if (rate > 1) { // where little is left, the difference would have no digits
+            if (rate > HEAT_RATE_MAX) rate = HEAT_RATE_MAX;
+            loss = rate * (T2 - ambient) / (1 + rate);
             plan->star[i] = ambient + (T2 - ambient) / (1 + rate);
             plan->delta[i] = plan->star[i] - T;
         }
