@@ -29,6 +29,7 @@ BenchFn bench_ablate;
 BenchFn bench_surface;
 /// A cloth that falls over a sphere in folds: cost of contact, strain.
 BenchFn bench_heap;
+BenchFn bench_collapse;
 /// Bytes a spring.
 BenchFn bench_memory;
 

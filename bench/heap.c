@@ -1,5 +1,5 @@
-// A cloth on edge that falls over a sphere and onto the ground in folds: what contact of a sheet with itself costs,
-// while it falls, while it crashes and while it lies there.
+// What contact of a sheet with itself costs, while it falls, while it crashes and while it lies there: a cloth on edge
+// that falls over a sphere and onto the ground in folds, and a ball of paper, a closed mesh, that collapses.
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,7 +10,8 @@
 enum { STEPS = 20, ROOM = 4096 };
 static const float side = 1;                   // m
 static const float sphere = 0.12f, lift = 0.3f; // m
-static const double seconds = 3;
+static const float ball = 0.1f;                 // m, radius of the closed mesh
+static const double seconds = 3, collapse_seconds = 0.3;
 
 enum {
     CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MOST, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
@@ -69,27 +70,69 @@ static SingeResult add_cloth(SingeSim *sim, int n) {
     return result;
 }
 
-static SingeResult add_solids(SingeSim *sim) {
+/// Where a point of a cube's surface is in the list of its (n + 1) x (n + 1) points below and above, and rings between.
+static uint32_t ball_vertex(const uint32_t at[3], uint32_t n) {
+    uint32_t i = at[0], j = at[1], k = at[2], row = n + 1;
+    if (k == 0 || k == n) return (k ? row * row : 0) + j * row + i;
+    uint32_t ring = j == 0 ? i : i == n ? n + j : j == n ? 3 * n - i : 4 * n - j;
+    return 2 * row * row + (k - 1) * 4 * n + ring;
+}
+
+/// The six faces of a cube of n x n cells each, drawn out to a sphere that lies on the ground.
+static void fill_ball(uint32_t n, float *x, uint32_t *cells) {
+    for (uint32_t c = 0; c < 6 * n * n; c++) {
+        uint32_t axis = c / (2 * n * n), upper = c / (n * n) % 2, i = c / n % n, j = c % n;
+        for (uint32_t k = 0; k < 4; k++) {
+            uint32_t at[3], turn = upper ? k : 3 - k;
+            at[axis] = upper * n;
+            at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
+            uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
+            float square = 0, *p = x + 3 * (size_t)v;
+            for (int d = 0; d < 3; d++) p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1)), square += p[d] * p[d];
+            for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
+        }
+    }
+}
+
+static SingeResult add_ball(SingeSim *sim, int cells_a_side) {
+    uint32_t n = (uint32_t)cells_a_side;
+    SingeSheetDef def = singe_default_sheet();
+    SingeSheetId id;
+    def.vertex_count = 6 * n * n + 2, def.cell_count = 6 * n * n;
+    float *x = malloc(3 * (size_t)def.vertex_count * sizeof *x);
+    uint32_t *cells = malloc(4 * (size_t)def.cell_count * sizeof *cells);
+    SingeResult result = x && cells ? SINGE_OK : SINGE_ERROR_MEMORY;
+    if (!result) {
+        fill_ball(n, x, cells);
+        def.positions = x, def.cells = cells;
+        result = singe_sim_add_sheet(sim, &def, &id);
+    }
+    free(x), free(cells);
+    return result;
+}
+
+static SingeResult add_solids(SingeSim *sim, bool closed) {
     SingeColliderDef def = singe_default_collider();
     SingePoseKey key = {.rotation = {0, 0, 0, 1}};
     SingeColliderId id;
     def.path_count = 1, def.path = &key, def.friction = 0.4f, def.offset = 1e-3f;
     SingeResult result = singe_sim_add_collider(sim, &def, &id);
+    if (closed) return result;
     def.kind = SINGE_COLLIDER_SPHERE, def.radius = sphere, key.position[2] = sphere;
     return result ? result : singe_sim_add_collider(sim, &def, &id);
 }
 
-static SingeResult build(const BenchOptions *options, int cells, SingeSim **sim, SingeError *error) {
+static SingeResult build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads;
     def.contact.enabled = true;
-    def.contact.thickness = 1e-3f; // of a cloth
+    if (!closed) def.contact.thickness = 1e-3f; // of a cloth
     if (options->substeps) def.solver.substeps = options->substeps;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = add_cloth(*sim, cells);
+    result = closed ? add_ball(*sim, cells) : add_cloth(*sim, cells);
     if (!result) result = singe_sim_commit(*sim);
-    if (!result) result = add_solids(*sim);
+    if (!result) result = add_solids(*sim, closed);
     if (!result) return SINGE_OK;
     *error = *singe_sim_error(*sim);
     singe_sim_destroy(*sim);
@@ -127,11 +170,12 @@ static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *s
     row[SPEED] = bench_number(stats.speed_rms_unburnt);
 }
 
-static SingeResult measure(const BenchOptions *options, int cells, BenchTable *table, SingeError *error) {
+static SingeResult measure(const BenchOptions *options, int cells, bool closed, BenchTable *table, SingeError *error) {
     SingeSim *sim;
     double frame_ms[ROOM];
-    int frames = (int)fmin(ROOM, fmax(1, 24 * (options->time > 0 ? options->time : seconds)));
-    if (build(options, cells, &sim, error)) return error->code;
+    double time = options->time > 0 ? options->time : closed ? collapse_seconds : seconds;
+    int frames = (int)fmin(ROOM, fmax(1, 24 * time));
+    if (build(options, cells, closed, &sim, error)) return error->code;
     SingeResult result = SINGE_OK;
     for (int f = 0; f < frames && !result; f++) {
         double begun = machine_clock();
@@ -150,6 +194,16 @@ SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeErro
     BenchList cells = bench_list(&options->cells, 2, (const double[]){100, 200});
     SingeResult result = SINGE_OK;
     *table = table_begin("heap", columns, COLUMNS, table->text);
-    for (int i = 0; i < cells.count && !result; i++) result = measure(options, (int)cells.values[i], table, error);
+    for (int i = 0; i < cells.count && !result; i++)
+        result = measure(options, (int)cells.values[i], false, table, error);
+    return result;
+}
+
+SingeResult bench_collapse(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList cells = bench_list(&options->cells, 2, (const double[]){40, 102});
+    SingeResult result = SINGE_OK;
+    *table = table_begin("collapse", columns, COLUMNS, table->text);
+    for (int i = 0; i < cells.count && !result; i++)
+        result = measure(options, (int)cells.values[i], true, table, error);
     return result;
 }
