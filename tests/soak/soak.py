@@ -13,19 +13,27 @@ import argparse
 import concurrent.futures
 import filecmp
 import os
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
 
 MEMORY_MB = 3000  # of a command under the address sanitizer, which keeps count
-SECONDS = 120     # of a command
+SECONDS = 120     # of a command, on all processors
+HANGS = 1800      # s by the clock, which a crowded machine stretches
 GOOD, FAILED, INPUT = 0, 1, 2
 SANITIZER = 99
 
 
 class Finding(Exception):
     """What is wrong with a scene."""
+
+
+def limit_time():
+    """A command that takes too long is ended by the system."""
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
 
 
 def environment():
@@ -45,9 +53,12 @@ class Soak:
         with open(os.path.join(folder, name + ".txt"), "w", encoding="utf-8", errors="replace") as said:
             try:
                 code = subprocess.run([self.singe, *arguments], stdin=subprocess.DEVNULL, stdout=said, stderr=said,
-                                      timeout=SECONDS, env=environment(), check=False).returncode
+                                      timeout=HANGS, env=environment(), check=False,
+                                      preexec_fn=limit_time).returncode
             except subprocess.TimeoutExpired as expired:
-                raise Finding(f"{name} takes more than {SECONDS} s") from expired
+                raise Finding(f"{name} takes more than {HANGS} s") from expired
+        if code in (-signal.SIGXCPU, -signal.SIGKILL):
+            raise Finding(f"{name} takes more than {SECONDS} s of processors' time, or too much memory")
         if code not in codes:
             raise Finding(f"{name} ends with code {code}")
         with open(os.path.join(folder, name + ".txt"), encoding="utf-8", errors="replace") as said:

@@ -95,6 +95,26 @@ static void four_triangles_are_enough(void **unused) {
     assert_true(compare(&mesh, "tetrahedron", 800, 0.1f) > 5);
 }
 
+/// Every box of its tree would be near such a place.
+static void places_that_are_none_are_far(void **unused) {
+    (void)unused;
+    Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
+    Memory memory = memory_make((SingeAllocator){0});
+    Collider collider = make_mesh(&memory, &mesh);
+    const float none[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 27; k++) {
+        float p[3] = {0.01f, 0.01f, 0.01f};
+        p[k % 3] = none[k / 3 % 3];
+        if (k >= 9) p[(k + 1) % 3] = none[k / 9];
+        Vec normal;
+        assert_true(isinf(collider_distance(&collider, vec_load(p), INFINITY, &normal)));
+        assert_true(isinf(collider_distance(&collider, vec_load(p), 0.01f, &normal)));
+        assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+    }
+    collider_free(&memory, &collider);
+    triangles_free(&mesh);
+}
+
 static void inside_out_is_turned(void **unused) {
     (void)unused;
     Memory memory = memory_make((SingeAllocator){0});
@@ -325,7 +345,7 @@ int main(void) {
         cmocka_unit_test(distances_are_those_of_all_triangles), cmocka_unit_test(four_triangles_are_enough),
         cmocka_unit_test(inside_out_is_turned),                 cmocka_unit_test(bad_meshes_are_refused_by_number),
         cmocka_unit_test(heights_are_those_of_their_triangles), cmocka_unit_test(bad_heights_are_refused),
-        cmocka_unit_test(ten_thousand_triangles_are_quick),
+        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(places_that_are_none_are_far),
     };
     return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }
