@@ -211,7 +211,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
     Walk walk = {.scene = scene, .name = source->name, .error = error, .answer = answer,
-                 .most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * (uint64_t)source->size};
+                 .most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
     return put_scene(&walk);
 }
 

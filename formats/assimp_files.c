@@ -58,6 +58,7 @@ static bool open_beside(Source *source, const char *path, Opened *opened) {
         return false;
     }
     opened->bytes = opened->own.data, opened->size = opened->own.size;
+    source->beside_size += opened->size;
     return true;
 }
 

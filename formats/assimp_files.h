@@ -10,6 +10,7 @@ typedef struct Source {
     const char *name; ///< of the file to read; what it names beside itself is looked for from its folder
     const uint8_t *bytes;
     size_t size;
+    size_t beside_size;  ///< of the other files that were opened
     const char *refused; ///< the end of a sentence about the first file that was not given, or NULL
 } Source;
 

@@ -63,8 +63,8 @@ SINGE_NODISCARD SingeResult off_read(const char *name, const uint8_t *bytes, siz
                                      Polygons *polygons, SingeError *error);
 SINGE_NODISCARD SingeResult stl_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                      Polygons *polygons, SingeError *error);
-/// glTF 2 and GLB: triangles of the scene's nodes, with their transforms. Opens the plain files that it refers to, in the
-/// folder of `name` and below. Version 1 is given to assimp_read.
+/// glTF 2 and GLB: triangles of the scene's nodes, with their transforms. Opens the plain files that it refers to, in
+/// the folder of `name` and below. Version 1 is given to assimp_read.
 SINGE_NODISCARD SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                       Polygons *polygons, SingeError *error);
 /// FBX, COLLADA, 3DS, X3D and glTF 1 by assimp, from a file in memory. Vertices are assimp's, faces as in the file;

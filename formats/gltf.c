@@ -82,7 +82,9 @@ static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at,
 }
 
 static int hex_digit(uint8_t c) {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
 /// The path that a URI names from the folder of the file. False where it is too long or no path.
@@ -123,13 +125,15 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
     } else if (uri == JSON_NONE || gltf->json.values[uri].kind != JSON_STRING) {
         return bad(gltf, "buffers", number, "it has no data");
     } else if (!loaded->data) {
-        const uint8_t *at = gltf->json.text + gltf->json.values[uri].begin, *end = gltf->json.text + gltf->json.values[uri].end;
+        const JsonValue *text = &gltf->json.values[uri];
+        const uint8_t *at = gltf->json.text + text->begin, *end = gltf->json.text + text->end;
         const uint8_t *comma = memchr(at, ',', (size_t)(end - at));
         bool inside = end - at > 5 && memcmp(at, "data:", 5) == 0;
         if (inside && (!comma || comma - at < 7 || memcmp(comma - 7, ";base64", 7) != 0))
             return bad(gltf, "buffers", number, "its data are not base64");
         TRY(inside ? decode_base64(gltf, number, comma + 1, end, loaded) : load_file(gltf, number, at, end, loaded));
         gltf->loaded_size += loaded->size;
+        if (!inside) gltf->beside_size += loaded->size;
     }
     if (loaded->data) *bytes = loaded->data, *size = loaded->size;
     uint64_t claimed;
@@ -364,7 +368,8 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     bool other = !result && is_for_assimp(&gltf.json);
     if (!result && !other) result = read_lists(&gltf);
     if (!result && !other) result = read_meshes(&gltf);
-    if (!result && !other) result = gltf_make(&gltf, MESH_ANSWER_BASE + MESH_ANSWER_TIMES * (uint64_t)size, polygons);
+    uint64_t most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);
+    if (!result && !other) result = gltf_make(&gltf, most, polygons);
     free_all(&gltf);
     return other ? assimp_read(name, bytes, size, allocator, polygons, error) : result;
 }

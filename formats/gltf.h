@@ -38,6 +38,7 @@ typedef struct Gltf {
     uint32_t view_count, accessor_count, buffer_count, mesh_count, node_count;
     Bytes *loaded;        ///< [buffer_count] of those that were needed
     size_t loaded_size;   ///< of all of them
+    size_t beside_size;   ///< of those in other files
     GltfAccessor *read;   ///< [accessor_count]; those used have a width
     GltfMesh *ranges;     ///< [mesh_count]
     GltfPrimitive *primitives;

@@ -66,7 +66,8 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
     const Json *json = &gltf->json;
     int64_t object = gltf->nodes[node];
     float matrix[16] = {0}, move[3] = {0}, rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
-    bool good = take_numbers(json, object, "matrix", 16, matrix) && take_numbers(json, object, "translation", 3, move) &&
+    bool good = take_numbers(json, object, "matrix", 16, matrix) &&
+                take_numbers(json, object, "translation", 3, move) &&
                 take_numbers(json, object, "rotation", 4, rotation) && take_numbers(json, object, "scale", 3, scale);
     if (!good) return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "nodes[%u]: its transform is not of finite numbers", node);
     if (json_member(json, object, "matrix") != JSON_NONE) {

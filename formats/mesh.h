@@ -8,8 +8,8 @@
 enum { MESH_COUNT_LIMIT = 0x7fffffff };
 
 /// A file that uses its meshes over and over may come to so many bytes of positions, corners and uv, and so many times
-/// its size.
-enum { MESH_ANSWER_BASE = 128 << 20, MESH_ANSWER_TIMES = 64 };
+/// its size and that of the files that it refers to.
+enum { MESH_ANSWER_BASE = 16 << 20, MESH_ANSWER_TIMES = 64 };
 
 /// Whether a file's name has this ending (".obj"), in capitals or not.
 bool mesh_name_ends(const char *name, const char *ending);

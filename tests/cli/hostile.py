@@ -156,6 +156,14 @@ HOSTILE = {
     "self.gltf": (gltf(nodes=[{"children": [0], "mesh": 0}]), ""),
     "ring.gltf": (gltf(nodes=[{"children": [1]}, {"children": [0], "mesh": 0}]), ""),
     "deep.gltf": (nested_gltf(100000), ""),
+    "copies.gltf": (
+        gltf(
+            scenes=[{"nodes": list(range(3000))}],
+            nodes=[{"mesh": 0}] * 3000,
+            meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}] * 100}],
+        ),
+        "over and over",
+    ),
     "deeper.gltf": (gltf(extras="x").replace(b'"x"', b"[" * 500000 + b"]" * 500000), ""),
     "self.dae": (dae(f'<node id="n">{USE}<instance_node url="#n"/></node>'), ""),
     "deep.dae": (dae("<node>" * 100000 + USE + "</node>" * 100000), ""),

@@ -52,11 +52,13 @@ static void off_is_read(void **state) {
     static const char *const texts[] = {
         "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n",
         "OFF 4 2\n" POINTS "4 0 1 2 3\n3 0 2 3",
-        "# a comment\n\nOFF # here\n\n 4 2 5 # there\r\n" POINTS "\n# between\n4 0 1 2 3 .5 .5 .5\r\n3  0\t2 3 17\n# end",
+        "# a comment\n\nOFF # here\n\n 4 2 5 # there\r\n" POINTS
+        "\n# between\n4 0 1 2 3 .5 .5 .5\r\n3  0\t2 3 17\n# end",
         "COFF\n4 2 0\n0 0 0 255 0 0 255\n1 0 0 1 2 3 4\n1 1 0 1 2 3 4\n0 1 .5 1 2 3 4\n4 0 1 2 3\n3 0 2 3\n",
         "STCNOFF\r4 2 0\r0 0 0 a\r1 0 0 b\r1 1 0 c\r0 1 .5 d\r4 0 1 2 3\r3 0 2 3\r",
     };
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) expect_mesh("a.off", texts[i], positions, 4, corners, 7, 2);
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        expect_mesh("a.off", texts[i], positions, 4, corners, 7, 2);
 }
 
 static void off_faces_have_lines(void **state) {
@@ -198,7 +200,8 @@ static void stl_text_is_refused(void **state) {
 // ---- both
 
 static const char good_off[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n";
-static const char good_stl[] = "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid";
+static const char good_stl[] = "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5")
+    "endsolid";
 
 static void every_cut_is_refused(void **state) {
     (void)state;
