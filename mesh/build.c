@@ -264,6 +264,7 @@ static SingeResult run_steps(Work *work, const MeshOptions *options) {
     bool pair = options->quads == MESH_QUADS_PAIR;
     if (pair && !all_quads(&work->faces)) pair = pair_faces(work);
     if (!pair && !work->no_memory) mesh_split(work);
+    if (!work->no_memory) mesh_leave_out_copies(work); // two triangles on a quad are one as well
     if (work->no_memory) return SINGE_OK;
     uint32_t unsound = unsound_quad(work);
     if (unsound != MESH_NONE)

@@ -64,24 +64,41 @@ static bool same_corners(const Faces *faces, uint32_t a, uint32_t b) {
     return true;
 }
 
-/// Marks faces whose corners an earlier one has. They are looked for among those with the same least vertex.
-static void find_duplicates(Work *work, uint8_t *gone) {
+/// Marks faces whose corners an earlier one has, and returns how many. They are looked for among those with the same
+/// least vertex.
+static uint32_t find_duplicates(Work *work, uint8_t *gone) {
     const Faces *faces = &work->faces;
     uint32_t *head = work_new(work, work->vertex_count, sizeof *head);
     uint32_t *next = work_new(work, faces->count, sizeof *next);
-    if (work->no_memory) return;
+    uint32_t found = 0;
+    if (work->no_memory) return 0;
     memset(head, 0xff, work->vertex_count * sizeof *head);
     for (uint32_t f = 0; f < faces->count; f++) {
         uint32_t least = least_corner(faces, f), g = head[least];
         while (g != MESH_NONE && !same_corners(faces, f, g)) g = next[g];
         if (g != MESH_NONE) {
-            gone[f] = 1;
+            gone[f] = 1, found++;
             work_did(work, MESH_DUPLICATE, 1, work_face_name(work, faces->origin[f]));
             continue;
         }
         next[f] = head[least];
         head[least] = f;
     }
+    return found;
+}
+
+void mesh_leave_out_copies(Work *work) {
+    const Faces *old = &work->faces;
+    uint8_t *gone = work_new(work, old->count, 1);
+    if (work->no_memory || !find_duplicates(work, gone) || work->no_memory) return;
+    Faces out = work_faces(work, old->count, old->corner_count);
+    if (work->no_memory) return;
+    for (uint32_t f = 0; f < old->count; f++) {
+        if (gone[f]) continue;
+        for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) faces_push(&out, old->corner[h], old, h);
+        faces_end(&out, old->origin[f]);
+    }
+    work->faces = out;
 }
 
 SingeResult mesh_clean(Work *work) {
@@ -95,16 +112,6 @@ SingeResult mesh_clean(Work *work) {
     }
     if (work->no_memory) return SINGE_OK;
     work->faces = out;
-    uint8_t *gone = work_new(work, out.count, 1);
-    Faces last = work_faces(work, out.count, out.corner_count);
-    if (work->no_memory) return SINGE_OK;
-    find_duplicates(work, gone);
-    if (work->no_memory) return SINGE_OK;
-    for (uint32_t f = 0; f < out.count; f++) {
-        if (gone[f]) continue;
-        for (uint32_t h = out.first[f]; h < out.first[f + 1]; h++) faces_push(&last, out.corner[h], &out, h);
-        faces_end(&last, out.origin[f]);
-    }
-    work->faces = last;
+    mesh_leave_out_copies(work);
     return SINGE_OK;
 }

@@ -137,6 +137,8 @@ SingeResult mesh_shrink(Work *work);
 /// Leaves out what has no area and what is there twice; faces that touch themselves, or that are not seen from their
 /// middle, fall apart (clean.c).
 SingeResult mesh_clean(Work *work);
+/// Leaves out faces whose corners an earlier one has (clean.c).
+void mesh_leave_out_copies(Work *work);
 /// Puts vertices into the open sides that they lie on (junction.c).
 SingeResult mesh_junctions(Work *work);
 /// Cuts edges of more than two faces, turns faces one way, closed surfaces outside out, and gives every fan of faces a

@@ -296,6 +296,18 @@ static void sides_between_the_same_vertices_are_parted(void **state) {
     mesh_free(&made.mesh);
 }
 
+// A quad and the two triangles that it could be cut into lie on each other, and so do cells.
+static void quads_on_their_triangles_are_left_out(void **state) {
+    (void)state;
+    text.size = 0;
+    text_add(&text, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\nf 1 3 4\n");
+    Made made = make(&text);
+    assert_int_equal(made.mesh.cell_count, 1);
+    assert_int_equal(made.report.count[MESH_DUPLICATE], 1);
+    assert_int_equal(assert_manifold(&made.mesh), 4);
+    mesh_free(&made.mesh);
+}
+
 static void what_cannot_be_repaired_is_refused(void **state) {
     (void)state;
     text.size = 0;
@@ -350,6 +362,7 @@ int main(void) {
         cmocka_unit_test(one_sided_surfaces_are_cut),
         cmocka_unit_test(sheets_that_meet_themselves_are_cut),
         cmocka_unit_test(sides_between_the_same_vertices_are_parted),
+        cmocka_unit_test(quads_on_their_triangles_are_left_out),
         cmocka_unit_test(what_cannot_be_repaired_is_refused),
         cmocka_unit_test(short_sides_shrink),
     };
