@@ -1,5 +1,7 @@
 #include "cli/initial.h"
 
+#include "cli/exact.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +51,23 @@ bool initial_take(Initial *initial, const CacheFrame *frame, const uint32_t (*pa
 void initial_free(Initial *initial) {
     free(initial->places);
     *initial = (Initial){0};
+}
+
+bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]) {
+    const float(*p)[3] = (const float(*)[3])surface->position;
+    uint32_t(*sound)[3] = malloc(((size_t)surface->triangle_count + 1) * sizeof *sound), count = 0;
+    CrossingList list = {0};
+    if (!sound) return false;
+    for (uint32_t t = 0; t < surface->triangle_count; t++) {
+        const uint32_t *v = surface->triangles[t];
+        if (!exact_collinear(p[v[0]], p[v[1]], p[v[2]])) memcpy(sound[count++], v, sizeof *sound);
+    }
+    const bool good = crossings_find(p, (const uint32_t(*)[3])sound, count, &list);
+    *pairs = list.count;
+    if (good && list.count) memcpy(at, p[sound[list.pairs[0][0]][0]], 3 * sizeof *at);
+    crossings_free(&list);
+    free(sound);
+    return good;
 }
 
 static bool is_near(const Initial *initial, const InitialPlace *place) {

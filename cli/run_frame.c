@@ -1,9 +1,11 @@
 // A frame of a run. Its order is PLY, VDB, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on
 // the disk. The first one of a run from the start is written under temporary names, so that an earlier run stays until
 // it is whole.
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/initial.h"
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
@@ -35,7 +37,6 @@ static void read_timers(Run *run, FrameCost *cost) {
     run->totals->heat_iterations += now.heat_iterations - before->heat_iterations;
     run->totals->strands_projected += now.strands_projected - before->strands_projected;
     run->totals->contacts += now.contacts - before->contacts;
-    run->totals->crossed += now.contact_crossed - before->contact_crossed;
     *before = now;
 }
 
@@ -125,12 +126,27 @@ static SingeResult write_files(Run *run, int frame, FrameCost *cost, SingeError 
     return result;
 }
 
+/// Tells of what crosses in the first frame: it has no side to be kept on.
+static SingeResult tell_of_crossings(Run *run, SingeError *error) {
+    float at[3];
+    if (!initial_count(&run->frame.surface, &run->totals->crossed, at)) {
+        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1, .message = "no memory to look for crossings"};
+        return SINGE_ERROR_MEMORY;
+    }
+    if (run->totals->crossed)
+        console_warn(run->console,
+                     "%" PRIu64 " pairs of triangles cross from the start, the first near (%.4g, %.4g, %.4g) m; `singe "
+                     "verify` counts them apart", run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
+    return SINGE_OK;
+}
+
 SingeResult run_write_frame(Run *run, int frame, SingeStats *stats, SingeError *error) {
     FrameCost cost;
     read_timers(run, &cost);
     SingeResult result = write_files(run, frame, &cost, error);
     *stats = singe_sim_stats(run->sim);
     run->totals->hottest = fmax(run->totals->hottest, (double)stats->temperature_max);
+    if (!result && frame == 1) result = tell_of_crossings(run, error);
     if (!result && !run->begun) result = run_take_over(run, error);
     files_end(run);
     if (!result) result = stats_write(&run->stats, frame, stats, run->totals, &cost, error);

@@ -13,7 +13,7 @@ typedef struct Totals {
     double wall_seconds;
     uint64_t steps, heat_iterations, strands_projected, contacts;
     uint64_t ignited, holes_opened, pieces_freed;
-    uint64_t crossed; ///< cells that crossed others, or lay in their place, at the start
+    uint64_t crossed; ///< pairs of triangles of the first frame
     double hottest; ///< K, of all frames
 } Totals;
 

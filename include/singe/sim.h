@@ -152,7 +152,6 @@ typedef struct SingeTimers {
     uint64_t contact_stops;     ///< pairs of cells whose ways in a step were cut short, as they would have crossed
     uint64_t contact_unresolved; ///< pairs that could not be kept apart: pins that cross hold both
     uint64_t contact_dropped;   ///< pairs that there was no room to look at
-    uint64_t contact_crossed;   ///< cells that crossed others, or lay in their place, as the simulation started
     uint64_t contact_pairs;     ///< pairs of cells near each other, summed over steps
 } SingeTimers;
 

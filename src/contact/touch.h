@@ -54,8 +54,7 @@ typedef struct TouchCounters {
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
     uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
-    uint32_t tangled_first;    ///< the lowest of them
-    uint32_t tangled_at_start; ///< as many as there were, when this plan has seen the start
+    uint32_t tangled_first; ///< the lowest of them
     double seconds;
 } TouchCounters;
 

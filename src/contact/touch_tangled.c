@@ -40,5 +40,4 @@ void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first) {
         if (plan->tangled[c] && plan->counters.tangled == 0) plan->counters.tangled_first = c;
         plan->counters.tangled += plan->tangled[c];
     }
-    if (first) plan->counters.tangled_at_start = plan->counters.tangled;
 }

@@ -22,7 +22,6 @@ static void step_note_touches(SingeSim *sim) {
     timers->contact_stops = touches.stops;
     timers->contact_unresolved = touches.unresolved;
     timers->contact_dropped = touches.dropped;
-    timers->contact_crossed = touches.tangled_at_start;
     sim_log_touches(sim, &touches);
 }
 
