@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev libjpeg62-turbo-dev libembree-dev
           libopenexr-dev libassimp-dev libcmocka-dev ffmpeg python3 python3-openvdb valgrind)
 if [ "${1:-}" = --check ]; then
-    packages+=(clang libclang-rt-14-dev) # the fuzz targets
+    packages+=(clang libclang-rt-14-dev assimp-testmodels) # the fuzz targets, models to burn
 fi
 
 missing=()

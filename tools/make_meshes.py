@@ -225,6 +225,25 @@ def mixed():
     return Mesh(mesh.points, faces, mesh.uv)
 
 
+def keyholes():
+    """Squares with a square hole each, which a bridge leads to: ten corners that name eight vertices."""
+    def place(i, j):
+        return SIZE * (i / 40 - 0.5), SIZE * (j / 40 - 0.5), 0.004 * math.sin(0.2 * i) * math.cos(0.15 * j)
+    points, faces, at = [], [], {}
+
+    def number(i, j):
+        if (i, j) not in at:
+            at[i, j] = len(points)
+            points.append(place(i, j))
+        return at[i, j]
+    for i in range(0, 40, 4):
+        for j in range(0, 40, 4):
+            outer = [number(i + x, j + y) for x, y in ((0, 0), (4, 0), (4, 4), (0, 4))]
+            inner = [number(i + x, j + y) for x, y in ((1, 1), (1, 3), (3, 3), (3, 1))]
+            faces.append((*outer, outer[0], *inner, inner[0]))
+    return Mesh(points, faces)
+
+
 def scattered():
     """Triangles of uneven shape: a jittered grid cut along random diagonals."""
     generator = random.Random(3)
@@ -252,6 +271,17 @@ def non_manifold():
         mesh.uv = None
         mesh.faces.append((v, v + 1, len(mesh.points) - 1, len(mesh.points) - 2))
     return sheet_with(change)
+
+
+def tent():
+    """A tent stands on a sheet: three faces, all of one sheet, at each side of its two feet."""
+    mesh = grid(uv=False)
+    base = len(mesh.points)
+    mesh.points += [(x, y, z + 0.02) for x, y, z in (mesh.points[17 * j + 8] for j in range(17))]
+    for j in range(16):
+        left, right, top = 17 * j + 6, 17 * j + 10, base + j
+        mesh.faces += [(left, left + 17, top + 1, top), (top, top + 1, right + 17, right)]
+    return mesh
 
 
 def moebius():
@@ -383,6 +413,7 @@ MESHES = {
     "triangles": ("obj", "good", lambda: grid().triangles(), "a sheet of regular triangles"),
     "scattered": ("obj", "good", scattered, "a sheet of uneven triangles"),
     "mixed": ("obj", "good", mixed, "triangles, quads and hexagons"),
+    "keyholes": ("obj", "good", keyholes, "squares with holes"),
     "honeycomb": ("obj", "good", honeycomb, "hexagons"),
     "millimetres": ("obj", "good", millimetres, "in millimetres"),
     "y-up": ("obj", "good", y_up, "y up"),
@@ -390,6 +421,7 @@ MESHES = {
     "crossed": ("obj", "broken", crossed, "goes through itself from the start"),
     "isolated-vertices": ("obj", "broken", isolated_vertices, "vertices of no face"),
     "non-manifold": ("obj", "broken", non_manifold, "three faces at an edge"),
+    "tent": ("obj", "broken", tent, "three faces of one sheet at an edge"),
     "moebius": ("obj", "broken", moebius, "a band with one side"),
     "winding": ("obj", "broken", winding, "some faces turned over"),
     "duplicate-faces": ("obj", "broken", duplicate_faces, "two faces there twice"),

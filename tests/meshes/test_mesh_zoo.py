@@ -51,8 +51,9 @@ NUMBER = r"\D*\d"
 BROKEN = {
     "crossed": (RUNS, None, r"\bcross(es|ings?)\b"),
     "isolated-vertices": (RUNS, None, "2 .*(no face|isolated|unused)"),
-    "non-manifold": (EITHER, NUMBER, "(cut|more than two)"),
-    "moebius": (EITHER, NUMBER, "(cut|one side)"),
+    "non-manifold": (RUNS, None, "1 .*more than two"),
+    "tent": (RUNS, None, "32 .*more than two"),
+    "moebius": (RUNS, None, "one side"),
     "winding": (EITHER, NUMBER, "turned"),
     "duplicate-faces": (EITHER, NUMBER, "2 .*(twice|duplicate)"),
     "degenerate-faces": (EITHER, NUMBER, "2 .*(area|degenerate)"),
