@@ -226,8 +226,8 @@ typedef struct SingeSourceDef {
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
     const SingePoseKey *path;  ///< [path_count] positions only
     SingePicture picture;      ///< picture source
-    /// W/m2 into each layer where the picture is white, at most 1e15 with picture and strength; below 0 it cools, down to
-    /// 1 K
+    /// W/m2 into each layer where the picture is white, at most 1e15 with picture and strength; below 0 it cools, down
+    /// to 1 K
     float flux;
     uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength; ///< [strength_count]

@@ -1,14 +1,14 @@
 // The range of conduction: T stays within that of T*, however far the solver got.
 //
-// (D + dt L) T = D T* has an M-matrix, so that its T lies between the least and the largest T*. What the solver leaves of
-// a residual r, conduct.c adds as r/D to keep all heat: nothing to speak of, but where a step is very long for a
+// (D + dt L) T = D T* has an M-matrix, so that its T lies between the least and the largest T*. What the solver leaves
+// of a residual r, conduct.c adds as r/D to keep all heat: nothing to speak of, but where a step is very long for a
 // particle, dt sum c_ij >> D, a float's last digit is already too much. Then the step ends as follows.
 //
 //   x_j = the solver's T_j, within the range
 //   T_i = T*_i + dt sum c_ij (x_j - T*_i)/(D_i + dt sum c_ij)        a mean of numbers within the range
 //
-// The heat that these lack or have too much of, as little as the residual, comes from all that conduct alike: by a share
-// of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of the
+// The heat that these lack or have too much of, as little as the residual, comes from all that conduct alike: by a
+// share of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of the
 // umbrella, which does not keep heat, it is counted as made.
 #include <math.h>
 

@@ -40,8 +40,8 @@ typedef struct HeatSettings {
 
 /// Operators and scratch of the stage, built once.
 typedef struct HeatPlan HeatPlan;
-/// Fails without memory (*error is not filled then), where a sheet needs a front thickening above 1e6, and where what it
-/// conducts does not fit floats.
+/// Fails without memory (*error is not filled then), where a sheet needs a front thickening above 1e6, and where what
+/// it conducts does not fit floats.
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
                              SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);

@@ -165,7 +165,8 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
     Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
     double triangle[4];
     bool even = false;
-    for (int k = 0; k < 4; k++) triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], middle, normal) / 2, 2 * scale);
+    for (int k = 0; k < 4; k++)
+        triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], middle, normal) / 2, 2 * scale);
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;

@@ -18,8 +18,8 @@
 //   c = c1 + s (c2 - c1),   with the smallest s for which no side, with the cell across it, is negative
 //
 // which keeps (1), and a linear T as steady as s is small. So every conductance is 0 or more, and the matrix is an
-// M-matrix: T never leaves the range that it has. Removal takes whole springs, which leaves it one. A tear parts the two
-// cells of a side; each then has to do without the other, and is mixed anew.
+// M-matrix: T never leaves the range that it has. Removal takes whole springs, which leaves it one. A tear parts the
+// two cells of a side; each then has to do without the other, and is mixed anew.
 //
 // c2: with k = c p^2 and z = (cos, sin) of twice the angle of p, (1) is a balance of directions,
 //
@@ -27,8 +27,8 @@
 //
 // and of all that fulfil it those of most entropy are taken, which all springs have a part in: k in proportion to
 // exp(lambda z), lambda by Newton's method. Where all springs of a cell run within a quarter turn (needles that lean),
-// no positive k balances. lambda, held to a length of 5, then makes the most of the springs that are farthest apart; the
-// cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as the
+// no positive k balances. lambda, held to a length of 5, then makes the most of the springs that are farthest apart;
+// the cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as the
 // sum of k makes one as much too large as the other too small. So a front is faster along such cells and slower
 // across, and stops nowhere.
 #include <float.h>

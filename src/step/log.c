@@ -84,8 +84,8 @@ void sim_log_unconverged(SingeSim *sim) {
     if (sim->heat_warned) return;
     sim->heat_warned = true;
     sim_log(sim, SINGE_LOG_WARNING,
-            "heat: steps are too long for conduction to come to heat_tolerance in 200 iterations; a smaller time_step or "
-            "pace, or a larger tolerance, helps (said once)");
+            "heat: steps are too long for conduction to come to heat_tolerance in 200 iterations; a smaller time_step "
+            "or pace, or a larger tolerance, helps (said once)");
 }
 
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {

@@ -139,7 +139,8 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
                 fail_msg("%s, steps of %g s: %.9g K from %.9g to %.9g K", mesh->name, (double)h, (double)T[i],
                          (double)least, (double)most);
         double scale = fabs(before) > 0 ? fabs(before) : 1;
-        if (material->heat_operator == SINGE_HEAT_SURFACE) CHECK_NEAR(rig_content(&rig, 1) / scale, before / scale, 1e-5);
+        if (material->heat_operator == SINGE_HEAT_SURFACE)
+            CHECK_NEAR(rig_content(&rig, 1) / scale, before / scale, 1e-5);
     }
     if (rig.counters.iterations > 12 * 200) fail_msg("%s: iterations", mesh->name);
     uint64_t forced = rig.counters.bounded;
