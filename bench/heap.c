@@ -88,7 +88,10 @@ static void fill_ball(uint32_t n, float *x, uint32_t *cells) {
             at[(axis + 1) % 3] = i + (turn == 1 || turn == 2), at[(axis + 2) % 3] = j + turn / 2;
             uint32_t v = cells[4 * c + k] = ball_vertex(at, n);
             float square = 0, *p = x + 3 * (size_t)v;
-            for (int d = 0; d < 3; d++) p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1)), square += p[d] * p[d];
+            for (int d = 0; d < 3; d++) {
+                p[d] = tanf(0.785398f * (2 * (float)at[d] / (float)n - 1));
+                square += p[d] * p[d];
+            }
             for (int d = 0; d < 3; d++) p[d] = ball / sqrtf(square) * p[d] + (d == 2 ? ball + 2e-3f : 0);
         }
     }
