@@ -44,10 +44,13 @@ class File:
         with open(os.path.join(root, name), encoding="utf-8") as file:
             self.text = file.read().split("\n")
 
+    def source(self, number):
+        return self.text[number - 1].strip() if number <= len(self.text) else "(changed since it was built)"
+
     def add(self, line):
         number = line["line_number"]
         self.lines[number] = max(self.lines.get(number, 0), line["count"])
-        if re.search(r"\bassert\(", self.text[number - 1]):
+        if re.search(r"\bassert\(", self.source(number)):
             return
         counts = [branch["count"] for branch in line["branches"] if not branch["throw"]]
         ways = self.branches.setdefault((number, line.get("function_name")), [])
@@ -70,7 +73,7 @@ class File:
             left = untaken.get(number, 0)
             if count == 0 or left:
                 what = "not run" if count == 0 else f"{left} of its branches not taken"
-                print(f"{self.name}:{number}: {what}: {self.text[number - 1].strip()}")
+                print(f"{self.name}:{number}: {what}: {self.source(number)}")
 
 
 def collect(root, build):

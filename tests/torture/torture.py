@@ -364,6 +364,7 @@ def parse_options():
     parser.add_argument("--scenario", action="append", help="only these [all]")
     parser.add_argument("--kind", action="append", choices=KINDS, help="only these [all]")
     parser.add_argument("--without", action="append", choices=KINDS, default=[], help="all kinds but these")
+    parser.add_argument("--quick", action="store_true", help="no command that takes seconds")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=int(time.time()), help="of the sample [the time]")
     parser.add_argument("--quiet", action="store_true", help="no progress")
@@ -377,7 +378,7 @@ def main():
     try:
         trials = []
         for scenario in scenarios():
-            if options.scenario and scenario.name not in options.scenario:
+            if (options.scenario and scenario.name not in options.scenario) or (options.quick and scenario.slow):
                 continue
             expected = Expected(bench, scenario)
             trials += [(trial, expected) for trial in make_trials(scenario, expected, options, rng)]
