@@ -98,8 +98,10 @@ class Place:
         with open(self.state, "wb") as file:
             file.write(bytes(8 * (1 + len(KINDS))))
         asan = os.environ.get("ASAN_OPTIONS", "") + ":verify_asan_link_order=0:exitcode=99"
+        known = os.path.join(os.path.dirname(os.path.abspath(__file__)), "leaks.txt")
+        lsan = os.environ.get("LSAN_OPTIONS", "") + ":print_suppressions=0:suppressions=" + known
         done = self.singe(command, check=False, **{"SINGE_TORTURE_STATE": self.state, "LD_PRELOAD": SHIM,
-                                                   "ASAN_OPTIONS": asan, **variables})
+                                                   "ASAN_OPTIONS": asan, "LSAN_OPTIONS": lsan, **variables})
         with open(self.state, "rb") as file:
             return done, struct.unpack(f"{1 + len(KINDS)}Q", file.read())
 
