@@ -25,7 +25,7 @@
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_COUNT };
-enum { EMBER_FRAMES = 8, EMBER_SCALE = 3 };
+enum { EMBER_FRAMES = 4, EMBER_SCALE = 3 };
 
 static const ArgOption measure_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone) [all]"},

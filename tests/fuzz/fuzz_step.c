@@ -121,12 +121,14 @@ static SingeSheetDef sheet_def(const Mesh *mesh) {
     return def;
 }
 
-static void move_mesh(Input *input, Mesh *mesh, unsigned sheet) {
+/// `near`: where there is gas, whose cells fill all that lies between sheets, and would take all the time.
+static void move_mesh(Input *input, Mesh *mesh, unsigned sheet, bool near) {
     static const float far[] = {0, 0, 0, 0.01f, 9e3f, 1e6f, 1e14f};
     static const float scales[] = {1, 1, 1, 1, 1e-3f, 100, 1e6f, 1e-9f};
     float gap = (float[]){0.5e-3f, 0.1e-3f, 0.02e-3f, 5e-3f, 0.05f}[input_pick(input, 5)];
     float x = far[input_pick(input, 7) * (input_rarely(input, 4) ? 1 : 0)];
     float scale = scales[input_pick(input, 8) * (input_rarely(input, 8) ? 1 : 0)];
+    if (near) x = 0, scale = 1;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         float *p = mesh->positions + 3 * (size_t)v;
         for (int k = 0; k < 3; k++) p[k] *= scale;
@@ -135,7 +137,7 @@ static void move_mesh(Input *input, Mesh *mesh, unsigned sheet) {
 }
 
 /// Sheets one over the other: most often copies of the first, half a millimetre apart.
-static unsigned add_sheets(Input *input, SingeSim *sim) {
+static unsigned add_sheets(Input *input, SingeSim *sim, bool near) {
     unsigned count = 1 + input_pick(input, SHEETS), added = 0;
     Mesh mesh = {0};
     SingeMaterialDef material = singe_default_material();
@@ -147,7 +149,7 @@ static unsigned add_sheets(Input *input, SingeSim *sim) {
             if (input_rarely(input, 2)) make_quick(&material);
             if (input_rarely(input, 2)) vary_material(input, &material);
         }
-        move_mesh(input, &mesh, s == 0 ? 0 : 1);
+        move_mesh(input, &mesh, s == 0 ? 0 : 1, near);
         SingeSheetDef def = sheet_def(&mesh);
         def.material = material;
         if (input_rarely(input, 8)) def.velocity[input_pick(input, 3)] = input_share(input) * input_extreme(input);
@@ -225,6 +227,8 @@ static SingeSimDef input_sim(Input *input) {
     if ((choices & 96) == 96) {
         singe_init_solver_method(&def.solver, sizeof def.solver, (SingeSolverMethod)input_pick(input, 5));
         if (def.solver.substeps > 20) def.solver.substeps = 20;
+        if (def.solver.method != SINGE_SOLVER_STRAND) // conjugate gradients take thousands of iterations each
+            def.solver.substeps = def.solver.projections = 1;
     }
     if (choices & 128) def.time_step = (float[]){1.0f / 24, 1e-9f, 1e-3f, 10}[input_pick(input, 4)];
     if ((more & 7) == 7) def.contact.thickness = input_extreme(input);
@@ -306,7 +310,7 @@ static SingeSim *make(Input input, int threads) {
     SingeSimDef def = input_sim(&input);
     def.thread_count = threads;
     if (singe_sim_create(&def, &sim, &error)) return NULL;
-    if (add_sheets(&input, sim) == 0 || singe_sim_commit(sim)) {
+    if (add_sheets(&input, sim, def.gas.enabled) == 0 || singe_sim_commit(sim)) {
         singe_sim_destroy(sim);
         return NULL;
     }

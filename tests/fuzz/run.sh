@@ -18,9 +18,11 @@ fuzz() {
     work=$build/fuzz/$name
     mkdir -p "$work/corpus" "$work/findings"
     start="$work/corpus"
+    limit=10 # s for one input, of a reader; whole simulations have more
+    case $name in step | snapshot) limit=120 ;; esac
     if [ -d "$seeds/$name" ]; then start="$start $seeds/$name"; fi
     # shellcheck disable=SC2086
-    if "$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
+    if "$1" -max_total_time="$seconds" -timeout="$limit" -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 \
         -artifact_prefix="$work/findings/" $start >"$work/log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/log")
         echo "  fuzz_$name: ok, ${runs:-?} runs" >"$work/summary"
