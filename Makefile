@@ -69,7 +69,7 @@ check-examples: build
 gate: build
 	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 210 --failed 1
 
-# every allocation, write, open, ... of whole commands fails once: half an hour; Ctrl-C ends it with its table
+# every allocation, write, open, ... of whole commands fails once: hours; Ctrl-C ends it with its table
 torture:
 	cmake --preset release
 	cmake --build --preset release --target torture
