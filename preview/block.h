@@ -22,7 +22,10 @@ typedef struct Block {
     V3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
-    FireView fire[LANES]; ///< through the middles of the pixels
+    FireTile *tile;                     ///< flame and smoke; NULL: none
+    float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are known
+    V3 fire_light[LANES];
+    float fire_clear[LANES];
     float low[LANES], high[LANES];
     bool blocked[LANES];
     LayerSum layer[LANES];

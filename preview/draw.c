@@ -16,8 +16,9 @@ enum { HOLE_LIMIT = 4 };
 typedef struct Job {
     Preview *preview;
     void (*draw)(Preview *preview, Block *block); ///< one block
-    atomic_int next;
+    atomic_int next, threads;
     int across, count;
+    bool fire; ///< flame and smoke are looked at
 } Job;
 
 /// A sample's place in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
@@ -144,6 +145,15 @@ static void find_points(const Preview *preview, Block *block, const int *active)
     }
 }
 
+/// The light of the fire before a point, and what it leaves. A pixel's points mostly lie at nearly one distance.
+static void look_through(Block *block, int lane, float distance) {
+    if (distance >= block->fire_from[lane] && distance <= block->fire_to[lane]) return;
+    const float same = 3e-4f; // m, less than flames are thick
+    block->fire_from[lane] = distance - same, block->fire_to[lane] = distance + same;
+    int x = block->x[lane] % TILE, y = block->y[lane] % TILE;
+    fire_until(block->tile, x, y, distance, &block->fire_light[lane], &block->fire_clear[lane]);
+}
+
 /// Adds the colour of block->point in the light of one sample. Embers are many and small: `stride` of them are taken
 /// as one, in turn.
 static void add_light(const Preview *preview, Block *block, const int *active, int sample, int stride) {
@@ -161,8 +171,9 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
         V3 fire = {0, 0, 0};
         float clear = 1;
-        if (preview->fire.size[0]) {
-            fire_until(&block->fire[i], point->distance, &fire, &clear);
+        if (block->tile) {
+            look_through(block, i, point->distance);
+            fire = block->fire_light[i], clear = block->fire_clear[i];
             colour = v3_mad(fire, colour, clear);
         }
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
@@ -218,6 +229,7 @@ static void start_block(const Preview *preview, Block *block, int *active) {
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
         block->sum[i] = v3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
         block->time[i] = 0.5f;
+        block->fire_from[i] = INFINITY, block->fire_to[i] = -INFINITY;
         layers_begin(&block->layer[i]);
     }
 }
@@ -245,18 +257,9 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
 }
 
-/// Fire has no edges as sharp as a sheet's: one ray a pixel is enough, whatever its samples then see behind it.
-static void see_fire(const Preview *preview, Block *block, const int *active) {
-    if (!preview->fire.size[0]) return;
-    aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
-    for (int i = 0; i < LANES; i++)
-        if (active[i]) fire_see(preview, block->direction[i], &block->fire[i]);
-}
-
 static void draw_block(Preview *preview, Block *block) {
     int active[LANES], taken[LANES];
     start_block(preview, block, active);
-    see_fire(preview, block, active);
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
         aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
@@ -303,10 +306,13 @@ static void fill_table(Preview *preview, Block *block) {
 
 static void *draw_tiles(void *context) {
     Job *job = context;
-    Block block;
+    Block block = {.tile = NULL};
     const PreviewDef *def = &job->preview->def;
+    FireTile *fire = job->fire ? &job->preview->fire.tiles[atomic_fetch_add(&job->threads, 1)] : NULL;
     for (int tile; (tile = atomic_fetch_add(&job->next, 1)) < job->count;) {
         int x0 = tile % job->across * TILE, y0 = tile / job->across * TILE;
+        if (fire) fire_see(job->preview, x0, y0, fire);
+        block.tile = fire && !fire->empty ? fire : NULL;
         for (int y = y0; y < y0 + TILE && y < def->height; y += BLOCK)
             for (int x = x0; x < x0 + TILE && x < def->width; x += BLOCK) {
                 for (int i = 0; i < LANES; i++) block.x[i] = x + i % BLOCK, block.y[i] = y + i / BLOCK;
@@ -319,7 +325,8 @@ static void *draw_tiles(void *context) {
 static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
     Job job = {.preview = preview, .draw = draw, .across = across, .count = across * down};
-    atomic_init(&job.next, 0);
+    job.fire = draw == draw_block && preview->fire.size[0];
+    atomic_init(&job.next, 0), atomic_init(&job.threads, 0);
     pthread_t threads[THREAD_LIMIT];
     int started = 0;
     // a thread that cannot be had only makes it slower
@@ -340,6 +347,7 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     SingeResult result = tracer_load(preview, surface, error);
     if (result) return result;
     preview->layers = *layers;
+    fire_raise(preview);
     light_gather(preview);
     fire_light_smoke(preview);
     mask_fill(preview);

@@ -1,8 +1,9 @@
 // The gas made ready to be looked at: what burns and what smokes, cell by cell, and where there is nothing.
 //
-// Burning is q / (q + q0) of the heat set free, q (W/m3). The height of a flame's gas above its root is found by
-// following the velocity back, layer by layer from below: r(x) = (r(x - v dt) + dz) times the share that was burning
-// there; it tells the clear base from the bright middle and the torn tip. Smoke is its extinction, 8.7 m2/g times its
+// Burning is q / (q + q0) of the heat set free, q (W/m3). The height of a flame's gas above the paper is that above
+// the paper that burns in its cell, and elsewhere found by following the velocity back, layer by layer from below:
+// r(x) = (r(x - v dt) + dz) times the share that was burning there; it tells the clear base from the bright middle and
+// the torn tip. Smoke is its extinction, 8.7 m2/g times its
 // density (Mulholland & Croarkin 2000, for the soot of flames).
 
 #include "preview/internal.h"
@@ -20,30 +21,11 @@ static size_t at(const Fire *fire, int x, int y, int z) {
 
 // ---- the cells
 
-static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell) {
-    float flame = gas->flame[from], smoke = gas->smoke[from];
+static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell, float drift[2]) {
+    float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
     cell->flame = flame > 0 ? flame / (flame + BURNING) : 0;
     cell->smoke = smoke > 0 ? EXTINCTION * smoke : 0;
-}
-
-/// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
-static FireCell upstream(const Fire *fire, const float velocity[3], int x, int y, int z) {
-    float up = maxf(velocity[2], 0.1f), fx, fy;
-    int ix = noise_floor((float)x - clampf(velocity[0] / up, -1, 1), &fx);
-    int iy = noise_floor((float)y - clampf(velocity[1] / up, -1, 1), &fy);
-    const FireCell *a = &fire->cells[at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
-    FireCell out = {.flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy)};
-    out.rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
-    return out;
-}
-
-static void raise_cell(Fire *fire, const float velocity[3], int x, int y, int z) {
-    FireCell *cell = &fire->cells[at(fire, x, y, z)];
-    if (cell->flame <= 0) return;
-    FireCell below = upstream(fire, velocity, x, y, z);
-    if (below.flame <= 0) return;
-    float share = minf(2 * below.flame / cell->flame, 1);
-    cell->rise = cell->flame * share * (below.rise / below.flame + fire->cell);
+    for (int c = 0; c < 2; c++) drift[c] = clampf(gas->velocity[from][c] / up, -1, 1);
 }
 
 static void fill_cells(Fire *fire, const SingeGas *gas) {
@@ -52,10 +34,68 @@ static void fill_cells(Fire *fire, const SingeGas *gas) {
     for (uint32_t z = 0; z < gas->size[2]; z++)
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
-                int place[3] = {(int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER};
-                fill_cell(gas, from, &fire->cells[at(fire, place[0], place[1], place[2])]);
-                raise_cell(fire, gas->velocity[from], place[0], place[1], place[2]);
+                size_t to = at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
+                fill_cell(gas, from, &fire->cells[to], fire->drift[to]);
             }
+}
+
+// ---- how high
+
+/// Where paper burns: the mean height in each cell, weighted by the rate.
+static void find_roots(Preview *preview) {
+    const Scene *scene = &preview->scene;
+    Fire *fire = &preview->fire;
+    memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
+    for (uint32_t i = 0; i < scene->vertex_count; i++) {
+        float rate = scene->vertices[i].burn_rate, rest;
+        if (rate < 0.02f) continue;
+        V3 g = v3_scale(v3_sub(v3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
+        int place[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
+        bool in = true;
+        for (int c = 0; c < 3; c++) in = in && place[c] > 0 && place[c] < fire->size[c] - 1;
+        if (!in) continue;
+        float *root = fire->roots[at(fire, place[0], place[1], place[2])];
+        root[0] += rate, root[1] += rate * scene->positions[i][2];
+    }
+}
+
+/// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
+static FireCell upstream(const Fire *fire, int x, int y, int z) {
+    const float *drift = fire->drift[at(fire, x, y, z)];
+    float fx, fy;
+    int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
+    const FireCell *a = &fire->cells[at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
+    FireCell out = {.flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy)};
+    out.rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
+    return out;
+}
+
+static void raise_cell(Fire *fire, int x, int y, int z) {
+    size_t here = at(fire, x, y, z), above = at(fire, x, y, z + 1);
+    FireCell *cell = &fire->cells[here];
+    cell->rise = 0;
+    if (cell->flame <= 0) return;
+    // the paper in the cell, or that just above it, which the flame has yet to reach
+    const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
+    if (root[0] > 0) {
+        float height = fire->origin.z + (float)z * fire->cell - root[1] / root[0];
+        cell->rise = cell->flame * maxf(height, -fire->cell);
+        return;
+    }
+    FireCell below = upstream(fire, x, y, z);
+    if (below.flame <= 0) return;
+    float share = minf(2 * below.flame / cell->flame, 1);
+    cell->rise = cell->flame * share * (below.rise / below.flame + fire->cell);
+}
+
+void fire_raise(Preview *preview) {
+    Fire *fire = &preview->fire;
+    fire->moment = (float)fmod(preview->time, 1e3);
+    if (!fire->size[0]) return;
+    find_roots(preview);
+    for (int z = 1; z < fire->size[2] - 1; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) raise_cell(fire, x, y, z);
 }
 
 // ---- the bricks
@@ -144,6 +184,8 @@ static void free_cells(const Preview *preview, const Fire *fire) {
     preview_resize(allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
     preview_resize(allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
     preview_resize(allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
+    preview_resize(allocator, fire->drift, fire->drift ? fire->cell_capacity * sizeof *fire->drift : 0, 0);
+    preview_resize(allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
 }
 
 static bool make_room(const Preview *preview, Fire *fire) {
@@ -157,10 +199,12 @@ static bool make_room(const Preview *preview, Fire *fire) {
         fire->cells = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->cells);
         fire->seen = preview_resize(&preview->allocator, NULL, 0, bricks);
         fire->burns = preview_resize(&preview->allocator, NULL, 0, cells);
+        fire->drift = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->drift);
+        fire->roots = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->roots);
         fire->cell_capacity = cells, fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
-    return fire->cells && fire->seen && fire->burns;
+    return fire->cells && fire->seen && fire->burns && fire->drift && fire->roots;
 }
 
 static bool is_finite(const SingeGas *gas) {
@@ -185,10 +229,12 @@ static SingeResult check_gas(const SingeGas *gas, SingeError *error) {
 /// Fills what does not change with the gas.
 static bool make_tables(Preview *preview) {
     Fire *fire = &preview->fire;
-    if (fire->noise) return true;
+    if (fire->noise && fire->tiles) return true;
     size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
-    fire->noise = preview_resize(&preview->allocator, NULL, 0, count * sizeof *fire->noise);
+    if (!fire->noise) fire->noise = preview_resize(&preview->allocator, NULL, 0, count * sizeof *fire->noise);
     if (!fire->noise) return false;
+    fire->tiles = preview_resize(&preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
+    if (!fire->tiles) return false;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
     fire_fill_colours(preview);
@@ -242,5 +288,7 @@ void fire_free(Preview *preview) {
     free_cells(preview, fire);
     preview_resize(&preview->allocator, fire->noise,
                    fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
+    preview_resize(&preview->allocator, fire->tiles,
+                   fire->tiles ? (size_t)preview->def.thread_count * sizeof(FireTile) : 0, 0);
     *fire = (Fire){.cells = NULL};
 }

@@ -19,10 +19,26 @@ enum {
 /// What is looked up at a place. Four floats: interpolated together.
 typedef struct FireCell {
     float flame;  ///< 0 none to 1 burning fully
-    float rise;   ///< m times flame: how far above its root the flame is
+    float rise;   ///< m times flame: how far above the paper the flame is
     float smoke;  ///< 1/m, extinction
     float glow;   ///< light of the flames that reaches the smoke, per unit of albedo
 } FireCell;
+
+/// What a ray meets in steps from `from` to `distance`: behind one, `light` has been added and `clear` of what comes
+/// from farther is left.
+typedef struct FireView {
+    int count;
+    float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
+    V3 light[FIRE_STEPS];
+} FireView;
+
+/// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
+/// four of them share, and pixels take the mean of the four rays about them, weighted by nearness.
+enum { FIRE_TILE = 32, FIRE_ACROSS = FIRE_TILE / 2 + 1 };
+typedef struct FireTile {
+    FireView views[FIRE_ACROSS * FIRE_ACROSS];
+    bool empty; ///< nothing is met by any of them
+} FireTile;
 
 typedef struct Fire {
     int size[3];      ///< cells with their border; all 0 where nothing is to be seen
@@ -32,10 +48,14 @@ typedef struct Fire {
     size_t cell_capacity;
     int bricks[3];
     uint8_t *seen;    ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
+    float (*drift)[2]; ///< [cells] how far the gas goes along x and y as it rises by one
+    float (*roots)[2]; ///< [cells] rate at which paper burns there, and its height times that
     uint8_t *burns;   ///< [cells] whether flame may be in reach of the small eddies alone
     size_t brick_capacity;
+    float moment;     ///< s, by which the eddies have risen
     V3 daylight;      ///< of sun and sky, per unit of the smoke's albedo
     V3 low, high;     ///< m, bounds of the bricks that are not empty
+    FireTile *tiles;   ///< [def.thread_count] what each thread works on; NULL before the first gas
     float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
     V3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
@@ -45,14 +65,6 @@ typedef struct Fire {
 #define FIRE_WARP_FINE 0.0018f
 
 enum { FIRE_FLAME = 1, FIRE_SMOKE = 2 };
-
-/// What a ray meets in steps from `from` to `distance`: behind one, `light` has been added and `clear` of what comes
-/// from farther is left.
-typedef struct FireView {
-    int count;
-    float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
-    V3 light[FIRE_STEPS];
-} FireView;
 
 typedef struct Preview Preview;
 
@@ -64,16 +76,30 @@ static inline size_t fire_noise_at(int x, int y, int z) {
 
 // fire.c
 void fire_free(Preview *preview);
+/// How high above the paper each flame is. The surface has been loaded.
+void fire_raise(Preview *preview);
 /// The light that falls on smoke: the day's and the flames'. The lights have been gathered.
 void fire_light_smoke(Preview *preview);
 
-// fire_march.c
+/// What there is at a place, a metre of it.
+typedef struct Matter {
+    V3 light;
+    float dense; ///< 1/m, extinction
+    bool flame;
+} Matter;
+
+// fire_shade.c
 void fire_fill_colours(Preview *preview);
 /// Light of a full flame, radiance a metre, for the lamps that stand for it, and how much of it a cell gives.
 V3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
-void fire_see(const Preview *preview, V3 direction, FireView *view);
-/// The light of the fire as far as `distance`, and what it leaves of the light from there.
-void fire_until(const FireView *view, float distance, V3 *light, float *clear);
+Matter fire_matter(const Preview *preview, V3 p, int what);
+
+// fire_march.c
+/// Fills a tile whose upper left pixel is (x, y).
+void fire_see(const Preview *preview, int x, int y, FireTile *tile);
+/// The light of the fire as far as `distance` from a pixel of the tile, counted from its upper left, and what it leaves
+/// of the light from there.
+void fire_until(const FireTile *tile, int x, int y, float distance, V3 *light, float *clear);
 
 #endif

@@ -11,7 +11,7 @@
 enum {
     LANES = 16,            ///< rays in a packet: a block of 4 x 4 pixels
     BLOCK = 4,             ///< pixels along a block's side
-    TILE = 32,             ///< pixels along a tile's side, the unit of work of a thread
+    TILE = FIRE_TILE,      ///< pixels along a tile's side, the unit of work of a thread
     LIGHT_LIMIT = 16,      ///< ember clusters that cast light
     MIP_LIMIT = 15,
     BLACKBODY_COUNT = 160, ///< table from BLACKBODY_MIN in steps of BLACKBODY_STEP
