@@ -7,7 +7,7 @@
 /// The properties that docs/formats.md promises, in its order.
 enum {
     CACHE_X, CACHE_NORMAL = 3, CACHE_UV = 6, CACHE_VELOCITY = 8, CACHE_REST = 11, CACHE_TEMPERATURE = 14,
-    CACHE_PIECE = 20, CACHE_VERTEX, CACHE_SHEET, CACHE_COLUMNS
+    CACHE_PIECE = 22, CACHE_VERTEX, CACHE_SHEET, CACHE_COLUMNS
 };
 
 typedef struct CacheFrame {

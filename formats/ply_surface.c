@@ -39,6 +39,8 @@ static const Column columns[] = {
     COLUMN("temperature_peak", temperature_peak, 1, 0),
     COLUMN("mass", mass, 1, 0),
     COLUMN("burn_rate", burn_rate, 1, 0),
+    COLUMN("char_fraction", char_fraction, 1, 0),
+    COLUMN("ash_fraction", ash_fraction, 1, 0),
     COLUMN("char", burn, 1, 0),
     COLUMN("time_ignited", time_ignited, 1, 0),
     INTEGER("piece_id", piece),

@@ -69,8 +69,8 @@ static const SchemaRow material_rows[] = {
     {"name", ROW_TEXT, DIM_NONE, AT(SceneMaterial, name), .doc = "for messages; that of `base` by default"},
     PARAM("grammage", grammage, DIM_GRAMMAGE, WITHIN(1e-6, 1e6), "mass per area before it burns"),
     {"reference_grammage", ROW_FLOAT, DIM_GRAMMAGE, AT(SceneMaterial, def.reference_grammage), WITHIN(0, 1e6),
-     .doc = "`diffusivity`, `layer_exchange` and `mass_rate` are given for this mass per area; on a lighter sheet they "
-            "are larger in proportion, and its fire faster. 0: they hold at any. One for the whole sheet"},
+     .doc = "`diffusivity`, `layer_exchange`, `mass_rate` and `char_rate` are given for this mass per area; on a lighter "
+            "sheet they are larger in proportion, and its fire faster. 0: they hold at any. One for the whole sheet"},
     PARAM("specific_heat", specific_heat, DIM_SPECIFIC_HEAT, WITHIN(1e-3, MUCH), "heat to warm a kilogram by a kelvin"),
     PARAM("thickness", thickness, DIM_LENGTH, WITHIN(1e-6, 100),
           "distance of the model's two layers; it sets the size of the wrinkles, and is larger than the real sheet's"),
@@ -108,6 +108,16 @@ static const SchemaRow material_rows[] = {
           "m_loss: below this share the sheet is gone; under mass_min it wrinkles but stays whole"),
     PARAM("ash_density", ash_density, DIM_FRACTION, OVER(0),
           "density at mass_min over the density at the start; with mass_min it sets the shrinkage, eq 5"),
+    PARAM("char_yield", char_yield, DIM_FRACTION, BELOW(0, 1),
+          "share that pyrolysis leaves as char, black and weak, which then glows away to grey ash, mass_min, where it is "
+          "hot and air comes to it. At mass_min or below there is no char: one reaction, the paper's eq 4"),
+    PARAM("char_density", char_density, DIM_FRACTION, OVER(0), "density of char over the density at the start"),
+    PARAM("char_heat", char_heat, DIM_SPECIFIC_ENERGY, FROM(0),
+          "heat that a kilogram of char gives as it glows away; all of it stays in the sheet"),
+    PARAM("char_rate", char_rate, DIM_RATE, FROM(0),
+          "share of hot char that the air at an edge burns in a second; noise makes embers die here and live there"),
+    PARAM("char_air", char_air, DIM_FRACTION, WITHIN(0, 1),
+          "share of `char_rate` within a leaf of char, away from edges and ash: less, and embers keep to edges"),
     PARAM("shrink_front", shrink_front, DIM_FRACTION, WITHIN(0, 2),
           "share of the shrinkage that the front layer takes (the side that a grid turns up)"),
     PARAM("shrink_back", shrink_back, DIM_FRACTION, WITHIN(0, 2),
@@ -135,7 +145,8 @@ static const SchemaRow material_rows[] = {
           "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The "
           "model's own, far below real paper's ([equations.md](equations.md#tearing))"),
     PARAM("char_strength", char_strength, DIM_STIFFNESS, OVER(0),
-          "the same of what is burnt to mass_min; geometric between the two in burn progress"),
+          "the same of char, and without char of what is burnt to mass_min; geometric between the two. Ash has a "
+          "twentieth of it"),
     {"measured", ROW_MAP, DIM_NONE, AT(SceneMaterial, measured), EXTRA(SceneMaterial, measured.given),
      .sub = &schema_measured, .doc = "what sources say of its fire"},
 };

@@ -84,6 +84,7 @@ typedef struct SingeView {
     const float (*uv)[2];               ///< [particle_count], centres at the mean of their corners
     const float *area;                  ///< [particle_count] m2 at rest, of the particle's own layer
     const float *mass;                  ///< [particle_count] fraction of the initial mass
+    const float *fuel;                  ///< [particle_count] 1 unburnt, 0 where all has pyrolysed to char and ash
     const float *temperature;           ///< [particle_count] K
     const float *temperature_peak;      ///< [particle_count] K, highest so far
     const float *burn_rate;             ///< [particle_count] 1/s, mass fraction lost per second
@@ -218,7 +219,9 @@ typedef struct SingeSurface {
     float *temperature_peak;   ///< K, highest so far: what browns paper for good
     float *mass;               ///< fraction
     float *burn_rate;          ///< 1/s
-    float *burn;               ///< char: burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
+    float *char_fraction;      ///< of the initial mass, black char that can still glow away
+    float *ash_fraction;       ///< of the initial mass, grey ash: what of `mass` neither pyrolyses nor glows any more
+    float *burn;               ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
     float *time_ignited;       ///< s, -1 never
     int32_t *piece;            ///< id
     /// vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it

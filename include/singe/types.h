@@ -93,9 +93,9 @@ typedef struct SingeMaterialDef {
 
     // body
     SingeParam grammage;      ///< kg/m2, > 0
-    /// kg/m2, the grammage that diffusivity, layer_exchange and mass_rate are stated for, >= 0. Their real causes are
-    /// fluxes per area, so on a sheet of another grammage they are reference_grammage/grammage times as large; 0: as
-    /// stated at any. One for the sheet
+    /// kg/m2, the grammage that diffusivity, layer_exchange, mass_rate and char_rate are stated for, >= 0. Their real
+    /// causes are fluxes per area, so on a sheet of another grammage they are reference_grammage/grammage times as
+    /// large; 0: as stated at any. One for the sheet
     float reference_grammage;
     SingeParam specific_heat; ///< J/(kg K), > 0
     SingeParam thickness;     ///< m, between the two layers of the model, > 0; sets the wrinkles' size
@@ -121,6 +121,13 @@ typedef struct SingeMaterialDef {
     SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
     SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
     SingeParam ash_density;          ///< rho at m_min over rho_init, > 0
+    /// Fraction of the initial mass that pyrolysis leaves as char, 0 to < 1, which then glows away to m_min. At or below
+    /// m_min there is no char, and one reaction goes down to m_min: the paper's eq 4
+    SingeParam char_yield;
+    SingeParam char_density;         ///< rho of char over rho_init, > 0
+    SingeParam char_heat;            ///< J for a kg of char that glows away, all of it in the sheet, >= 0
+    SingeParam char_rate;            ///< 1/s, at which air at an edge can burn hot char, >= 0
+    SingeParam char_air;             ///< share of char_rate within a leaf, away from edges and ash, 0 to 1
     SingeParam shrink_front;         ///< how much of eq 6's shrinkage the front (centre) layer takes, 0 to 2
     /// the same for the back (corner) layer; the sheet curls towards the layer that shrinks more
     SingeParam shrink_back;
@@ -141,7 +148,9 @@ typedef struct SingeMaterialDef {
 
     // tearing, where the solver has it on
     SingeParam strength;      ///< N/m, the line force at which it tears before it burns, > 0, may be INFINITY
-    SingeParam char_strength; ///< N/m, the same of what is burnt to m_min; between the two geometric in burn progress
+    /// N/m, the same of char (without char: of what is burnt to m_min), > 0; between the two geometric in what is burnt.
+    /// Ash has a twentieth of it
+    SingeParam char_strength;
 
     /// 1/s, A of Arrhenius kinetics, >= 0: above 0 what can still burn falls at A exp(-E/(R T)) in place of mass_rate
     /// times the excess over ignition, its order ash_exponent; T counts to rate_ceiling above ignition at most

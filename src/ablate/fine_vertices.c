@@ -198,16 +198,20 @@ static void fill(const Fine *fine, uint32_t v) {
     place_vertex(fine, place, particle, v);
     vec_store(surface->velocity[v], blend(at, place, (const float (*)[4])state->dynamics.velocity));
     vec_store(surface->rest_position[v], blend(at, place, (const float (*)[4])shell->rest_position));
-    float mass_min = 0, u = 0, w = 0;
+    float mass_min = 0, yield = 0, u = 0, w = 0;
     for (int i = 0; i < 3; i++) {
         u += place->weight[i] * shell->uv[particle[i]][0], w += place->weight[i] * shell->uv[particle[i]][1];
         mass_min += place->weight[i] * field_at(shell->matter.mass_min, particle[i]);
+        yield += place->weight[i] * field_at(shell->matter.char_yield, particle[i]);
     }
     surface->uv[v][0] = u, surface->uv[v][1] = w;
     surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], *place);
     surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *place);
     surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *place);
     surface->mass[v] = vertex->mass;
+    float fuel = fminf(fmaxf(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *place), 0), 1);
+    surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
+    surface->ash_fraction[v] = fmaxf(vertex->mass - fuel - surface->char_fraction[v], 0);
     surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);
     surface->time_ignited[v] = blend_times(state->burn.time_ignited, particle, place->weight);
     surface->piece[v] = state->ablate.piece[particle[0]];

@@ -11,7 +11,7 @@ typedef struct SurfaceArray {
 
 static const SurfaceArray vertex_arrays[] = {
     ARRAY(position), ARRAY(normal), ARRAY(uv), ARRAY(velocity), ARRAY(rest_position), ARRAY(temperature),
-    ARRAY(temperature_peak), ARRAY(mass), ARRAY(burn_rate), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece),
+    ARRAY(temperature_peak), ARRAY(mass), ARRAY(burn_rate), ARRAY(char_fraction), ARRAY(ash_fraction), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece),
     ARRAY(source_vertex), ARRAY(sheet),
 };
 static const SurfaceArray triangle_array = ARRAY(triangles);

@@ -99,7 +99,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
         fine->sheets[s] = describe(detail, &fine->shell->sheets[s], s);
     fill_levels(fine);
     const float *const fields[SPLINE_COUNT] = {
-        [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass,
+        [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass, [SPLINE_FUEL] = state->burn.fuel,
         [SPLINE_TEMPERATURE] = state->heat.temperature, [SPLINE_PEAK] = state->heat.temperature_peak,
         [SPLINE_RATE] = state->burn.burn_rate};
     for (int f = 0; f < SPLINE_COUNT; f++)

@@ -19,7 +19,7 @@ enum {
 
 /// The fields that are drawn smoothly.
 typedef enum SplineField {
-    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_LIP, SPLINE_COUNT
+    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_FUEL, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_LIP, SPLINE_COUNT
 } SplineField;
 
 /// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).

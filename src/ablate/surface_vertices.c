@@ -8,6 +8,8 @@
 #include "ablate/ablate_plan.h"
 #include "base/vec.h"
 
+#include <math.h>
+
 float surface_cut(float inside, float outside, float nearest) {
     float t = inside / (inside - outside);
     return t < nearest ? 0 : t > 1 - nearest ? 1 - nearest : t;
@@ -25,7 +27,7 @@ int surface_fan(const float level[3], float nearest) {
 
 typedef struct Sample {
     Vec position, velocity, rest;
-    float u, v, temperature, temperature_peak, mass, burn_rate, burn, time_ignited;
+    float u, v, temperature, temperature_peak, mass, burn_rate, coal, ash, burn, time_ignited;
     int32_t piece, sheet;
 } Sample;
 
@@ -40,12 +42,15 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
     const float (*velocity)[4] = (const float (*)[4])state->dynamics.velocity;
     const float (*rest)[4] = (const float (*)[4])shell->rest_position;
     const BurnState *burn = &state->burn;
+    float least = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
+    float coal = yield * shell_char(burn->mass[particle], burn->fuel[particle], least, yield);
     Sample sample = {
         .u = shell->uv[particle][0], .v = shell->uv[particle][1],
         .temperature = state->heat.temperature[particle],
         .temperature_peak = state->heat.temperature_peak[particle],
         .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
-        .burn = shell_burn_progress(burn->mass[particle], field_at(shell->matter.mass_min, particle)),
+        .coal = coal, .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
+        .burn = shell_burn_progress(burn->mass[particle], least),
         .time_ignited = burn->time_ignited[particle],
         .piece = state->ablate.piece[particle], .sheet = shell->matter.sheet[particle],
     };
@@ -79,6 +84,8 @@ static Sample mix_samples(const Sample *a, const Sample *b, float t) {
         .temperature_peak = mix(a->temperature_peak, b->temperature_peak, t),
         .mass = mix(a->mass, b->mass, t),
         .burn_rate = mix(a->burn_rate, b->burn_rate, t),
+        .coal = mix(a->coal, b->coal, t),
+        .ash = mix(a->ash, b->ash, t),
         .burn = mix(a->burn, b->burn, t),
         .time_ignited = mix_times(a->time_ignited, b->time_ignited, t),
         .piece = a->piece, .sheet = a->sheet,
@@ -111,6 +118,8 @@ void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *sta
     surface->temperature_peak[index] = sample.temperature_peak;
     surface->mass[index] = sample.mass;
     surface->burn_rate[index] = sample.burn_rate;
+    surface->char_fraction[index] = sample.coal;
+    surface->ash_fraction[index] = sample.ash;
     surface->burn[index] = sample.burn;
     surface->time_ignited[index] = sample.time_ignited;
     surface->piece[index] = sample.piece;

@@ -39,7 +39,10 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
 /// Stamps what reached its ignition temperature and pushes its events in order of particle.
 void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
 
-/// Eq 4. Returns the mass that went as gas, kg; not finite where a mass is not.
+/// The second reaction: the share of char that is left of `share` after dt s (glow.c).
+float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float dt);
+
+/// Eq 4 and what glows. Returns the mass that went as gas, kg; not finite where a mass is not.
 double burn_lose_mass(BurnJob *job, Pool *pool);
 
 /// Eq 6, for springs with an end that lost mass in this step.

@@ -1,9 +1,10 @@
 // Mass loss, eq 4 with an ash exponent:
 //
-//   dm/dt = -(mu/F) x^p min((T - T_ign)+, theta),   x = (m - m_min)/(1 - m_min)
+//   dm/dt = (1 - nu) df/dt = -(mu/F) f^p min((T - T_ign)+, theta),   m = nu + (1 - nu) f
 //
-//   m      mass as a fraction of the initial mass, 1 unburnt; x what of it can still burn, 1 to 0
-//   m_min  fraction that never burns
+//   m      mass as a fraction of the initial mass, 1 unburnt; f fuel: what can still pyrolyse, 1 to 0
+//   nu     what that leaves: char, which then glows away to m_min (glow.c), or m_min itself in the paper, where f is
+//          (m - m_min)/(1 - m_min)
 //   mu     mass rate, 1/(K s)
 //   F      front thickening, by which every rate is divided
 //   T, T_ign  temperature and ignition temperature, K;  (.)+ is zero below zero
@@ -12,16 +13,18 @@
 //
 // With a pre-exponential factor A > 0 the rate is Arrhenius' instead, for what is above T_ign:
 //
-//   dx/dt = -(A/F) x^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
+//   df/dt = -(A/F) f^p exp(-E/(R T_e)),   T_e = min(T, T_ign + theta),   E activation energy, J/mol
 //
-// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - m_min)), or A dt exp(-E/(R T_e))/F, is a
-// number. dx/dt = -(k/dt) x^p is then solved exactly, so that no step however long passes m_min, and x falls by
+// Over one step T is held, and k = mu dt min((T - T_ign)+, theta)/(F (1 - nu)), or A dt exp(-E/(R T_e))/F, is a
+// number. df/dt = -(k/dt) f^p is then solved exactly, so that no step however long passes 0, and f falls by
 //
-//   p = 0     k, at most x
-//   p = 1/2   (k/2) (2 sqrt(x) - k/2), and all of x once k/2 >= sqrt(x)
-//   p = 1     x (1 - exp(-k))
-//   p = 2     x / (1 + 1/(k x))
-//   else      x (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k x^(p - 1), and all of x once r >= 1
+//   p = 0     k, at most f
+//   p = 1/2   (k/2) (2 sqrt(f) - k/2), and all of f once k/2 >= sqrt(f)
+//   p = 1     f (1 - exp(-k))
+//   p = 2     f / (1 + 1/(k f))
+//   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
+//
+// What pyrolysis warms the sheet by is eta (1 - nu) df, eq 1.
 #include "burn/burn_job.h"
 
 #include <math.h>
@@ -50,15 +53,31 @@ static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
     return field_at(matter->pre_exponential, i) * expf(-exponent);
 }
 
-/// One particle's new mass; NaN comes through.
-static float lower_mass(const Matter *matter, uint32_t i, float mass, float excess, float dt) {
-    float least = field_at(matter->mass_min, i), span = 1 - least;
-    float x = (mass - least) / span, k = field_at(matter->mass_rate, i) * dt * excess / span;
+/// One particle's new fuel; NaN comes through.
+static float lower_fuel(const Matter *matter, uint32_t i, float fuel, float excess, float dt) {
+    float k = field_at(matter->mass_rate, i) * dt * excess / (1 - field_at(matter->char_yield, i));
     if (field_at(matter->pre_exponential, i) > 0) k = arrhenius_rate(matter, i, excess) * dt;
-    if (x <= 0 || k <= 0) return mass;
-    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinite it would be NaN times an x^p that vanishes
-    float lowered = mass - span * fall(x, k, field_at(matter->ash_exponent, i));
-    return lowered < least ? least : lowered;
+    if (fuel <= 0 || k <= 0) return fuel;
+    if (k > STRENGTH_MAX) k = STRENGTH_MAX; // all burns; infinite it would be NaN times an f^p that vanishes
+    float lowered = fuel - fall(fuel, k, field_at(matter->ash_exponent, i));
+    return lowered < 0 ? 0 : lowered;
+}
+
+/// Both reactions of one particle.
+static void react(BurnJob *job, uint32_t i, float excess) {
+    const Matter *matter = &job->shell->matter;
+    BurnState *burn = job->burn;
+    float dt = job->dt / job->thickening[matter->sheet[i]], floor_mass = field_at(matter->loss_mass_floor, i);
+    float least = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - least;
+    float before = burn->mass[i], fuel = burn->fuel[i], left = lower_fuel(matter, i, fuel, excess, dt);
+    float fresh = shell_char(before, fuel, least, yield) + (span > 0 ? fuel - left : 0);
+    float share = span > 0 ? burn_glow(job, i, left, fresh, dt) : 0;
+    float after = least + (1 - least) * left + span * share;
+    burn->fuel[i] = left;
+    burn->mass[i] = after < before || isnan(after) ? after : before;
+    burn->burn_rate[i] = (before - burn->mass[i]) / job->h;
+    float glow = field_at(matter->char_heating, i) * span * (fresh - share) / fmaxf(before, floor_mass);
+    burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
 
 /// Adds the mass that particles [first, last) lose to *lost, kg.
@@ -68,17 +87,21 @@ static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost)
     const uint8_t *flags = job->state->ablate.particle_flags;
     BurnState *burn = job->burn;
     for (uint32_t i = first; i < last; i++) {
-        burn->burn_rate[i] = 0;
+        burn->burn_rate[i] = burn->release[i] = 0;
         float excess = temperature[i] - field_at(matter->ignition_temperature, i);
         if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
         if (excess > field_at(matter->rate_ceiling, i)) excess = field_at(matter->rate_ceiling, i); // NaN stays NaN
         float before = burn->mass[i];
-        float after = lower_mass(matter, i, before, excess, job->dt / job->thickening[matter->sheet[i]]);
-        burn->mass[i] = after;
-        burn->burn_rate[i] = (before - after) / job->h;
+        react(job, i, excess);
+        float after = burn->mass[i];
         if (after < field_at(matter->mass_loss, i) && burn->time_burnt[i] < 0) burn->time_burnt[i] = job->time;
         *lost += ((double)before - (double)after) * (double)matter->mass[i];
     }
+}
+
+static void be_calm(BurnState *burn, uint32_t first, uint32_t last) {
+    memset(burn->burn_rate + first, 0, (last - first) * sizeof *burn->burn_rate);
+    memset(burn->release + first, 0, (last - first) * sizeof *burn->release);
 }
 
 static void lose_blocks(void *context, int begin, int end) {
@@ -92,7 +115,7 @@ static void lose_blocks(void *context, int begin, int end) {
             if (burn_is_hot(job, first, run))
                 lose_mass(job, first, run, &lost);
             else
-                memset(job->burn->burn_rate + first, 0, (run - first) * sizeof *job->burn->burn_rate);
+                be_calm(job->burn, first, run);
         }
         job->partial[block] = lost;
     }

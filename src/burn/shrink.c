@@ -31,8 +31,10 @@ typedef struct SpringEnd {
     float fibres; ///< q
 } SpringEnd;
 
-static inline SpringEnd spring_end(const Matter *matter, const float *mass, uint32_t i) {
-    float volume = burn_volume_ratio(mass[i], field_at(matter->mass_min, i), field_at(matter->ash_density, i));
+static inline SpringEnd spring_end(const Matter *matter, const BurnState *burn, uint32_t i) {
+    float mass = burn->mass[i], fuel = burn->fuel[i];
+    float ash = 1 - fuel - shell_char(mass, fuel, field_at(matter->mass_min, i), field_at(matter->char_yield, i));
+    float volume = burn_volume_ratio(mass, fuel, ash, field_at(matter->char_density, i), field_at(matter->ash_density, i));
     return (SpringEnd){volume, field_at(matter->shrink, i), field_at(matter->fibre_shrink, i)};
 }
 
@@ -74,9 +76,9 @@ static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_
 static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool burns[4], bool centre_burns) {
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
-    const float *burn_rate = job->burn->burn_rate, *mass = job->burn->mass;
-    SpringEnd corner[4], centre = spring_end(&shell->matter, mass, shell_centre(shell, cell));
-    for (int i = 0; i < 4; i++) corner[i] = spring_end(&shell->matter, mass, shell->cells[cell][i]);
+    const BurnState *burn = job->burn;
+    SpringEnd corner[4], centre = spring_end(&shell->matter, burn, shell_centre(shell, cell));
+    for (int i = 0; i < 4; i++) corner[i] = spring_end(&shell->matter, burn, shell->cells[cell][i]);
     for (int i = 0; i < 4; i++) {
         uint32_t other = shell_neighbour(shell, cell, i), beyond = shell_centre(shell, other);
         int next = (i + 1) & 3;
@@ -87,8 +89,8 @@ static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool bu
         }
         if ((burns[i] | burns[next]) && (other == SHELL_NONE || cell < other))
             shrink_spring(job, SINGE_BLUE, springs->blue[i], corner[i], corner[next], 1);
-        if (centre_burns && other != SHELL_NONE && (cell < other || !(burn_rate[beyond] > 0)))
-            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, mass, beyond), 1);
+        if (centre_burns && other != SHELL_NONE && (cell < other || !(burn->burn_rate[beyond] > 0)))
+            shrink_spring(job, SINGE_GREEN, springs->green[i], centre, spring_end(&shell->matter, burn, beyond), 1);
     }
     for (int i = 0; i < 2; i++)
         if (burns[i] | burns[i + 2]) shrink_spring(job, SINGE_YELLOW, springs->yellow[i], corner[i], corner[i + 2], 1);
@@ -116,8 +118,8 @@ void burn_restore_lengths(const Shell *shell, const State *state, BurnState *bur
         for (uint32_t s = 0; s < springs->count; s++) {
             if (!(state->ablate.spring_flags[colour][s] & SINGE_ALIVE)) continue;
             uint32_t first = springs->ends[s][0], second = springs->ends[s][1];
-            SpringEnd a = spring_end(&shell->matter, burn->mass, first);
-            SpringEnd b = spring_end(&shell->matter, burn->mass, second);
+            SpringEnd a = spring_end(&shell->matter, burn, first);
+            SpringEnd b = spring_end(&shell->matter, burn, second);
             float in_plane = 1;
             if (colour == SINGE_RED) // a centre comes after all vertices
                 in_plane = red_in_plane(&shell->matter, springs, s, first > second ? first : second);

@@ -1,17 +1,19 @@
 // Volume ratio, eq 5:
 //
 //   v = (m / rho) / (m_init / rho_init) = m / rho      with m and rho relative to their initial values
+//   rho = 1 + (rho_char - 1)(1 - f) + (rho_ash - rho_char) w
 //
-// The density goes linearly from 1 to rho_ash with the burn progress b = (1 - m)/(1 - m_min).
+// f is the fuel, w = 1 - f - c/nu the share of what has gone on to ash (glow.c). In the paper, without char, the density
+// goes linearly from 1 to rho_ash with the burn progress 1 - f = w = (1 - m)/(1 - m_min).
 #ifndef BURN_VOLUME_H
 #define BURN_VOLUME_H
 
 #include "shell/shell.h"
 
-/// Volume ratio for a mass fraction. In (0, 1] for sane materials, clamped to [0.05, 1].
-static inline float burn_volume_ratio(float mass, float mass_min, float ash_density) {
-    float density = 1 + (ash_density - 1) * shell_burn_progress(mass, mass_min);
-    float ratio = mass / density;
+/// Volume ratio for a mass fraction, of which the shares `fuel` is left of the fuel and `ash` has gone on to ash. In
+/// (0, 1] for sane materials, clamped to [0.05, 1].
+static inline float burn_volume_ratio(float mass, float fuel, float ash, float char_density, float ash_density) {
+    float ratio = mass / (1 + (char_density - 1) * (1 - fuel) + (ash_density - char_density) * ash);
     return ratio < 0.05f ? 0.05f : ratio > 1 ? 1 : ratio;
 }
 

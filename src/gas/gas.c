@@ -46,7 +46,7 @@ static bool gas_is_over(GasPass *pass) {
     return !left;
 }
 
-/// Puts a turn to rest; its masses stay.
+/// Puts a turn to rest; its fuel stays.
 static void gas_calm(const GasPlan *plan, GasTurn *turn) {
     for (int f = 0; f < GAS_FIELDS; f++) memset(turn->field[f], 0, plan->grid.cells * sizeof(float));
     memset(turn->conductance, 0, plan->particles * sizeof(float));
@@ -56,7 +56,7 @@ static void gas_calm(const GasPlan *plan, GasTurn *turn) {
 static void gas_turn_over(const GasPlan *plan, GasPass *pass, GasState *gas) {
     gas->turn = !gas->turn;
     const GasTurn *turn = &plan->turn[gas->turn];
-    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->mass = turn->mass;
+    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->fuel = turn->fuel;
     gas->air = (const float(*)[4])turn->air;
     gas->warm = false;
     for (uint32_t i = 0; i < plan->particles && !gas->warm; i++) gas->warm = turn->conductance[i] > 0;

@@ -111,7 +111,7 @@ static size_t plan_turn(const GasPlan *plan, float *base, GasTurn *turn) {
     for (int f = 0; f < GAS_FIELDS; f++) turn->field[f] = take(base, &used, plan->grid.cells);
     turn->conductance = take(base, &used, n);
     turn->temperature = take(base, &used, n);
-    turn->mass = take(base, &used, n);
+    turn->fuel = take(base, &used, n);
     turn->air = (float(*)[4])take(base, &used, 4 * n);
     return used;
 }
@@ -151,7 +151,7 @@ static bool plan_allocate(Memory *memory, GasPlan *plan) {
 /// Points a state's arrays at the turn that holds.
 static void plan_expose(const GasPlan *plan, GasState *gas) {
     const GasTurn *turn = &plan->turn[gas->turn];
-    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->mass = turn->mass;
+    gas->conductance = turn->conductance, gas->temperature = turn->temperature, gas->fuel = turn->fuel;
     gas->air = (const float(*)[4])turn->air;
 }
 
@@ -176,7 +176,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
         return SINGE_ERROR_MEMORY;
     }
     for (int t = 0; t < 2; t++)
-        for (uint32_t i = 0; i < plan->particles; i++) plan->turn[t].mass[i] = 1;
+        for (uint32_t i = 0; i < plan->particles; i++) plan->turn[t].fuel[i] = 1;
     *gas = (GasState){0};
     plan_expose(plan, gas);
     GasPass pass = {.plan = plan};
@@ -201,7 +201,7 @@ void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare) {
         GasTurn *turn = &plan->turn[t];
         turn->conductance[spare] = turn->conductance[vertex];
         turn->temperature[spare] = turn->temperature[vertex];
-        turn->mass[spare] = turn->mass[vertex];
+        turn->fuel[spare] = turn->fuel[vertex];
         memcpy(turn->air[spare], turn->air[vertex], sizeof turn->air[spare]);
     }
 }

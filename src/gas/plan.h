@@ -75,7 +75,7 @@ typedef struct GasLevel {
 /// One of the two sets of everything that lasts.
 typedef struct GasTurn {
     float *field[GAS_FIELDS];
-    float *conductance, *temperature, *mass; ///< [particles]
+    float *conductance, *temperature, *fuel; ///< [particles]
     float (*air)[4];                         ///< [particles]
 } GasTurn;
 

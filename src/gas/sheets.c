@@ -1,6 +1,7 @@
 // Where gas and sheets meet.
 //
-// What left a particle since the gas's last step, dm, brings the gas the fuel
+// What a particle's fuel lost since the gas's last step, dm = (1 - nu) df, brings the gas the fuel (char glows without
+// a flame)
 //
 //   E = (1 - radiated) dm H_gas/pace
 //
@@ -110,7 +111,7 @@ static void sheets_add(const GasPlan *plan, float *field, Vec x, float amount) {
 }
 
 bool gas_fed(const GasPass *pass) {
-    const float *now = pass->state->burn.mass, *before = pass->from->mass;
+    const float *now = pass->state->burn.fuel, *before = pass->from->fuel;
     bool fed = false;
     for (uint32_t i = 0; i < pass->plan->particles && !fed; i++) fed = now[i] < before[i];
     return fed;
@@ -119,13 +120,13 @@ bool gas_fed(const GasPass *pass) {
 void gas_feed(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
-    const float *now = pass->state->burn.mass, *before = pass->from->mass;
+    const float *now = pass->state->burn.fuel, *before = pass->from->fuel;
     float volume = plan->cell * plan->cell * plan->cell;
     float scale = (1 - plan->settings.def.radiated) / (plan->settings.pace * volume);
     Vec x;
     for (uint32_t i = 0; i < plan->particles; i++) {
-        float gone = before[i] - now[i];
-        pass->to->mass[i] = now[i];
+        float gone = (before[i] - now[i]) * (1 - field_at(matter->char_yield, i));
+        pass->to->fuel[i] = now[i];
         if (gone > 0 && sheets_place(pass, i, sheets_vent(pass, i), &x))
             sheets_add(plan, pass->to->field[GAS_FUEL], x,
                        gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
@@ -183,8 +184,8 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!gas_place(plan, sheets_upstream(pass, x), place)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], place));
         if (temperature < ambient + SHEET_LEAST) continue;
-        float gone = (pass->from->mass[i] - pass->state->burn.mass[i]) * matter->mass[i];
-        float flux = gone / (matter->area[i] * pass->fire); // m''
+        float gone = (pass->from->fuel[i] - pass->state->burn.fuel[i]) * (1 - field_at(matter->char_yield, i));
+        float flux = gone * matter->mass[i] / (matter->area[i] * pass->fire); // m''
         pass->to->conductance[i] = g0 * sheets_blown(flux * SHEET_CP / g0);
         pass->to->temperature[i] = temperature;
     }

@@ -1,10 +1,10 @@
 // Eq 1, with the losses that it lacks:
 //
-//   T*  = T + eta (-dm) + dt (q + g (Ts - T*))/C''
+//   T*  = T + r h + dt (q + g (Ts - T*))/C''
 //   T** : dT/dt = -[h_c (T - Ta) + eps sigma (T^4 - Ta^4)]/(C'' max(m, floor) F)
 //
 // T      K         temperature; Ta ambient, Ts of a source
-// eta    K         heat of combustion per mass fraction; -dm = burn_rate h, what eq 4 took in the last step
+// r      K/s       what burning in the last step warms by: eta (-dm) of eq 4 (burn/lose_mass.c), and char (burn/glow.c)
 // q, g   W/m2, W/(m2 K)  flux and conductance of the sources
 // C''    J/(m2 K)  capacity per area of a layer, unburnt
 // h_c    W/(m2 K)  convection; eps emissivity; sigma Stefan and Boltzmann's constant. Each layer owns one side
@@ -17,7 +17,7 @@
 // with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
 //   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/F.
 //
-// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C eta (-dm), with the unburnt
+// Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the unburnt
 // capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
 #include <math.h>
 
@@ -41,7 +41,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     const Matter *matter = &pass->shell->matter;
     uint32_t sheet = matter->sheet[i];
     const float *temperature = pass->state->heat.temperature, *mass = pass->state->burn.mass;
-    const float *burn_rate = pass->state->burn.burn_rate;
+    const float *burn_rate = pass->state->burn.burn_rate, *release = pass->state->burn.release;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
@@ -52,7 +52,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
             plan->star[i] = T, plan->delta[i] = 0;
             continue;
         }
-        float combustion = field_at(matter->heating, i) * burn_rate[i] * h;
+        float combustion = release[i] * h;
         float T1 = T + combustion;
         float warmth = dt * matter->area[i] / matter->capacity[i]; // dt/C''
         float g = plan->source_conductance[i];

@@ -56,6 +56,11 @@ static const ParamRule param_rules[] = {
     {FIELD(mass_min), PARAM_MASS_MIN, AT_BOTH, BELOW_ONE},
     {FIELD(mass_loss), PARAM_MASS_LOSS, AT_BOTH, BELOW_ONE},
     {FIELD(ash_density), PARAM_ASH_DENSITY, AT_BOTH, POSITIVE},
+    {FIELD(char_yield), PARAM_CHAR_YIELD, AT_BOTH, BELOW_ONE},
+    {FIELD(char_density), PARAM_CHAR_DENSITY, AT_BOTH, POSITIVE},
+    {FIELD(char_heat), PARAM_CHAR_HEAT, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(char_rate), PARAM_CHAR_RATE, AT_BOTH, NOT_NEGATIVE},
+    {FIELD(char_air), PARAM_CHAR_AIR, AT_BOTH, UP_TO_ONE},
     {FIELD(shrink_front), PARAM_SHRINK, AT_CENTRES, UP_TO_TWO},
     {FIELD(shrink_back), PARAM_SHRINK, AT_VERTICES, UP_TO_TWO},
     {FIELD(fibre_angle), PARAM_FIBRE_ANGLE, AT_BOTH, FINITE},
@@ -224,14 +229,15 @@ static void keep_values(Memory *memory, SheetSource *source, int param) {
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
     static const struct { int param; const char *name; } made[] = {
         {PARAM_DIFFUSIVITY, "diffusivity"}, {PARAM_LAYER_EXCHANGE, "layer_exchange"}, {PARAM_MASS_RATE, "mass_rate"},
-        {PARAM_HEAT_SHARE, "heat_of_combustion"}};
+        {PARAM_HEAT_SHARE, "heat_of_combustion"}, {PARAM_CHAR_HEAT, "char_heat"}, {PARAM_CHAR_RATE, "char_rate"}};
     uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
     for (size_t k = 0; k < sizeof made / sizeof *made; k++)
         for (uint32_t i = 0; i < total; i++)
             if (!isfinite(matter_value(source, made[k].param, i)))
                 return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s is too large for its %s",
                                  source->sheet.name, made[k].name,
-                                 made[k].param == PARAM_HEAT_SHARE ? "specific heat" : "grammage");
+                                 made[k].param == PARAM_HEAT_SHARE || made[k].param == PARAM_CHAR_HEAT ? "specific heat"
+                                                                                                : "grammage");
     return SINGE_OK;
 }
 

@@ -5,17 +5,21 @@
 //
 // Each layer carries half of the sheet's mass. Some of what a particle has comes from several parameters:
 //
-//   diffusivity, layer exchange, mass rate = stated value * g_0/g     g grammage, g_0 that which they are stated for
+//   diffusivity, layer exchange,
+//   mass rate, char rate = stated value * g_0/g                       g grammage, g_0 that which they are stated for
 //   heating   eta = s H/c_p [K]                                       H heat of combustion [J/kg], s its share that
 //   gas_heat  (1 - s) H [J/kg]                                        stays in the sheet
+//   char_heating  H_c/c_p [K]                                         H_c heat of glowing char [J/kg]
+//   char_yield    max(nu, m_min)                                      nu <= m_min: no char
 //
-// The first three stand for what the gas beside a sheet does: heat that flows along it (W/K) and oxygen that reaches
+// The first four stand for what the gas beside a sheet does: heat that flows along it (W/K) and oxygen that reaches
 // it (kg/(m2 s K)) are the same beside a thick sheet and a thin one, but the thin one has less to warm and to burn.
 // Losses and sources, being fluxes over the capacity per area, have this by themselves. So with g every rate changes in
 // the same proportion, t' = t g_0/g gives the old equations, and the front's speed is in proportion to 1/g, its
 // thickness and its temperature the same.
 #include "shell/matter.h"
 
+#include <math.h>
 #include <string.h>
 
 /// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are
@@ -35,6 +39,11 @@ static Field *matter_field(Matter *matter, int param) {
         [PARAM_MASS_MIN] = &matter->mass_min,
         [PARAM_MASS_LOSS] = &matter->mass_loss,
         [PARAM_ASH_DENSITY] = &matter->ash_density,
+        [PARAM_CHAR_YIELD] = &matter->char_yield,
+        [PARAM_CHAR_DENSITY] = &matter->char_density,
+        [PARAM_CHAR_HEAT] = &matter->char_heating,
+        [PARAM_CHAR_RATE] = &matter->char_rate,
+        [PARAM_CHAR_AIR] = &matter->char_air,
         [PARAM_SHRINK] = &matter->shrink,
         [PARAM_FIBRE_ANGLE] = &matter->fibre_angle,
         [PARAM_FIBRE_SHRINK] = &matter->fibre_shrink,
@@ -64,10 +73,13 @@ static bool matter_varies(const SheetSource *source, int param) {
     case PARAM_DIFFUSIVITY:
     case PARAM_LAYER_EXCHANGE:
     case PARAM_MASS_RATE:
+    case PARAM_CHAR_RATE:
         return values[param] || (values[PARAM_GRAMMAGE] && source->sheet.material.reference_grammage > 0);
     case PARAM_HEAT_SHARE:
         return values[param] || values[PARAM_HEAT_OF_COMBUSTION] || values[PARAM_SPECIFIC_HEAT];
     case PARAM_HEAT_OF_COMBUSTION: return values[param] || values[PARAM_HEAT_SHARE];
+    case PARAM_CHAR_HEAT: return values[param] || values[PARAM_SPECIFIC_HEAT];
+    case PARAM_CHAR_YIELD: return values[param] || values[PARAM_MASS_MIN];
     default: return values[param] != NULL;
     }
 }
@@ -78,9 +90,12 @@ float matter_value(const SheetSource *source, int param, uint32_t i) {
     case PARAM_DIFFUSIVITY:
     case PARAM_LAYER_EXCHANGE:
     case PARAM_MASS_RATE:
+    case PARAM_CHAR_RATE:
         return reference > 0 ? value * (reference / sheet_param(source, PARAM_GRAMMAGE, i)) : value;
     case PARAM_HEAT_SHARE:
         return value * sheet_param(source, PARAM_HEAT_OF_COMBUSTION, i) / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
+    case PARAM_CHAR_HEAT: return value / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
+    case PARAM_CHAR_YIELD: return fmaxf(value, sheet_param(source, PARAM_MASS_MIN, i));
     case PARAM_HEAT_OF_COMBUSTION: return value * (1 - sheet_param(source, PARAM_HEAT_SHARE, i));
     default: return value;
     }

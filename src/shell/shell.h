@@ -61,13 +61,18 @@ typedef struct Matter {
     Field mass_min;
     Field mass_loss;
     Field ash_density;
+    Field char_yield;          ///< m_min or more
+    Field char_density;
+    Field char_heating;        ///< K per mass fraction of char, at unit mass
+    Field char_rate;           ///< 1/s; in proportion to 1/grammage as mass_rate is
+    Field char_air;
     Field shrink;              ///< of its own layer
     Field fibre_angle;         ///< rad
     Field fibre_shrink;        ///< across over along
     Field weight[SINGE_COLOUR_COUNT];
     Field compliance[SINGE_COLOUR_COUNT]; ///< m/N
     Field char_weight;
-    Field strength, char_strength; ///< N/m, line force at which it tears, fresh and at m_min
+    Field strength, char_strength; ///< N/m, line force at which it tears, fresh and as char
     Field drag;
     Field damping;             ///< 1/s
     Field crease_radius;       ///< m
@@ -120,6 +125,7 @@ typedef struct Shell {
 typedef enum ShellParam {
     PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEAT_OF_COMBUSTION,
     PARAM_HEAT_SHARE, PARAM_MASS_RATE, PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY,
+    PARAM_CHAR_YIELD, PARAM_CHAR_DENSITY, PARAM_CHAR_HEAT, PARAM_CHAR_RATE, PARAM_CHAR_AIR,
     PARAM_SHRINK, PARAM_FIBRE_ANGLE, PARAM_FIBRE_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE,
     PARAM_CONVECTION, PARAM_EMISSIVITY,
     PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
@@ -184,7 +190,9 @@ typedef struct HeatState {
 
 typedef struct BurnState {
     float *mass;          ///< [particles] fraction of the initial
+    float *fuel;          ///< [particles] what of it can still pyrolyse, 1 to 0; with the mass it says char and ash
     float *burn_rate;     ///< [particles] 1/s of the step just done
+    float *release;       ///< [particles] K/s, by which the step just done warms it
     float *time_ignited;  ///< [particles] s, -1 before
     float *time_burnt;    ///< [particles] s, -1 before; when m fell below m_loss
     float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
@@ -219,7 +227,7 @@ typedef struct GasState {
     const float *conductance; ///< [particles] W/(m2 K), towards `temperature` where that is the higher
     const float *temperature; ///< [particles] K
     const float (*air)[4];    ///< [particles] m/s that the air there has on top of the wind; fourth is unused
-    const float *mass;        ///< [particles] fraction that was left at the gas's last step
+    const float *fuel;        ///< [particles] what was left of it at the gas's last step
     uint64_t steps;           ///< of the gas
     int turn;                 ///< which of the two holds
 } GasState;
@@ -303,6 +311,15 @@ static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i)
     if (spring == SHELL_NONE) return SHELL_NONE;
     const uint32_t *ends = shell->springs[SINGE_GREEN].ends[spring];
     return (ends[0] == centre ? ends[1] : ends[0]) - shell->vertex_count;
+}
+
+/// Char over what pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 where there is no char: `yield`
+/// is not above mass_min (burn/glow.c).
+static inline float shell_char(float mass, float fuel, float mass_min, float yield) {
+    float span = yield - mass_min, most = 1 - fuel;
+    if (!(span > 0)) return 0;
+    float share = (mass - fuel - mass_min * most) / span;
+    return share < 0 ? 0 : share > most ? most : share;
 }
 
 /// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.

@@ -34,7 +34,9 @@ static size_t lay_out(const Shell *shell, State *state, char *base, size_t *basi
     TAKE(state->heat.temperature, particles);
     TAKE(state->heat.temperature_peak, particles);
     TAKE(state->burn.mass, particles);
+    TAKE(state->burn.fuel, particles);
     TAKE(state->burn.burn_rate, particles);
+    TAKE(state->burn.release, particles);
     TAKE(state->burn.time_ignited, particles);
     TAKE(state->burn.time_burnt, particles);
     TAKE(state->ablate.piece, particles);
@@ -90,7 +92,7 @@ static void start_particles(const Shell *shell, State *state) {
             state->dynamics.velocity[p][k] = alive ? sheet->velocity[k] : 0;
         }
         state->heat.temperature[p] = state->heat.temperature_peak[p] = field_at(shell->matter.temperature, p);
-        state->burn.mass[p] = 1;
+        state->burn.mass[p] = state->burn.fuel[p] = 1;
         state->burn.time_ignited[p] = state->burn.time_burnt[p] = -1;
         state->ablate.particle_flags[p] = alive ? SINGE_ALIVE : 0;
         state->ablate.piece[p] = alive ? 0 : -1;

@@ -32,6 +32,11 @@ static SingeMaterialDef standard_material(void) {
         .mass_min = singe_param(0.15f),
         .mass_loss = singe_param(0.25f),
         .ash_density = singe_param(0.3f),
+        .char_yield = singe_param(0),
+        .char_density = singe_param(0.45f),
+        .char_heat = singe_param(28e6f),
+        .char_rate = singe_param(0.5f),
+        .char_air = singe_param(0.1f),
         // the front shrinks more in patches of a centimetre: fine wrinkles, and curl towards the front
         .shrink_front = {.value = 0.1f, .to = 0.9f, .field = SINGE_FIELD_NOISE, .noise = {0.008f, 2, 2}},
         .shrink_back = singe_param(0.3f),

@@ -38,6 +38,8 @@ static bool burn_fits(const SingeSim *sim) {
         float temperature = state->heat.temperature[i], peak = state->heat.temperature_peak[i];
         if (!(temperature >= 0 && isfinite(temperature) && peak >= 0 && isfinite(peak))) return false;
         if (!in_range((double)state->burn.mass[i], 0, 1)) return false;
+        if (!in_range((double)state->burn.fuel[i], 0, 1)) return false;
+        if (!(state->burn.release[i] >= 0 && isfinite(state->burn.release[i]))) return false;
         if (!(state->burn.burn_rate[i] >= 0 && isfinite(state->burn.burn_rate[i]))) return false;
         if (!moment_fits(state->burn.time_ignited[i], state->time)) return false;
         if (!moment_fits(state->burn.time_burnt[i], state->time)) return false;

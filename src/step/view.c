@@ -17,6 +17,7 @@ SingeView singe_sim_view(const SingeSim *sim) {
         .uv = (const float(*)[2])shell->uv,
         .area = shell->matter.area,
         .mass = state->burn.mass,
+        .fuel = state->burn.fuel,
         .temperature = state->heat.temperature,
         .temperature_peak = state->heat.temperature_peak,
         .burn_rate = state->burn.burn_rate,

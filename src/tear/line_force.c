@@ -24,15 +24,19 @@
 
 static const float LINE_FILTER = 5e-3f; ///< tau, s
 static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
+static const float LINE_ASH = 0.05f; ///< strength of ash over that of char
 static const float EDGE_STRETCH = 1.4f;
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     const Matter *matter = &shell->matter;
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
-    float progress = shell_burn_progress(state->burn.mass[vertex], field_at(matter->mass_min, vertex));
-    if (progress <= 0 || isinf(fresh)) return fresh * weakened;
-    return fresh * fminf(powf(field_at(matter->char_strength, vertex) / fresh, progress), weakened);
+    float least = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
+    float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, least, yield);
+    if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
+    float burnt = powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
+    if (yield > least) burnt *= 1 + (LINE_ASH - 1) * ash;
+    return fresh * fminf(burnt, weakened);
 }
 
 typedef struct Measure {

@@ -15,7 +15,9 @@ static void copy_particle(State *state, uint32_t to, uint32_t from) {
     COPY(state->heat.temperature, to, from);
     COPY(state->heat.temperature_peak, to, from);
     COPY(state->burn.mass, to, from);
+    COPY(state->burn.fuel, to, from);
     COPY(state->burn.burn_rate, to, from);
+    COPY(state->burn.release, to, from);
     COPY(state->burn.time_ignited, to, from);
     COPY(state->burn.time_burnt, to, from);
     COPY(state->ablate.piece, to, from);

@@ -26,7 +26,7 @@ typedef struct BurningSheet {
 /// m_min 0.15, m_loss 0.25, p = 0, mu = 1e-3 1/(K s), T_ign 500 K, constant density, the paper's shrinkage.
 static inline SingeMaterialDef plain_material(void) {
     SingeMaterialDef material = singe_default_material();
-    material.mass_min = singe_param(0.15f);
+    material.mass_min = singe_param(0.15f), material.char_yield = singe_param(0);
     material.mass_loss = singe_param(0.25f);
     material.ash_exponent = singe_param(0);
     material.mass_rate = singe_param(1e-3f);

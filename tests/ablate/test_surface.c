@@ -264,7 +264,7 @@ static void survives_lack_of_memory(void **unused) {
             test_allocator_check(&allocator);
         }
     }
-    assert_int_equal(failures, 2 * 15);
+    assert_int_equal(failures, 2 * 17);
     singe_surface_free(NULL);
     drawing_free(small), drawing_free(large);
 }

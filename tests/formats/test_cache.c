@@ -11,7 +11,7 @@ enum { VERTICES = 5, TRIANGLES = 3 };
 // A surface of odd values: subnormals, negative zero, the largest float.
 typedef struct Sample {
     float position[VERTICES][3], normal[VERTICES][3], uv[VERTICES][2], velocity[VERTICES][3], rest[VERTICES][3];
-    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], burn[VERTICES],
+    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], coal[VERTICES], ash[VERTICES], burn[VERTICES],
         time_ignited[VERTICES];
     int32_t piece[VERTICES], source_vertex[VERTICES], sheet[VERTICES];
     uint32_t triangles[TRIANGLES][3];
@@ -30,9 +30,9 @@ static void fill(void *values, size_t count, uint32_t seed) {
 static void make_sample(Sample *s) {
     memset(s, 0, sizeof *s);
     float *floats[] = {s->position[0], s->normal[0], s->uv[0],     s->velocity[0], s->rest[0],     s->temperature,
-                       s->peak,        s->mass,      s->burn_rate, s->burn,        s->time_ignited};
-    size_t widths[] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1};
-    for (uint32_t i = 0; i < 11; i++) fill(floats[i], VERTICES * widths[i], i + 1);
+                       s->peak,        s->mass,      s->burn_rate, s->coal, s->ash, s->burn, s->time_ignited};
+    size_t widths[] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1, 1, 1};
+    for (uint32_t i = 0; i < 13; i++) fill(floats[i], VERTICES * widths[i], i + 1);
     for (int i = 0; i < VERTICES; i++)
         s->piece[i] = i * 1000003, s->source_vertex[i] = i % 2 ? -1 : INT32_MAX - i, s->sheet[i] = i;
     uint32_t triangles[TRIANGLES][3] = {{0, 1, 2}, {2, 3, 4}, {4, 0, 0}};
@@ -42,6 +42,7 @@ static void make_sample(Sample *s) {
                                 .uv = s->uv, .velocity = s->velocity, .rest_position = s->rest,
                                 .temperature = s->temperature, .temperature_peak = s->peak,
                                 .mass = s->mass, .burn_rate = s->burn_rate, .burn = s->burn,
+                                .char_fraction = s->coal, .ash_fraction = s->ash,
                                 .time_ignited = s->time_ignited,
                                 .piece = s->piece, .source_vertex = s->source_vertex, .sheet = s->sheet,
                                 .triangles = s->triangles};
@@ -79,6 +80,8 @@ static void round_trip_is_bitwise(void **state) {
     assert_memory_equal(read.temperature_peak, s->temperature_peak, sizeof sample.peak);
     assert_memory_equal(read.mass, s->mass, sizeof sample.mass);
     assert_memory_equal(read.burn_rate, s->burn_rate, sizeof sample.burn_rate);
+    assert_memory_equal(read.char_fraction, s->char_fraction, sizeof sample.coal);
+    assert_memory_equal(read.ash_fraction, s->ash_fraction, sizeof sample.ash);
     assert_memory_equal(read.burn, s->burn, sizeof sample.burn);
     assert_memory_equal(read.time_ignited, s->time_ignited, sizeof sample.time_ignited);
     assert_memory_equal(read.piece, s->piece, sizeof sample.piece);
@@ -106,18 +109,19 @@ static void header_is_as_documented(void **state) {
         "property float s\nproperty float t\nproperty float vx\nproperty float vy\nproperty float vz\n"
         "property float rest_x\nproperty float rest_y\nproperty float rest_z\nproperty float temperature\n"
         "property float temperature_peak\nproperty float mass\n"
-        "property float burn_rate\nproperty float char\nproperty float time_ignited\nproperty int piece_id\n"
+        "property float burn_rate\nproperty float char_fraction\nproperty float ash_fraction\nproperty float char\n"
+        "property float time_ignited\nproperty int piece_id\n"
         "property int vertex_id\nproperty int sheet\nelement face 3\nproperty list uchar int vertex_indices\n"
         "end_header\n";
     assert_memory_equal(bytes.data, header, sizeof header - 1);
-    assert_int_equal(bytes.size, sizeof header - 1 + VERTICES * 23 * 4 + TRIANGLES * 13);
+    assert_int_equal(bytes.size, sizeof header - 1 + VERTICES * 25 * 4 + TRIANGLES * 13);
     // the first vertex's x and the first face, by hand
     uint32_t bits;
     memcpy(&bits, &sample.position[0][0], 4);
     const uint8_t *p = bytes.data + sizeof header - 1;
     assert_int_equal(p[0] | p[1] << 8 | p[2] << 16 | (uint32_t)p[3] << 24, bits);
     static const uint8_t face[] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
-    assert_memory_equal(p + VERTICES * 23 * 4, face, sizeof face);
+    assert_memory_equal(p + VERTICES * 25 * 4, face, sizeof face);
     bytes_free(&bytes);
 }
 
@@ -164,7 +168,7 @@ static void damage_is_noticed(void **state) {
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_MESH);
     assert_message(&error, "out of range");
     bytes.data[faces + 1] = bytes.data[faces + 4] = 0;
-    uint8_t *x = bytes.data + faces - VERTICES * 23 * 4;
+    uint8_t *x = bytes.data + faces - VERTICES * 25 * 4;
     x[2] = 0xc0, x[3] = 0x7f;
     assert_int_equal(read_copy(bytes.data, bytes.size, &error), SINGE_ERROR_FORMAT);
     assert_message(&error, "x of vertex 0");

@@ -46,9 +46,10 @@ static void air_burn(Air *air, double heat, bool corners) {
     double mass = 0;
     for (uint32_t i = 0; i < shell->particle_count; i++)
         if (shell_is_corner(shell, i) == corners)
-            mass += (double)(shell->matter.mass[i] * field_at(shell->matter.gas_heat, i));
+            mass += (double)(shell->matter.mass[i] * field_at(shell->matter.gas_heat, i)) *
+                    (1 - (double)field_at(shell->matter.char_yield, i));
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        if (shell_is_corner(shell, i) == corners) air->rig.state.burn.mass[i] -= (float)(heat / mass);
+        if (shell_is_corner(shell, i) == corners) air->rig.state.burn.fuel[i] -= (float)(heat / mass);
 }
 
 static const GasTurn *air_turn(const Air *air) { return &air->plan->turn[air->rig.state.gas.turn]; }
@@ -240,7 +241,7 @@ static void gas_heats_what_it_flows_by(void **unused) {
         const Shell *shell = &air.rig.shell;
         for (int step = 0; step < 10; step++) {
             for (int column = 0; column < 8; column++)
-                air.rig.state.burn.mass[rig_centre(&air.rig, column, 3)] -= 0.02f;
+                air.rig.state.burn.fuel[rig_centre(&air.rig, column, 3)] -= 0.02f;
             air_step(&air);
         }
         left[k] = air_heat(&air);

@@ -88,7 +88,7 @@ static void combustion_is_eta_times_burnt_mass(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 600);
-    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 2;
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 2, rig.state.burn.release[i] = 2 * 2400;
     rig_step(&rig);
     CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
     CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
@@ -125,10 +125,11 @@ static void the_peak_is_the_hottest_so_far(void **unused) {
     assert_non_null(hottest);
     for (uint32_t i = 0; i < n; i++) {
         rig.state.heat.temperature_peak[i] = hottest[i] = i % 2 ? 1500 : 600;
-        rig.state.burn.burn_rate[i] = 8;
+        rig.state.burn.burn_rate[i] = 8, rig.state.burn.release[i] = 8 * 2400;
     }
     for (int step = 0; step < 30; step++) {
-        for (uint32_t i = 0; step == 10 && i < n; i++) rig.state.burn.burn_rate[i] = 0;
+        for (uint32_t i = 0; step == 10 && i < n; i++)
+            rig.state.burn.burn_rate[i] = rig.state.burn.release[i] = 0;
         rig_step(&rig);
         for (uint32_t i = 0; i < n; i++) {
             float T = rig.state.heat.temperature[i];

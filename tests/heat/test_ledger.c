@@ -30,6 +30,7 @@ static void burn(Rig *rig, bool remove) {
         double d = hypot((double)x[0] - 0.03, (double)x[1] - 0.03);
         bool burns = fabs(d - radius) < 0.004 && rig->state.burn.mass[i] > 0.2f;
         rig->state.burn.burn_rate[i] = burns ? 0.8f : 0;
+        rig->state.burn.release[i] = burns ? 0.8f * field_at(rig->shell.matter.heating, i) : 0;
         if (burns) rig->state.burn.mass[i] -= 0.8f * rig->h;
         if (remove && d < radius - 0.006 && i % 3 == 0) rig_remove(rig, i);
     }

@@ -50,6 +50,11 @@ static const struct {
     {AT(char_strength), PARAM_CHAR_STRENGTH, BOTH, ABOVE_0},
     {AT(pre_exponential), PARAM_PRE_EXPONENTIAL, BOTH, FROM_0},
     {AT(activation_energy), PARAM_ACTIVATION_ENERGY, BOTH, FROM_0},
+    {AT(char_yield), PARAM_CHAR_YIELD, BOTH, BELOW_1},
+    {AT(char_density), PARAM_CHAR_DENSITY, BOTH, ABOVE_0},
+    {AT(char_heat), PARAM_CHAR_HEAT, BOTH, FROM_0},
+    {AT(char_rate), PARAM_CHAR_RATE, BOTH, FROM_0},
+    {AT(char_air), PARAM_CHAR_AIR, BOTH, TO_1},
     {AT(curvature_max), PARAM_CURVATURE_MAX, CORNERS, FROM_0},
 };
 enum { VARYING = sizeof varying / sizeof varying[0] };
