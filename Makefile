@@ -67,7 +67,7 @@ check-examples: build
 
 # real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table
 gate: build
-	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 210 --failed 1
+	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 210 --failed 0
 
 # every allocation, write, open, ... of whole commands fails once: hours; Ctrl-C ends it with its table
 torture:

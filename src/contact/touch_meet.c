@@ -102,6 +102,20 @@ static void sweep_pair(const Guard *guard, TouchPair *pair) {
     sweep_all_edges(guard, pair, &p, &q, of_b);
 }
 
+/// Whether a cell has not passed through itself: it is open and in shape as the step ends, and has moved within itself by
+/// less than an eighth of its width. One that is open may have passed through itself on the way: then it is on the wrong
+/// side of a cell that shares two sides with it, though it met no feature of that one.
+static bool own_is_free(const Guard *guard, uint32_t cell) {
+    const Quad *motion = guard->plan->motion[cell];
+    const float(*x)[4] = (const float(*)[4])guard->dynamics->position;
+    const uint32_t *corner = guard->shell->cells[cell];
+    if (!(motion[TOUCH_NORMAL][3] < TOUCH_CONE)) return false;
+    Quad one = quad_flat(quad_load(x[corner[2]]) - quad_load(x[corner[0]]));
+    Quad two = quad_flat(quad_load(x[corner[3]]) - quad_load(x[corner[1]])), area = quad_cross(one, two);
+    float way = 8 * motion[TOUCH_WAY][3];
+    return way * way * (quad_dot(one, one) + quad_dot(two, two)) < quad_dot(area, area);
+}
+
 /// Of four pairs, those that are free by how far apart they are, or, as they hang together, by their normals, of which
 /// touch_near.c has the proof: bits.
 static unsigned four_are_free(const Guard *guard, const uint32_t number[4]) {
@@ -117,7 +131,7 @@ static unsigned four_are_free(const Guard *guard, const uint32_t number[4]) {
                        touch_four_within(&four, four.b, four.bridge, TOUCH_CONE_CORNER);
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !guard_is_alive(guard, four.bridge[i])) continue;
-        bool part = four.a[i] == four.b[i]        ? touch_is_open(plan->motion[four.a[i]][TOUCH_NORMAL])
+        bool part = four.a[i] == four.b[i]        ? own_is_free(guard, four.a[i])
                     : four.bridge[i] == four.a[i] ? sides[i] != 0
                                                   : corners[i] != 0;
         free |= (unsigned)part << i;

@@ -76,8 +76,6 @@ Quad touch_normals(const Quad node[5]) {
     return quad_with(mean, is_in_shape(corner, along) ? spread : 2 + spread);
 }
 
-bool touch_is_open(Quad normals) { return normals[3] < TOUCH_CONE || (normals[3] >= 2 && normals[3] < 2 + TOUCH_CONE); }
-
 /// Whether the corners that are not shared lie beyond the plane.
 static bool is_beyond(const Quad corner[4], unsigned shared, Quad origin, Quad normal, float margin) {
     float least = margin * sqrtf(quad_dot(normal, normal));

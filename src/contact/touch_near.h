@@ -41,9 +41,6 @@ static inline bool touch_is_within(Quad a, Quad b, float cone) {
     return left > 0 && quad_dot(off, off) < left * left;
 }
 
-/// Whether a cell's triangles do not cross each other: all face to one side, around the middle.
-bool touch_is_open(Quad normals);
-
 /// Whether a plane through the corners that two cells share, bits of `shared`, has the other corners of a on one side,
 /// and those of b on the other, at least `margin` away from it; *normal points to a's. Then the cells share no more.
 /// The fourth numbers must be 0.
