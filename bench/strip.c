@@ -5,7 +5,6 @@
 
 static const double strip_lit = 0.02; // m
 static const double gate_first = 0.4, gate_last = 0.9; // of the length, between which the front is looked at
-enum { STRIP_PATIENCE = 20000 }; // steps without a new place reached: the fire is out
 
 typedef struct Strip {
     SingeSim *sim;
@@ -19,7 +18,7 @@ typedef struct Strip {
 StripSetup strip_setup(const SingeMaterialDef *material) {
     return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step,
                         .length = 0.12f, .width = 3e-3f, .gravity = {0, 0, -9.81f}, .pace = 1, .threads = 1,
-                        .steps_most = 200000};
+                        .patience = 20000, .work_most = 1000000};
 }
 
 static bool strip_mesh(Strip *strip, const StripSetup *setup) {
@@ -118,17 +117,24 @@ static void strip_read(const Strip *strip, double pace, StripResult *result) {
     result->residue = mass / area;
 }
 
+static uint64_t strip_work(const Strip *strip) {
+    const SingeTimers timers = singe_sim_timers(strip->sim);
+    return timers.steps + timers.heat_iterations;
+}
+
 static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult *result) {
     double reached = 0;
-    for (int step = 0, since = 0; reached <= strip->last && step - since < STRIP_PATIENCE && step < setup->steps_most;
-         step++) {
+    for (int since = 0; reached <= strip->last && since < setup->patience && strip_work(strip) < setup->work_most;) {
         SingeResult failed = singe_sim_step(strip->sim);
         if (failed) return failed;
         SingeView view = singe_sim_view(strip->sim);
         double front = strip_front(strip, &view);
-        if (front > reached) reached = front, since = step;
+        since++;
+        if (front > reached) reached = front, since = 0;
     }
     strip_read(strip, (double)setup->pace, result);
+    result->work = strip_work(strip);
+    result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_most ? STRIP_OUT : STRIP_CUT;
     return SINGE_OK;
 }
 

@@ -110,15 +110,18 @@ static void report_shell(const SingeCensus *c) {
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
 }
 
-enum { CHECK_MATERIALS = 4, CHECK_STRIP_STEPS = 40000 };
+/// Office paper takes 23,600 pieces of work (StripSetup.work_most), a second in all; a fire that creeps by less than a
+/// cell in as many steps has gone out.
+enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
 
-/// What a strip of the material does in steps of that length, a second's work at most; a speed of 0 where it does not
-/// burn. Fails only without memory.
+/// What a strip of the material does in steps of that length, a few seconds' work at most; a speed of 0 where it does
+/// not burn, and no end where that cannot be told. Fails only without memory.
 static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
-    setup.time_step = step, setup.steps_most = CHECK_STRIP_STEPS;
+    setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE, setup.work_most = CHECK_STRIP_WORK;
+    *front = (StripResult){.end = STRIP_UNKNOWN};
     SingeResult result = step < 10 ? strip_burn(&setup, front, error) : SINGE_ERROR_ARGUMENT;
-    if (result || !(front->speed > 0)) *front = (StripResult){0};
+    if (result || !(front->speed > 0)) front->speed = 0;
     return result == SINGE_ERROR_MEMORY ? result : SINGE_OK;
 }
 
@@ -130,7 +133,12 @@ static SingeResult report_front(const Scene *scene, const BenchMaterial *materia
     const float pace = scene->sim.pace, weight = material->def.grammage.value / 0.080f;
     const float fine = singe_default_sim().time_step * fmaxf(weight, 0.1f);
     SingeResult result = front_of(material, fine, &front, error);
-    if (result || !(front.speed > 0)) return result;
+    if (result) return result;
+    if (!(front.speed > 0)) {
+        if (front.end == STRIP_OUT) printf(": a level strip of it goes out");
+        if (front.end == STRIP_CUT) printf(": how fast it burns would take too long to find out");
+        return SINGE_OK;
+    }
     printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);
     if (pace != 1) printf(", at this pace %.3g mm/s", 1e3 * front.speed * (double)pace);
     float step = scene->sim.time_step * pace * (float)front.thickening / thickening;

@@ -31,11 +31,19 @@ class Materials(Case):
         for material, line in (("newsprint", "newsprint, 45 g/m2: a level front of 9."),
                                ("{grammage: 160 g/m2}", "its own, 160 g/m2: a level front of 2."),
                                ("{base: tissue, name: kerchief}", "kerchief, 20 g/m2: a level front of 2"),
-                               ("{heat_share: 0}", "its own, 80 g/m2\n")):
+                               ("{heat_share: 0}", "its own, 80 g/m2: a level strip of it goes out\n")):
             with self.subTest(material):
                 out, _ = self.singe("check", self.write_scene_of(material))
                 self.assertIn("material      " + line, out)
                 self.assertEqual("at this pace" in out, "front" in line)
+
+    def test_check_looks_for_a_front_for_so_long(self):
+        """Where heat hardly spreads, the front creeps: for 60,000 steps and iterations at most."""
+        for diffusivity, line in (("1e-6", "a level front of "), ("1e-8", "how fast it burns would take too long")):
+            with self.subTest(diffusivity):
+                material = "{thickening: 10, diffusivity: %s}" % diffusivity
+                out, _ = self.singe("check", self.write_scene_of(material))
+                self.assertIn("its own, 80 g/m2: " + line, out)
 
     def test_check_tells_of_long_steps(self):
         scene = self.write_scene_of("{base: tissue, thickening: 1}")

@@ -125,6 +125,28 @@ static void bad_cells_do_not_hold_a_front_up(void **unused) {
     }
 }
 
+/// A strip ends where its front is through, where its fire is out, or where it has cost too much, as conduction that
+/// takes many iterations does.
+static void a_strip_takes_so_much_work(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = singe_default_material();
+    StripSetup setup = strip_setup(&material);
+    SingeError error = {0};
+    StripResult result = {0};
+    setup.patience = 500, setup.work_most = 60000;
+    assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
+    assert_true(result.end == STRIP_THROUGH && result.speed > 0 && result.work > 5000 && result.work < 60000);
+    setup.work_most = 5000; // too little for paper
+    assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
+    assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 5000 + 100); // a step more, at most
+    setup.work_most = 20000, setup.material.heat_share = singe_param(0);
+    assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
+    assert_true(result.end == STRIP_OUT && result.speed == 0 && result.work < 10000);
+    setup.material.diffusivity = singe_param(3.7e5f); // a hundred iterations a step
+    assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
+    assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 20000 + 1000);
+}
+
 static void thickening_by_hand_and_its_limits(void **unused) {
     (void)unused;
     FrontMatter front = {.diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513,
@@ -171,6 +193,7 @@ int main(void) {
         cmocka_unit_test(calibrated_paper_burns_at_its_real_pace),
         cmocka_unit_test(speed_is_in_proportion_to_one_over_grammage),
         cmocka_unit_test(bad_cells_do_not_hold_a_front_up),
+        cmocka_unit_test(a_strip_takes_so_much_work),
         cmocka_unit_test(thickening_by_hand_and_its_limits),
         cmocka_unit_test(thickening_goes_by_the_means),
     };
