@@ -3,6 +3,8 @@
 // detection (2005), 5.1.5 and 5.1.9, as in touch_near.c, but chosen by masks.
 #include "contact/touch_feature.h"
 
+#include <math.h>
+
 static inline Quad clamp01(Quad a) { return quad_min(quad_max(a, quad_all(0)), quad_all(1)); }
 
 /// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
@@ -102,6 +104,18 @@ static float apart_along(const TouchCell *a, const TouchCell *b) {
 float touch_cells_apart(const TouchCell *a, const TouchCell *b) {
     float one = apart_along(a, b), two = apart_along(b, a);
     return one > two ? one : two;
+}
+
+// Rounding by eps moves a triangle's nearest point along its longest side l by about l eps (l^2 / 2 area)^2: four
+// products of lengths over the square of the area. Edges side by side are taken for parallel below 6e-4 rad, and are
+// off by half of that.
+float touch_doubt(const TouchCell *cell) {
+    const float eps = 6e-8f, parallel = 3e-4f;
+    FourVectors arm = four_minus(cell->corner, four_all(cell->node[4]));
+    FourVectors normal = four_cross(arm, four_turned(arm));
+    float square = 4 * quad_most(four_dot(arm, arm)), area = quad_least(four_dot(normal, normal));
+    float slim = area > 0 ? square * square / area : INFINITY;
+    return sqrtf(square) * (eps * slim + parallel);
 }
 
 // ---- all features

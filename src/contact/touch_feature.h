@@ -33,9 +33,13 @@ float touch_boxes_apart(const TouchCell *a, const TouchCell *b);
 /// The same by the slabs that they lie in; negative where slabs do not tell.
 float touch_cells_apart(const TouchCell *a, const TouchCell *b);
 
+/// m by which touch_features may tell more than there is between a feature of the cell and another: its numbers are
+/// float. Next to nothing, but for slivers.
+float touch_doubt(const TouchCell *cell);
+
 /// How far features are looked for.
 typedef struct TouchFar {
-    float measured; ///< m, to tell the least distance
+    float measured; ///< m, to tell the least distance; see touch_doubt
     float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other
     float beside;   ///< m, at most as far: of a node beside a triangle
     bool edges;     ///< they count

@@ -102,9 +102,9 @@ static void sweep_pair(const Guard *guard, TouchPair *pair) {
     sweep_all_edges(guard, pair, &p, &q, of_b);
 }
 
-/// Whether a cell has not passed through itself: it is open and in shape as the step ends, and has moved within itself by
-/// less than an eighth of its width. One that is open may have passed through itself on the way: then it is on the wrong
-/// side of a cell that shares two sides with it, though it met no feature of that one.
+/// Whether a cell has not passed through itself: it is open and in shape as the step ends, and has moved within itself
+/// by less than an eighth of its width. One that is open may have passed through itself on the way: then it is on the
+/// wrong side of a cell that shares two sides with it, though it met no feature of that one.
 static bool own_is_free(const Guard *guard, uint32_t cell) {
     const Quad *motion = guard->plan->motion[cell];
     const float(*x)[4] = (const float(*)[4])guard->dynamics->position;

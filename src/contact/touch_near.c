@@ -1,28 +1,34 @@
 #include "contact/touch_near.h"
 #include "contact/touch_plan.h"
 
+// In float, the nearest point of a triangle 200 times as long as it is high is off by a two-thousandth of its length:
+// then what passes through it seems to pass by. So weights are computed in double.
+
+static double dot(Quad a, Quad b) {
+    return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
+}
+
 static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
+
+static void set_weights(float w[3], double b, double c) {
+    w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c;
+}
 
 /// Weights of the triangle's point nearest to p.
 static void triangle_weights(Quad p, Quad a, Quad b, Quad c, float w[3]) {
-    Quad ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    float d1 = quad_dot(ab, ap), d2 = quad_dot(ac, ap), d3 = quad_dot(ab, bp), d4 = quad_dot(ac, bp);
-    float d5 = quad_dot(ab, cp), d6 = quad_dot(ac, cp);
-    w[0] = w[1] = w[2] = 0;
-    if (d1 <= 0 && d2 <= 0) { w[0] = 1; return; }
-    if (d3 >= 0 && d4 <= d3) { w[1] = 1; return; }
-    if (d6 >= 0 && d5 <= d6) { w[2] = 1; return; }
-    float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        w[1] = d1 / (d1 - d3), w[0] = 1 - w[1];
-    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        w[2] = d2 / (d2 - d6), w[0] = 1 - w[2];
-    } else if (va <= 0 && d4 >= d3 && d5 >= d6) {
-        w[2] = (d4 - d3) / ((d4 - d3) + (d5 - d6)), w[1] = 1 - w[2];
-    } else {
-        float sum = va + vb + vc;
-        w[1] = vb / sum, w[2] = vc / sum, w[0] = 1 - w[1] - w[2];
-    }
+    Quad ab = b - a, ac = c - a, ap = p - a;
+    double d1 = dot(ab, ap), d2 = dot(ac, ap), both = dot(ab, ac);
+    // not from p - b and p - c, whose rounding would fit ill
+    double d3 = d1 - dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - dot(ac, ac);
+    double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (d1 <= 0 && d2 <= 0) set_weights(w, 0, 0);
+    else if (d3 >= 0 && d4 <= d3) set_weights(w, 1, 0);
+    else if (d6 >= 0 && d5 <= d6) set_weights(w, 0, 1);
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0) set_weights(w, d1 / (d1 - d3), 0);
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0) set_weights(w, 0, d2 / (d2 - d6));
+    else if (va <= 0 && d4 >= d3 && d5 >= d6) set_weights(w, (d5 - d6) / ((d4 - d3) + (d5 - d6)),
+                                                          (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    else set_weights(w, vb / (va + vb + vc), vc / (va + vb + vc));
 }
 
 Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
@@ -106,18 +112,19 @@ bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2],
     return is_beyond(a, shared[0], first, away, margin) && is_beyond(b, shared[1], first, -away, margin);
 }
 
-static float clamp01(float a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
+static double clamp01(double a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
 
 Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t) {
     Quad u = b - a, v = d - c, r = a - c;
-    float uu = quad_dot(u, u), vv = quad_dot(v, v), vr = quad_dot(v, r), ur = quad_dot(u, r), uv = quad_dot(u, v);
-    float determinant = uu * vv - uv * uv;
-    *s = determinant > 4e-7f * uu * vv ? clamp01((uv * vr - ur * vv) / determinant) : 0;
-    *t = vv > 0 ? (uv * *s + vr) / vv : 0;
-    if (!(*t >= 0 && *t <= 1)) {
-        *t = clamp01(*t);
-        *s = uu > 0 ? clamp01((*t * uv - ur) / uu) : 0;
+    double uu = dot(u, u), vv = dot(v, v), vr = dot(v, r), ur = dot(u, r), uv = dot(u, v);
+    double determinant = uu * vv - uv * uv;
+    double along = determinant > 1e-13 * uu * vv ? clamp01((uv * vr - ur * vv) / determinant) : 0;
+    double other = vv > 0 ? (uv * along + vr) / vv : 0;
+    if (!(other >= 0 && other <= 1)) {
+        other = clamp01(other);
+        along = uu > 0 ? clamp01((other * uv - ur) / uu) : 0;
     }
+    *s = (float)along, *t = (float)other;
     return (a + *s * u) - (c + *t * v);
 }
 

@@ -185,7 +185,9 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Tou
     TouchNear near[TOUCH_NEAR];
     float nearest;
     int count = touch_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
-    if (far.edges) pair->distance = nearest > pair->distance ? nearest : pair->distance;
+    float doubt = touch_doubt(&look.a) + touch_doubt(&look.b);
+    if (doubt > 0.5f * plan->gap) nearest -= doubt; // the guard leaves a gap itself, which has room for less
+    if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
     place_speeds(job, pair->a, look.speed_a);
     place_speeds(job, pair->b, look.speed_b);
