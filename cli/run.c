@@ -1,4 +1,5 @@
 // singe run: frame 1 is the start, at time 0; each later frame is `steps` steps on from the one before it.
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -71,6 +72,13 @@ static void show_progress(Run *run, int frame, const SingeStats *stats, double s
                                                       (double)stats->temperature_max, run->frame_seconds});
 }
 
+/// From this strain of one edge in a hundred on, sheets do not look like sheets any more.
+static const double strain_most = 0.5;
+
+static void note_strain(Run *run, int frame, const SingeStats *stats) {
+    if (stats->strain_p99 > fmax(strain_most, run->strain)) run->strain = stats->strain_p99, run->strained = frame;
+}
+
 /// Ctrl-C ends it between two steps.
 static SingeResult run_frames(Run *run, SingeError *error) {
     int frames = run->job.scene->frames;
@@ -81,6 +89,7 @@ static SingeResult run_frames(Run *run, SingeError *error) {
         if (!result && frame > 1 && run->step < run->job.scene->steps)
             return stop(run, (Progress){frame - 1, run->step}, error);
         if (!result) result = run_write_frame(run, frame, &stats, error);
+        if (!result) note_strain(run, frame, &stats);
         bool last = frame == frames, asked = interrupt_asked();
         if (!result && asked && !last) return stop(run, (Progress){frame, 0}, error);
         if (!result) result = run_write_checkpoint(run, (Progress){frame, 0}, last, error);
@@ -142,6 +151,11 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                      "the ledgers do not close: of heat, %.2g of the largest entry is missing, of mass %.2g (more than "
                      "%g); are steps of fire so short that temperatures hardly change?",
                      stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
+    if (run->strained)
+        console_warn(run->console,
+                     "in frame %d one edge in a hundred is off its length by %.0f %% or more (strain_p99): sheets are "
+                     "moved too fast, pulled too hard or too soft; `singe verify` counts edges twice their length",
+                     run->strained, 100 * run->strain);
     double frames = record->frames_done > 0 ? record->frames_done : 1;
     console_note(run->console, "drawn %u triangles at last, %.0f %% of them near the front; %.1f ms a surface",
                  record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),

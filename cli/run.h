@@ -47,6 +47,8 @@ typedef struct Run {
     double checkpoint_time, checkpoint_cost, frame_seconds;
     int first;                  ///< frame to begin with
     int step;                   ///< steps that are done of the frame in hand
+    int strained;               ///< the frame in which most is stretched by more than half; 0
+    double strain;              ///< of one edge in a hundred there (strain_p99)
     bool begun;                 ///< what is in the folder is this run's: its first frame stands, or it goes on
 } Run;
 

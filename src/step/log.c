@@ -112,6 +112,13 @@ void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
     }
 }
 
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place) {
+    sim_log(sim, SINGE_LOG_WARNING,
+            "collider %u: %.3g %% of the sheets begin inside it, up to %.3g m deep, at (%.4g, %.4g, %.4g) m: it throws "
+            "them out in the first step, which stretches them",
+            collider, 100 * share, (double)depth, (double)place.x, (double)place.y, (double)place.z);
+}
+
 void sim_log_turned(const SingeSim *sim, uint32_t collider) {
     sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been turned", collider);
 }

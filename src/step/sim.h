@@ -74,6 +74,11 @@ void sim_log_short_of_spares(SingeSim *sim);
 /// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
 void sim_log_touches(SingeSim *sim, const TouchCounters *touches);
 
+/// Tells it of colliders that sheets begin deep inside of.
+void sim_find_buried(const SingeSim *sim);
+/// Tells it of one, `depth` m deep at `place`.
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place);
+
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);
 

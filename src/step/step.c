@@ -107,6 +107,7 @@ static SingeResult step_stages(SingeSim *sim) {
 SingeResult singe_sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+    if (sim->state.step == 0) sim_find_buried(sim);
     State before = sim->state;
     SingeTimers timers = sim->timers;
     memcpy(sim->backup, sim->state.arena, sim->state.basic_size);

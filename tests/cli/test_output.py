@@ -50,6 +50,15 @@ class Output(Case):
         self.assertIn("warning: the ledgers do not close", err)
         self.assertGreater(float(self.stats("bad")[-1]["ledger_error"]), 1e-3)
 
+    def test_what_is_torn_out_of_shape(self):
+        """Sheets that a plane throws out by many cells are warned of twice: as they begin, and for what came of it."""
+        for depth, told in (("0 m", False), ("0.3 m", True)):
+            with self.subTest(depth):
+                _, err = self.run_scene("strained", "--set", "frames=2", "--set",
+                                        "colliders=[{kind: plane, rotation: [0, 40, 0], offset: %s}]" % depth)
+                self.assertEqual("begin inside it, up to 0." in err, told)
+                self.assertEqual("one edge in a hundred is off its length by" in err, told)
+
     def test_record(self):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")
         record = self.record("o")

@@ -198,6 +198,27 @@ static void the_log_hears_of_the_commit(void **state) {
     }
 }
 
+/// A sheet that begins farther than a cell behind a plane is warned of in the first step, and one that lies on it not.
+static void the_log_hears_of_what_begins_inside(void **state) {
+    (void)state;
+    for (int deep = 0; deep < 2; deep++) {
+        Heard heard = {0};
+        SingeSimDef def = singe_default_sim();
+        def.log = (SingeLog){hear, &heard};
+        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        SingeColliderDef plane = singe_default_collider();
+        SingePoseKey key = {.position = {0, 0, deep ? 0.0041f : 0.0039f}, .rotation = {0, 0, 0, 1}};
+        SingeColliderId id;
+        plane.path_count = 1, plane.path = &key, plane.offset = 1e-3f;
+        test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
+        test_steps(sim, 2);
+        assert_int_equal(heard.lines[SINGE_LOG_WARNING], deep);
+        const char *told = "100 % of the sheets begin inside it, up to 0.0051 m";
+        if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], told));
+        singe_sim_destroy(sim);
+    }
+}
+
 static void timers_and_time_grow(void **state) {
     (void)state;
     Scene scene = scene_make(NULL, 10);
@@ -272,6 +293,7 @@ int main(void) {
         cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
         cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
         cmocka_unit_test(the_log_hears_of_the_commit),
+        cmocka_unit_test(the_log_hears_of_what_begins_inside),
         cmocka_unit_test(warns_once_of_conduction_cut_short), cmocka_unit_test(every_byte_is_counted_and_freed),
     };
     return cmocka_run_group_tests_name("step_lifecycle", tests, NULL, NULL);
