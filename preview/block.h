@@ -27,7 +27,16 @@ typedef struct Block {
     V3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
-    bool blocked[LANES];
+    float clear[LANES];   ///< of a shadow ray
+    float sun_seen;       ///< sum of those to the sun
+    int sun_asked;
+    float open[LANES], sky_seen[LANES]; ///< share of the sky, of a sample and summed
+    int sky_asked[LANES];
+    bool clouded;         ///< whether anything hid sky
+    bool sunlit, shaded;  ///< whether any ray to the sun came through, and whether any did not
+    V3 lamp[LANES];       ///< light of flames and embers, summed over samples, as if nothing hid it
+    V3 lamp_place[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where it was found last, and what it was on white
+    float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance of it that a ray found, and that of what it asked for
     LayerSum layer[LANES];
 } Block;
 
@@ -48,15 +57,29 @@ enum { SAMPLE_MIDDLE = -1 };
 void layers_begin(LayerSum *sum);
 /// `fire` is the light of flame and smoke before the point, `clear` what they leave of its own.
 void layers_add(const Preview *preview, const Point *point, V3 fire, float clear, V3 direction, LayerSum *sum);
-void layers_write(const Preview *preview, size_t pixel, V3 colour, const LayerSum *sum);
+void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum);
+
+/// Writes `beauty` from the finished picture.
+void layers_finish(const Preview *preview);
 
 // lighting.c
-/// Adds the light of the sun and the sky that reaches the eye from block->point, by one ray each.
-void light_add_sun(const Preview *preview, Block *block, const int *active, int sample);
-void light_add_sky(const Preview *preview, Block *block, const int *active, int sample);
+/// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
+V3 light_reflect(const Point *point, V3 l);
+/// Whether light falls on what the lane sees.
+bool light_reaches(const Block *block, const int *active, int lane);
+/// Adds the light of the sun and the sky that reaches the eye from block->point: the sun's by `rays` rays each, the
+/// sky's by one, or where they are not to ask by what was found before.
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays);
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask);
 /// Whether anything could keep sun or sky from any of the points.
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active);
-/// Light of the embers first, first + stride, ... times stride.
-V3 light_embers(const Scene *scene, const Point *point, int first, int stride);
+
+// lamps.c
+/// Adds the light of flames and embers that reaches block->point, times `through`, and asks what is hidden of it.
+void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
+void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
+/// Of a block, once all are written: first smoothed along rows, then, all blocks, along columns and added to the picture.
+void lamps_smooth(Preview *preview, Block *block);
+void lamps_finish(Preview *preview, Block *block);
 
 #endif

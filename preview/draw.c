@@ -1,7 +1,7 @@
 // One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
 //
 // A sample is: the nearest surface; its look; light = sun (a ray to a random point of its disc) + sky and bounce
-// (one ambient-occlusion ray) + embers (point sources); see lighting.c. Pixels whose first samples agree stop
+// (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first samples agree stop
 // there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing is
 // intersected, and where no shadow can fall one sample is enough.
 // Everything random comes from the pixel's place and the sample's number, so threads do not matter.
@@ -11,7 +11,10 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-enum { HOLE_LIMIT = 4 };
+enum {
+    HOLE_LIMIT = 4,
+    RIM_RAYS = 4, ///< to the sun, a sample, where a shadow has its rim
+};
 
 typedef struct Job {
     Preview *preview;
@@ -148,42 +151,40 @@ static void find_points(const Preview *preview, Block *block, const int *active)
 /// The light of the fire before a point, and what it leaves. A pixel's points mostly lie at nearly one distance.
 static void look_through(Block *block, int lane, float distance) {
     if (distance >= block->fire_from[lane] && distance <= block->fire_to[lane]) return;
-    const float same = 3e-4f; // m, less than flames are thick
+    const float same = 1e-3f; // m, less than flames are thick
     block->fire_from[lane] = distance - same, block->fire_to[lane] = distance + same;
     int x = block->x[lane] % TILE, y = block->y[lane] % TILE;
     fire_until(block->tile, x, y, distance, &block->fire_light[lane], &block->fire_clear[lane]);
 }
 
-/// Adds the colour of block->point in the light of one sample. Embers are many and small: `stride` of them are taken
-/// as one, in turn.
-static void add_light(const Preview *preview, Block *block, const int *active, int sample, int stride) {
+/// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays.
+static void add_light(const Preview *preview, Block *block, const int *active, int sample, int rays) {
+    float through[LANES];
     for (int i = 0; i < LANES; i++) block->light[i] = v3(0, 0, 0);
-    light_add_sun(preview, block, active, sample);
-    light_add_sky(preview, block, active, sample);
+    light_add_sun(preview, block, active, sample, rays);
+    light_add_sky(preview, block, active, sample, rays > 0);
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         const Point *point = &block->point[i];
-        V3 colour = v3_add(block->light[i], point->glow);
-        float l = v3_luminance(colour), shown = l / (1 + l);
+        V3 colour = v3_add(block->light[i], point->glow), fire = {0, 0, 0};
+        float l = v3_luminance(colour), shown = l / (1 + l), clear = 1;
         block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
-        if (point->lit && preview->scene.light_count)
-            colour = v3_add(colour, light_embers(&preview->scene, point, stride > 1 ? sample % stride : 0, stride));
         if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
-        V3 fire = {0, 0, 0};
-        float clear = 1;
         if (block->tile) {
             look_through(block, i, point->distance);
             fire = block->fire_light[i], clear = block->fire_clear[i];
             colour = v3_mad(fire, colour, clear);
         }
+        through[i] = clear * (1 - point->fade);
         colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
         block->sum[i] = v3_add(block->sum[i], colour);
         layers_add(preview, point, fire, clear, block->direction[i], &block->layer[i]);
     }
+    lamps_add(preview, block, active, sample, through);
 }
 
 /// Of a bare block the rays stay the same, unless the lens spreads them.
-static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int stride) {
+static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
         place_sample(sample, at);
@@ -192,7 +193,7 @@ static void add_sample(const Preview *preview, Block *block, const int *active, 
         for (int i = 0; bare && i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
-    add_light(preview, block, active, sample, stride);
+    add_light(preview, block, active, sample, rays);
 }
 
 static bool is_blurred(const Preview *preview) { return preview->camera.lens > 0 || preview->def.shutter > 0; }
@@ -208,7 +209,8 @@ static bool is_mixed(const Block *block, const int *active) {
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
 static int find_restless(const Preview *preview, const Block *block, const int *active, int *more) {
     // where a lens or a shutter spreads things thin, some pixels' first samples all miss what their neighbours' meet
-    bool mixed = is_blurred(preview) && is_mixed(block, active);
+    // ... and where a shadow has its rim, all but few of a pixel's first rays to the sun may agree
+    bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (block->sunlit && block->shaded);
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
     int count = 0;
@@ -221,14 +223,30 @@ static int find_restless(const Preview *preview, const Block *block, const int *
     return count;
 }
 
+/// After half of the samples: goes on where they still differ by so much that as many more would be seen.
+static bool keep_restless(const Block *block, int *more, int sample, int *taken) {
+    bool any = false;
+    for (int i = 0; i < LANES; i++) {
+        const LayerSum *sum = &block->layer[i];
+        bool edge = sum->hits > 0 && sum->hits < sum->samples;
+        if (more[i] && !edge && block->high[i] - block->low[i] < 0.10f) more[i] = 0, taken[i] = sample;
+        any = any || more[i];
+    }
+    return any;
+}
+
 static void start_block(const Preview *preview, Block *block, int *active) {
     const PreviewDef *def = &preview->def;
+    block->sunlit = block->shaded = block->clouded = false;
+    block->sun_seen = 0, block->sun_asked = 0;
     for (int i = 0; i < LANES; i++) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
         block->sum[i] = v3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
         block->time[i] = 0.5f;
+        block->sky_seen[i] = 0, block->sky_asked[i] = 0;
+        block->lamp[i] = v3(0, 0, 0), block->lamp_seen[i] = block->lamp_asked[i] = 0;
         block->fire_from[i] = INFINITY, block->fire_to[i] = -INFINITY;
         layers_begin(&block->layer[i]);
     }
@@ -240,21 +258,32 @@ static void write_block(Preview *preview, const Block *block, const int *active,
         if (!active[i]) continue;
         size_t pixel = pixel_index(preview, block, i);
         preview->picture[pixel] = v3_scale(block->sum[i], 1 / (float)taken[i]);
-        layers_write(preview, pixel, preview->picture[pixel], &block->layer[i]);
+        layers_write(preview, pixel, &block->layer[i]);
+        lamps_write(preview, pixel, block, i, taken[i]);
     }
 }
 
 /// Takes a quarter of the samples, but at least 4, of every pixel, and the rest of those that need it; half of them
-/// where a lens or a shutter blurs a sheet or a shape.
+/// where a lens or a shutter blurs a sheet or a shape. Of a bare block whose first rays find nothing in the way one is
+/// enough.
 static void add_samples(const Preview *preview, Block *block, const int *active, bool bare, int *taken) {
-    int more[LANES], samples = preview->def.samples, first = samples, stride = samples % 4 == 0 ? 4 : 1;
+    int more[LANES], samples = preview->def.samples, first = samples;
     int share = is_blurred(preview) && !bare ? 2 : 4;
     if (samples > 4) first = (samples / share + 3) / 4 * 4;
     if (first > samples) first = samples;
-    for (int s = 0; s < first; s++) add_sample(preview, block, active, bare, s, stride);
+    for (int s = 0; s < first; s++) {
+        add_sample(preview, block, active, bare, s, 1);
+        if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
+    }
+    if (first == 1 && bare) samples = 1;
     bool on = first < samples && find_restless(preview, block, active, more);
-    for (int s = first; s < samples && on; s++) add_sample(preview, block, more, bare, s, stride);
+    // where a shadow has its rim more rays are sent, and where there is none the first have told all
+    int rays = block->sunlit && block->shaded ? RIM_RAYS : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
+    for (int s = first; s < samples && on; s++) {
+        if (s == samples / 2 && !rays && !is_blurred(preview)) on = keep_restless(block, more, s, taken);
+        if (on) add_sample(preview, block, more, bare, s, rays);
+    }
 }
 
 static void draw_block(Preview *preview, Block *block) {
@@ -325,7 +354,7 @@ static void *draw_tiles(void *context) {
 static void draw_all(Preview *preview, void (*draw)(Preview *, Block *)) {
     int across = (preview->def.width + TILE - 1) / TILE, down = (preview->def.height + TILE - 1) / TILE;
     Job job = {.preview = preview, .draw = draw, .across = across, .count = across * down};
-    job.fire = draw == draw_block && preview->fire.size[0];
+    job.fire = draw == draw_block && preview->fire.visible;
     atomic_init(&job.next, 0), atomic_init(&job.threads, 0);
     pthread_t threads[THREAD_LIMIT];
     int started = 0;
@@ -354,6 +383,11 @@ SingeResult preview_draw_layers(Preview *preview, const SingeSurface *surface, d
     if (!preview->table_known) draw_all(preview, fill_table);
     preview->table_known = true;
     draw_all(preview, draw_block);
+    if (preview->scene.light_count) {
+        draw_all(preview, lamps_smooth);
+        draw_all(preview, lamps_finish);
+    }
+    layers_finish(preview);
     if (rgb) {
         bloom_apply(preview);
         tonemap_write(preview, rgb);

@@ -12,23 +12,46 @@ static SingeResult embree_check(const Preview *preview, SingeError *error) {
     return preview_fail(error, SINGE_ERROR_STATE, -1, "Embree refused the surface (error %d)", (int)code);
 }
 
-/// Lets shadow rays through the holes that the picture shows in a burnt sheet.
-static void pass_holes(const struct RTCFilterFunctionNArguments *arguments) {
+/// What a packet of shadow rays has met on its way.
+typedef struct Passage {
+    struct RTCIntersectContext context; ///< first: Embree hands it back
+    float clear[LANES];
+} Passage;
+
+/// What a sheet lets through of a ray: most of the light that comes through it goes other ways.
+static float let_through(const Preview *preview, const uint32_t t[3], float burn) {
+    const Scene *scene = &preview->scene;
+    return 0.5f * paper_transmittance(preview, scene->vertices[t[0]].sheet) * (1 - stepf(0.08f, PAPER_WHOLE, burn));
+}
+
+/// Lets shadow rays through the holes that the picture shows in a burnt sheet, and a part of them through the sheet.
+static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Preview *preview = arguments->geometryUserPtr;
     const Scene *scene = &preview->scene;
+    Passage *passage = (Passage *)(void *)arguments->context;
     float footprint = preview->camera.pixel * preview->camera.reach;
-    // fields of N each: the normal's three, u, v, triangle; the accessors of the header are C++ only
+    // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle; the
+    // accessors of the header are C++ only
     unsigned count = arguments->N;
     const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
     const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;
+    const unsigned *lane = (const unsigned *)arguments->ray + 10 * count;
     for (unsigned i = 0; i < count; i++) {
         if (!arguments->valid[i]) continue;
         const uint32_t *t = scene->triangles[triangle[i]];
         const PaperVertex *vertices = scene->vertices;
-        if (maxf(vertices[t[0]].burn, maxf(vertices[t[1]].burn, vertices[t[2]].burn)) <= PAPER_WHOLE) continue;
-        PaperState state;
-        paper_state(scene, triangle[i], u[i], v[i], &state);
-        if (paper_is_hole(&state, footprint)) arguments->valid[i] = 0;
+        float burn = maxf(vertices[t[0]].burn, maxf(vertices[t[1]].burn, vertices[t[2]].burn));
+        if (burn > PAPER_WHOLE) {
+            PaperState state;
+            paper_state(scene, triangle[i], u[i], v[i], &state);
+            if (paper_is_hole(&state, footprint)) {
+                arguments->valid[i] = 0;
+                continue;
+            }
+        }
+        float *clear = &passage->clear[lane[i]];
+        *clear *= let_through(preview, t, burn);
+        if (*clear > 0.01f) arguments->valid[i] = 0;
     }
 }
 
@@ -50,7 +73,7 @@ SingeResult tracer_build(Preview *preview, SingeError *error) {
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
                                    sizeof *scene->triangles, scene->triangle_count);
         rtcSetGeometryUserData(geometry, preview);
-        rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_sheets);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(built, geometry);
         rtcCommitScene(built);
@@ -113,20 +136,21 @@ static bool shape_blocks(const Preview *preview, float time, V3 o, V3 d, float f
     return false;
 }
 
-void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, bool blocked[LANES]) {
+void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, float clear[LANES]) {
     const Scene *scene = &preview->scene;
+    Passage passage;
     int count = 0;
     for (int i = 0; i < LANES; i++) {
-        blocked[i] = false;
+        passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
         V3 o = v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
-        blocked[i] = shape_blocks(preview, ray->time[i], o, d, ray->tfar[i]);
-        if (blocked[i] || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
+        if (shape_blocks(preview, ray->time[i], o, d, ray->tfar[i])) clear[i] = 0;
+        if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;
     }
     if (!count) return;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded16(valid, scene->embree, &context, ray);
-    for (int i = 0; i < LANES; i++) blocked[i] = blocked[i] || (valid[i] && ray->tfar[i] < 0);
+    rtcInitIntersectContext(&passage.context);
+    rtcOccluded16(valid, scene->embree, &passage.context, ray);
+    for (int i = 0; i < LANES; i++)
+        if (valid[i]) clear[i] = ray->tfar[i] < 0 ? 0 : passage.clear[i];
 }

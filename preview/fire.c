@@ -12,7 +12,7 @@
 
 #define BURNING 2e6f       ///< W/m3, q0
 #define EXTINCTION 8700.0f ///< m2/kg
-#define FLAME_SEEN 0.06f   ///< less is below the edge of a flame wherever noise puts it
+#define FLAME_SEEN 0.085f  ///< less is below the edge of a flame wherever noise puts it
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
 static size_t at(const Fire *fire, int x, int y, int z) {
@@ -21,21 +21,22 @@ static size_t at(const Fire *fire, int x, int y, int z) {
 
 // ---- the cells
 
-static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell, float drift[2]) {
+static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell, float source[3]) {
     float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
-    cell->flame = flame > 0 ? flame / (flame + BURNING) : 0;
+    source[2] = flame > 0 ? flame / (flame + BURNING) : 0;
     cell->smoke = smoke > 0 ? EXTINCTION * smoke : 0;
-    for (int c = 0; c < 2; c++) drift[c] = clampf(gas->velocity[from][c] / up, -1, 1);
+    for (int c = 0; c < 2; c++) source[c] = clampf(gas->velocity[from][c] / up, -1, 1);
 }
 
 static void fill_cells(Fire *fire, const SingeGas *gas) {
     memset(fire->cells, 0, fire->cell_capacity * sizeof *fire->cells);
+    memset(fire->source, 0, fire->cell_capacity * sizeof *fire->source);
     size_t from = 0;
     for (uint32_t z = 0; z < gas->size[2]; z++)
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
                 size_t to = at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
-                fill_cell(gas, from, &fire->cells[to], fire->drift[to]);
+                fill_cell(gas, from, &fire->cells[to], fire->source[to]);
             }
 }
 
@@ -61,7 +62,7 @@ static void find_roots(Preview *preview) {
 
 /// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
 static FireCell upstream(const Fire *fire, int x, int y, int z) {
-    const float *drift = fire->drift[at(fire, x, y, z)];
+    const float *drift = fire->source[at(fire, x, y, z)];
     float fx, fy;
     int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
     const FireCell *a = &fire->cells[at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
@@ -73,7 +74,7 @@ static FireCell upstream(const Fire *fire, int x, int y, int z) {
 static void raise_cell(Fire *fire, int x, int y, int z) {
     size_t here = at(fire, x, y, z), above = at(fire, x, y, z + 1);
     FireCell *cell = &fire->cells[here];
-    cell->rise = 0;
+    cell->rise = 0, cell->flame = fire->source[here][2];
     if (cell->flame <= 0) return;
     // the paper in the cell, or that just above it, which the flame has yet to reach
     const float *root = fire->roots[fire->roots[here][0] > 0 ? here : above];
@@ -86,16 +87,6 @@ static void raise_cell(Fire *fire, int x, int y, int z) {
     if (below.flame <= 0) return;
     float share = minf(2 * below.flame / cell->flame, 1);
     cell->rise = cell->flame * share * (below.rise / below.flame + fire->cell);
-}
-
-void fire_raise(Preview *preview) {
-    Fire *fire = &preview->fire;
-    fire->moment = (float)fmod(preview->time, 1e3);
-    if (!fire->size[0]) return;
-    find_roots(preview);
-    for (int z = 1; z < fire->size[2] - 1; z++)
-        for (int y = 1; y < fire->size[1] - 1; y++)
-            for (int x = 1; x < fire->size[0] - 1; x++) raise_cell(fire, x, y, z);
 }
 
 // ---- the bricks
@@ -176,6 +167,30 @@ static bool find_bounds(Fire *fire) {
     return low.x < high.x;
 }
 
+/// Flames have an end: what still burns above it is too thin to be seen.
+static void end_flames(Fire *fire) {
+    for (size_t i = 0; i < fire->cell_capacity; i++) {
+        FireCell *cell = &fire->cells[i];
+        if (cell->flame <= 0) continue;
+        float left = 1 - stepf(0.6f * FLAME_END, FLAME_END, cell->rise / cell->flame);
+        cell->flame *= left, cell->rise *= left;
+    }
+}
+
+void fire_raise(Preview *preview) {
+    Fire *fire = &preview->fire;
+    fire->moment = (float)fmod(preview->time, 1e3);
+    fire->visible = false;
+    if (!fire->size[0]) return;
+    find_roots(preview);
+    for (int z = 1; z < fire->size[2] - 1; z++)
+        for (int y = 1; y < fire->size[1] - 1; y++)
+            for (int x = 1; x < fire->size[0] - 1; x++) raise_cell(fire, x, y, z);
+    end_flames(fire);
+    mark_all(fire);
+    fire->visible = find_bounds(fire);
+}
+
 // ---- the whole
 
 /// A block that could not be had is NULL and has no size.
@@ -184,7 +199,7 @@ static void free_cells(const Preview *preview, const Fire *fire) {
     preview_resize(allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
     preview_resize(allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
     preview_resize(allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
-    preview_resize(allocator, fire->drift, fire->drift ? fire->cell_capacity * sizeof *fire->drift : 0, 0);
+    preview_resize(allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
     preview_resize(allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
 }
 
@@ -199,12 +214,12 @@ static bool make_room(const Preview *preview, Fire *fire) {
         fire->cells = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->cells);
         fire->seen = preview_resize(&preview->allocator, NULL, 0, bricks);
         fire->burns = preview_resize(&preview->allocator, NULL, 0, cells);
-        fire->drift = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->drift);
+        fire->source = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->source);
         fire->roots = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->roots);
         fire->cell_capacity = cells, fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
-    return fire->cells && fire->seen && fire->burns && fire->drift && fire->roots;
+    return fire->cells && fire->seen && fire->burns && fire->source && fire->roots;
 }
 
 static bool is_finite(const SingeGas *gas) {
@@ -257,14 +272,13 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     fire->cell = gas->cell;
     fire->origin = v3_add(v3_load(gas->origin), v3(shift, shift, shift));
     fill_cells(fire, gas);
-    mark_all(fire);
-    if (!find_bounds(fire)) memset(fire->size, 0, sizeof fire->size);
     return SINGE_OK;
 }
 
 void fire_light_smoke(Preview *preview) {
     Fire *fire = &preview->fire;
     const EmberLights *lights = &preview->scene.lights;
+    if (!fire->visible) return;
     // the sun lights one side, the sky all
     V3 sky = v3_add(sky_ambient(&preview->sky, v3(0, 0, 1)), sky_ambient(&preview->sky, v3(0, 0, -1)));
     fire->daylight = v3_mad(v3_scale(sky, 0.5f), preview->sun_light, 0.28f);
@@ -278,7 +292,7 @@ void fire_light_smoke(Preview *preview) {
                 for (int k = 0; k < preview->scene.light_count; k++) {
                     V3 to = v3_sub(v3(lights->x[k], lights->y[k], lights->z[k]), p);
                     // scattered to all sides alike: a quarter of what white paper would send back
-                    cell->glow += 0.25f * lights->strength[k].x / (v3_dot(to, to) + lights->softness[k] + 4e-4f);
+                    cell->glow += 0.25f * lights->strength[0][k] / (v3_dot(to, to) + lights->softness[k] + 4e-4f);
                 }
             }
 }

@@ -41,14 +41,15 @@ typedef struct FireTile {
 } FireTile;
 
 typedef struct Fire {
-    int size[3];      ///< cells with their border; all 0 where nothing is to be seen
+    int size[3];      ///< cells with their border; all 0 where there is no gas
+    bool visible;     ///< whether any of it is seen
     float cell;       ///< m
     V3 origin;        ///< m, middle of cell (0, 0, 0), border included
     FireCell *cells;
     size_t cell_capacity;
     int bricks[3];
     uint8_t *seen;    ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
-    float (*drift)[2]; ///< [cells] how far the gas goes along x and y as it rises by one
+    float (*source)[3]; ///< [cells] how far the gas goes along x and y as it rises by one; what burns there
     float (*roots)[2]; ///< [cells] rate at which paper burns there, and its height times that
     uint8_t *burns;   ///< [cells] whether flame may be in reach of the small eddies alone
     size_t brick_capacity;
@@ -59,6 +60,9 @@ typedef struct Fire {
     float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
     V3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
+
+#define FLAME_HEIGHT 0.058f ///< m, about which tongues end
+#define FLAME_END 0.17f     ///< m, above which there is none
 
 // m, how far eddies shift what is seen, at most
 #define FIRE_WARP_WIDE 0.0055f
@@ -76,7 +80,7 @@ static inline size_t fire_noise_at(int x, int y, int z) {
 
 // fire.c
 void fire_free(Preview *preview);
-/// How high above the paper each flame is. The surface has been loaded.
+/// How high above the paper each flame is, and where there is something to be seen. The surface has been loaded.
 void fire_raise(Preview *preview);
 /// The light that falls on smoke: the day's and the flames'. The lights have been gathered.
 void fire_light_smoke(Preview *preview);

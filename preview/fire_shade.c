@@ -30,7 +30,6 @@
 #define STAND_OFF 0.002f  ///< m above the paper, where nothing is seen yet
 #define SOOT_BEGINS 0.010f ///< m
 #define SOOT_FULL 0.030f
-#define FLAME_HEIGHT 0.058f ///< m, H
 
 // ---- looking up
 

@@ -55,7 +55,9 @@ typedef struct Texture {
 typedef struct EmberLights {
     float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
     float softness[LIGHT_LIMIT]; ///< m2, added to the distance squared
-    V3 strength[LIGHT_LIMIT];    ///< radiance times area over 2 pi: divide by distance squared
+    float extent[LIGHT_LIMIT];   ///< m, within which the light comes from
+    float power[LIGHT_LIMIT];    ///< luminance of the strength
+    float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
 /// The light of the sky and what the ground sends back of it, as seen from a place in the open.
@@ -65,6 +67,15 @@ typedef struct Sky {
     V3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as a dull surface mirrors it
     V3 ambient[9];                     ///< spherical harmonics of what white paper sends back
 } Sky;
+
+/// The light of embers and flames in a pixel, before what hides it is taken away.
+typedef struct Lamp {
+    V3 light;       ///< as it reaches the eye
+    V3 normal;      ///< of the last sample
+    float distance; ///< m, the same
+    float seen;     ///< share of it that nothing hides, by few rays
+    int32_t sheet;
+} Lamp;
 
 /// The table at a pixel.
 typedef struct Table {
@@ -122,6 +133,8 @@ struct Preview {
     float linear[256];         ///< sRGB byte to linear
     V3 blackbody[BLACKBODY_COUNT];
     V3 *picture;               ///< [height * width] radiance
+    Lamp *lamps;               ///< [height * width]
+    float *seen;               ///< [height * width] of the lamps, smoothed along rows
     Table *table;              ///< [height * width], once `table_known`
     bool table_known;
     uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
@@ -188,8 +201,9 @@ void tracer_release(Preview *preview);
 bool tracer_near(const Scene *scene, V3 origin, V3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
-/// blocked[i] tells of the lanes with valid = -1 whether anything, shapes included, is in the way. Changes `valid`.
-void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, bool blocked[LANES]);
+/// clear[i] tells of the lanes with valid = -1 what share of the light comes through whatever is in the way, shapes
+/// included; of the others it is 1. Changes `valid`. A ray's id is its lane.
+void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, float clear[LANES]);
 
 // environment.c
 void sky_fill(Preview *preview);
@@ -242,6 +256,8 @@ typedef struct PaperState {
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state);
 /// Whether the burnt sheet has a hole there at the picture's scale. Only where burn > PAPER_WHOLE.
 bool paper_is_hole(const PaperState *state, float footprint);
+/// Share of the light on one side of a fresh sheet that leaves it on the other.
+float paper_transmittance(const Preview *preview, int32_t sheet);
 #define PAPER_WHOLE 0.35f
 /// False where there is a hole.
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point);

@@ -24,10 +24,9 @@ static void store(float (*layer)[3], size_t pixel, V3 value) {
     if (layer) layer[pixel][0] = value.x, layer[pixel][1] = value.y, layer[pixel][2] = value.z;
 }
 
-void layers_write(const Preview *preview, size_t pixel, V3 colour, const LayerSum *sum) {
+void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum) {
     const PreviewLayers *layers = &preview->layers;
     float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
-    store(layers->beauty, pixel, colour);
     store(layers->glow, pixel, v3_scale(sum->glow, sample));
     if (layers->fire) {
         const float fire[4] = {sum->fire.x * sample, sum->fire.y * sample, sum->fire.z * sample,
@@ -41,4 +40,10 @@ void layers_write(const Preview *preview, size_t pixel, V3 colour, const LayerSu
     if (layers->depth) layers->depth[pixel] = sum->depth;
     if (layers->sheet) layers->sheet[pixel] = sum->sheet;
     if (layers->piece) layers->piece[pixel] = sum->piece;
+}
+
+void layers_finish(const Preview *preview) {
+    size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
+    for (size_t i = 0; preview->layers.beauty && i < count; i++)
+        store(preview->layers.beauty, i, preview->picture[i]);
 }

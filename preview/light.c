@@ -54,11 +54,13 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     add_to_cluster(clusters, scene->low, scene->high, place, strength, weight);
 }
 
-static void add_light(Scene *scene, V3 place, V3 strength, float softness) {
+static void add_light(Scene *scene, V3 place, V3 strength, float softness, float extent) {
     EmberLights *lights = &scene->lights;
     int k = scene->light_count++;
     lights->x[k] = place.x, lights->y[k] = place.y, lights->z[k] = place.z;
-    lights->strength[k] = strength, lights->softness[k] = softness;
+    lights->strength[0][k] = strength.x, lights->strength[1][k] = strength.y, lights->strength[2][k] = strength.z;
+    lights->softness[k] = softness;
+    lights->extent[k] = extent, lights->power[k] = v3_luminance(strength);
 }
 
 static void add_shapes(Preview *preview) {
@@ -70,7 +72,7 @@ static void add_shapes(Preview *preview) {
         if (shape->kind == SINGE_COLLIDER_BOX) r = v3_length(v3_load(shape->half_size)) * 0.6f;
         V3 glow = blackbody_glow(preview->blackbody, shape->temperature);
         V3 place = shape_middle(shape);
-        add_light(scene, place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r);
+        add_light(scene, place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r, 1.02f * shape_extent(shape, preview->def.shutter));
     }
 }
 
@@ -102,21 +104,23 @@ static void choose_lights(Scene *scene, Cluster *clusters, int limit, float soft
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
         V3 place = v3_scale(cluster->place, 1 / cluster->weight);
-        add_light(scene, place, cluster->strength, softness);
+        add_light(scene, place, cluster->strength, softness, 1.5f * sqrtf(softness));
         kept += cluster->weight;
         cluster->weight = 0;
     }
-    for (int i = first; i < scene->light_count && kept > 0; i++)
-        scene->lights.strength[i] = v3_scale(scene->lights.strength[i], total / kept);
+    for (int i = first; i < scene->light_count && kept > 0; i++) {
+        for (int c = 0; c < 3; c++) scene->lights.strength[c][i] *= total / kept;
+        scene->lights.power[i] *= total / kept;
+    }
 }
 
 void light_gather(Preview *preview) {
     Scene *scene = &preview->scene;
     scene->light_count = 0;
-    scene->lights = (EmberLights){{0}, {0}, {0}, {0}, {{0, 0, 0}}};
+    scene->lights = (EmberLights){.x = {0}};
     for (int k = 0; k < LIGHT_LIMIT; k++) scene->lights.softness[k] = 1;
     add_shapes(preview);
-    if (preview->fire.size[0]) {
+    if (preview->fire.visible) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         gather_flames(preview, flames);
         float side = v3_length(v3_sub(preview->fire.high, preview->fire.low)) / GRID;

@@ -1,16 +1,16 @@
 // The light at the points that a block of rays sees. Radiance of a diffuse surface of albedo a:
 //
-//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + embers ] + m S(r) F A
+//     L = a [ E_sun max(n.l, 0) V + tau E_sun max(-n.l, 0) V + (E(n) + tau E(-n)) A + lamps ] + m S(r) F A
 //
 // with V, A the visibilities, tau the paper's transmission and E the light of all around (environment.c); V by a ray to
-// a random point of the sun's disc, A by an ambient-occlusion ray. What shines mirrors the blurred sky S along r.
+// a random point of the sun's disc, or several where the block has found the rim of a shadow; A by an ambient-occlusion
+// ray. What shines mirrors the blurred sky S along r. Lamps are flames and embers (lamps.c).
 
 #include "preview/block.h"
 
 static const float occluded_sky = 0.22f; ///< light that still comes from where the sky is hidden
 
-/// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
-static V3 reflect(const Point *point, V3 l) {
+V3 light_reflect(const Point *point, V3 l) {
     float cosine = v3_dot(point->normal, l), side = v3_dot(point->geometric, l);
     // what comes through has been scattered often, and is warmer for it
     const V3 warm = {1.35f, 1.12f, 0.80f};
@@ -30,34 +30,52 @@ static V3 reflect(const Point *point, V3 l) {
     return out;
 }
 
-static bool is_lit(const Block *block, const int *active, int lane) {
+bool light_reaches(const Block *block, const int *active, int lane) {
     return active[lane] && block->point[lane].lit && block->point[lane].fade < 0.995f;
 }
 
-void light_add_sun(const Preview *preview, Block *block, const int *active, int sample) {
+/// One ray a lane; `share` of what it finds is added.
+static void add_sun_ray(const Preview *preview, Block *block, const int *active, int index, float share) {
     V3 reflected[LANES];
+    int asked[LANES];
     for (int i = 0; i < LANES; i++) {
-        block->valid[i] = 0;
+        block->valid[i] = asked[i] = 0;
         rest_ray(&block->shadow, i);
-        if (!is_lit(block, active, i)) continue;
+        if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         float square[2] = {0, 0}, disc[2];
-        if (sample != SAMPLE_MIDDLE) sample_square((uint32_t)sample, block->turn[i][0], block->turn[i][1], square);
+        if (index != SAMPLE_MIDDLE) sample_square((uint32_t)index, block->turn[i][0], block->turn[i][1], square);
         sample_disc(square, disc);
         V3 l = v3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
         l = v3_unit(v3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
-        reflected[i] = reflect(point, l);
+        reflected[i] = light_reflect(point, l);
         if (reflected[i].x + reflected[i].y + reflected[i].z < 1e-4f) continue;
         float side = v3_dot(point->geometric, l) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
         aim_ray(&block->shadow, i, v3_mad(point->position, point->geometric, side), l, 0, INFINITY, block->time[i]);
-        block->valid[i] = -1;
+        block->valid[i] = asked[i] = -1;
     }
-    int asked[LANES];
-    for (int i = 0; i < LANES; i++) asked[i] = block->valid[i];
-    tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
-    V3 sun = preview->sun_light;
+    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
+    for (int i = 0; i < LANES; i++) {
+        if (!asked[i]) continue;
+        block->light[i] = v3_mad(block->light[i], v3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
+        block->sunlit = block->sunlit || block->clear[i] > 0.99f, block->shaded = block->shaded || block->clear[i] < 0.99f;
+        block->sun_seen += block->clear[i], block->sun_asked++;
+    }
+}
+
+/// Light from the sun's middle, of which as much comes as the block's rays have found: without another one.
+static void add_known_sun(const Preview *preview, Block *block, const int *active) {
+    float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
     for (int i = 0; i < LANES; i++)
-        if (asked[i] && !block->blocked[i]) block->light[i] = v3_add(block->light[i], v3_mul(reflected[i], sun));
+        if (light_reaches(block, active, i))
+            block->light[i] = v3_mad(block->light[i], v3_mul(light_reflect(&block->point[i], preview->sun),
+                                                            preview->sun_light), seen);
+}
+
+void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
+    if (!rays) add_known_sun(preview, block, active);
+    for (int k = 0; k < rays; k++)
+        add_sun_ray(preview, block, active, sample == SAMPLE_MIDDLE ? SAMPLE_MIDDLE : sample * rays + k, 1 / (float)rays);
 }
 
 /// Whether the point is nearer than `reach` to the surface's bounds.
@@ -103,12 +121,12 @@ static float table_reach(const Scene *scene, V3 p) {
 
 bool light_may_be_hidden(const Preview *preview, const Block *block, const int *active) {
     int first = 0;
-    while (first < LANES && !is_lit(block, active, first)) first++;
+    while (first < LANES && !light_reaches(block, active, first)) first++;
     if (first == LANES) return false;
     V3 p = block->point[first].position;
     float spread = 0;
     for (int i = first + 1; i < LANES; i++)
-        if (is_lit(block, active, i)) spread = maxf(spread, v3_length(v3_sub(block->point[i].position, p)));
+        if (light_reaches(block, active, i)) spread = maxf(spread, v3_length(v3_sub(block->point[i].position, p)));
     return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
            sun_may_be_hidden(preview, p, spread);
 }
@@ -120,12 +138,13 @@ static V3 mirror_sky(const Sky *sky, const Point *point) {
     return v3_scale(sky_mirrored(sky, out), point->mirror * (0.06f + 0.54f * rest2 * rest2 * rest));
 }
 
-void light_add_sky(const Preview *preview, Block *block, const int *active, int sample) {
+/// Asks by a ray each what share of the points' sky is open.
+static void ask_sky(const Preview *preview, Block *block, const int *active, int sample) {
     float reach = sky_reach(&preview->scene);
     for (int i = 0; i < LANES; i++) {
         block->valid[i] = 0;
         rest_ray(&block->shadow, i);
-        if (!is_lit(block, active, i)) continue;
+        if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         if (sample == SAMPLE_MIDDLE || !sky_may_be_hidden(preview, point->position, reach)) continue;
         float square[2];
@@ -136,9 +155,18 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
                 block->time[i]);
         block->valid[i] = -1;
     }
-    tracer_occlude(preview, block->valid, &block->shadow, block->blocked);
+    tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
-        if (!is_lit(block, active, i)) continue;
+        block->open[i] = mixf(occluded_sky, 1, block->clear[i]);
+        block->sky_seen[i] += block->open[i], block->sky_asked[i]++;
+        block->clouded = block->clouded || block->clear[i] < 1;
+    }
+}
+
+void light_add_sky(const Preview *preview, Block *block, const int *active, int sample, bool ask) {
+    if (ask) ask_sky(preview, block, active, sample);
+    for (int i = 0; i < LANES; i++) {
+        if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         V3 ambient = sky_ambient(&preview->sky, point->normal);
         // thin paper also passes some of what falls on its other side
@@ -146,22 +174,7 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
             ambient = v3_mad(ambient, sky_ambient(&preview->sky, v3_scale(point->normal, -1)), point->transmission);
         V3 light = v3_mul(point->albedo, ambient);
         if (point->mirror > 0) light = v3_add(light, mirror_sky(&preview->sky, point));
-        block->light[i] = v3_mad(block->light[i], light, block->blocked[i] ? occluded_sky : 1);
+        float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];
+        block->light[i] = v3_mad(block->light[i], light, open);
     }
-}
-
-V3 light_embers(const Scene *scene, const Point *point, int first, int stride) {
-    const EmberLights *l = &scene->lights;
-    V3 p = point->position, n = point->normal;
-    float least = 0.5f * point->transmission, weight[LIGHT_LIMIT];
-    // by arrays: four lights at a time
-    for (int k = 0; k < LIGHT_LIMIT; k++) {
-        float x = l->x[k] - p.x, y = l->y[k] - p.y, z = l->z[k] - p.z;
-        float d2 = x * x + y * y + z * z + l->softness[k], cosine = (n.x * x + n.y * y + n.z * z) / sqrtf(d2);
-        // wrapped: clusters have an extent that a point does not, and the sheet they lie in must be lit too
-        weight[k] = maxf((cosine + 0.25f) * 0.8f, least) / d2;
-    }
-    V3 sum = {0, 0, 0};
-    for (int k = first; k < scene->light_count; k += stride) sum = v3_mad(sum, l->strength[k], weight[k]);
-    return v3_scale(v3_mul(sum, point->albedo), (float)stride);
 }

@@ -136,6 +136,9 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     }
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
         if (!all_between(def->colours[s], 3, 0, 1e4f)) result = refuse(error, s, "a sheet's colour is out of range");
+    for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
+        if (!all_between(&def->transmittances[s], 1, 0, 1))
+            result = refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
     return result;
 }
 
@@ -150,11 +153,13 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
     preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Table));
+    preview->lamps = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
+    preview->seen = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(float));
     preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
     for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
+    if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
         (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
@@ -230,6 +235,8 @@ void preview_destroy(Preview *preview) {
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
+    preview_resize(&allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
     preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     preview_resize(&allocator, preview->mask, mask_size(preview), 0);
     for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);

@@ -45,6 +45,9 @@ typedef enum PreviewGround {
     PREVIEW_GROUND_PLAIN,
 } PreviewGround;
 
+/// Of office paper, 80 g/m2; its opacity of 85 to 92 % by ISO 2471 comes to about that.
+#define PREVIEW_TRANSMITTANCE 0.22f
+
 typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
     int thread_count;
@@ -66,6 +69,7 @@ typedef struct PreviewDef {
     uint32_t seed;
     const Image *const *pictures;  ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];     ///< [sheet_count] tint of each sheet, linear
+    const float *transmittances;   ///< [sheet_count] share of light that comes through; NULL: PREVIEW_TRANSMITTANCE
     uint32_t sheet_count;
     uint32_t shape_count;
     const PreviewShape *shapes;

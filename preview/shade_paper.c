@@ -118,6 +118,11 @@ bool paper_is_hole(const PaperState *state, float footprint) {
     return is_hole(state, &bent, footprint);
 }
 
+float paper_transmittance(const Preview *preview, int32_t sheet) {
+    const float *known = preview->def.transmittances;
+    return known && sheet >= 0 && (uint32_t)sheet < preview->def.sheet_count ? known[sheet] : PREVIEW_TRANSMITTANCE;
+}
+
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
     V3 white = v3(0.86f, 0.852f, 0.832f), colour = {1, 1, 1};
     if (state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count) {
@@ -130,7 +135,7 @@ static void fresh(const Preview *preview, const PaperState *state, Point *point)
     // the cloudiness of its fibres
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
     point->albedo = v3_scale(v3_mul(white, colour), cloud);
-    point->transmission = 0.22f;
+    point->transmission = paper_transmittance(preview, state->sheet);
 }
 
 /// How far heat browned it, 0 to 0.76.

@@ -53,6 +53,7 @@ bool default_sheet(SceneArena *arena, void *object) {
     sheet->drop_pieces_below = def.drop_pieces_below;
     set3(sheet->velocity, def.velocity[0], def.velocity[1], def.velocity[2]);
     set3(sheet->colour, 1, 1, 1);
+    sheet->transmittance = PREVIEW_TRANSMITTANCE;
     sheet->scale = 1;
     return true;
 }

@@ -11,7 +11,7 @@ static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
 /// Bytes of a cell of the gas, how many cells it has where the scene leaves them to it, and at most; and how far it
 /// reaches beyond the sheets to the sides and down, m.
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_most = 2e6, gas_margin = 0.045;
-static const double pixel_bytes = 40;
+static const double pixel_bytes = 80;
 static const double program_bytes = 40e6;
 
 static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {

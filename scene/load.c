@@ -142,6 +142,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
     Mesh *mesh = &assets->meshes[index];
     load_mesh(loader, sheet, mesh, &assets->reports[index]);
     memcpy(assets->colours[index], sheet->colour, sizeof sheet->colour);
+    assets->transmittances[index] = sheet->transmittance;
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
     SingeMaterialDef material = sheet->material.def;
@@ -202,6 +203,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
+    assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
     assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
     assets->source_pictures = many(&loader, scene->source_count, sizeof *assets->source_pictures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
@@ -250,6 +252,7 @@ void scene_assets_free(SceneAssets *assets) {
     free(assets->images);
     free(assets->pictures);
     free(assets->colours);
+    free(assets->transmittances);
     free(assets->params);
     free(assets->source_pictures);
     *assets = (SceneAssets){0};

@@ -100,6 +100,7 @@ typedef struct SceneSheet {
     SceneGrid grid;
     SceneFile picture;    ///< drawn on both sides, may be absent
     float colour[3];      ///< linear tint
+    float transmittance;  ///< share of light that comes through, in the preview
     float scale;          ///< times what `units` says
     int units;            ///< SceneUnits of the mesh file
     int up;               ///< SceneUp of the mesh file
@@ -234,6 +235,7 @@ typedef struct SceneAssets {
     Image *images;                ///< [sheet_count], zeroed where there is none
     const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
     float (*colours)[3];          ///< [sheet_count], for PreviewDef
+    float *transmittances;        ///< the same
     SingePicture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
     SingePicture *source_pictures; ///< [source_count]
     SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives

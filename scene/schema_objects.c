@@ -75,6 +75,8 @@ static const SchemaRow sheet_rows[] = {
      .doc = "PNG or JPEG, printed on both sides in the preview"},
     {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneSheet, colour), .length = 3, WITHIN(0, 1),
      .doc = "linear red, green, blue; tints the picture"},
+    {"transmittance", ROW_FLOAT, DIM_FRACTION, AT(SceneSheet, transmittance), WITHIN(0, 1),
+     .doc = "in the preview: share of the light on one side of the fresh sheet that leaves it on the other"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneSheet, scale), WITHIN(1e-6, 1e4),
      .doc = "times `units`: how large the mesh file is made"},
     {"units", ROW_ENUM, DIM_NONE, AT(SceneSheet, units), .names = units_names,

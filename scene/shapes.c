@@ -25,6 +25,7 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
         .seed = (uint32_t)scene->sim.seed,
         .pictures = assets->pictures,
         .colours = (const float(*)[3])assets->colours,
+        .transmittances = assets->transmittances,
         .sheet_count = assets->sheet_count,
     };
     memcpy(def->sun_direction, preview->light_direction, sizeof def->sun_direction);
