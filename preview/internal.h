@@ -31,7 +31,7 @@ typedef struct PaperVertex {
     float uv[2];
     float temperature;   ///< K
     float peak;          ///< K, highest so far
-    float burn;          ///< 0 to 1
+    float burn;          ///< how far it looks burnt, 0 to 1
     float burn_rate;     ///< 1/s
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
@@ -266,6 +266,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point);
 /// Width of the glowing line, m, and the share of burn around which it lies.
 #define EMBER_WIDTH 0.00042f
 #define EMBER_BURN 0.74f
+/// The share at which a leaf of char rests until it glows away: short of the embers.
+#define CHAR_LEAF 0.64f
 #define EMBER_GAIN 3.4f
 /// The glowing skin is hotter than the mean over the sheet's thickness that the simulation keeps.
 static inline float ember_temperature(float mean) { return mean + 110; }

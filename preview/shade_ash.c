@@ -34,7 +34,7 @@ void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *poin
     float size = point->footprint, vein = veins(bent, size), fibre = fibres(bent->place, size);
     float cloud = paper_noise(bent->place, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->middle;
     float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
-    float value = mixf(0.030f, 0.13f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
+    float value = mixf(0.034f, 0.20f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
     value += (0.03f + 0.07f * pale) * maxf(rim, stepf(0.35f, 0.95f, state->rim + 0.25f * bent->fine));
     V3 tone = v3_mix(v3(0.98f, 0.99f, 1.03f), v3(1.03f, 1.0f, 0.95f), pale);

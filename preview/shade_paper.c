@@ -162,7 +162,7 @@ static void char_shade(const Bent *bent, V3 burnt, float ink, Point *point) {
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
     point->gloss = 0.055f * black * tar, point->shininess = 14;
-    point->mirror = 0.62f * black * tar;
+    point->mirror = 0.45f * black * tar;
     paper_fold(bent->place, 3.6f, 0.34f * black, 32, point);
     paper_crumple(bent->place, 0.9f, 0.11f * black, 31, point);
 }

@@ -35,6 +35,22 @@ static bool near_enough(const float p[3]) {
     return fabsf(p[0]) < 1e4f && fabsf(p[1]) < 1e4f && fabsf(p[2]) < 1e4f; // false for NaN
 }
 
+/// How far the look of a place has gone from fresh (0) by black char (CHAR_LEAF) to ash (1). Where pyrolysis leaves char
+/// that glows away later, the share of the mass does not tell: with the fractions c of char, a of ash and f of fuel, and
+/// about half of the char staying as ash, q = c / (c + 2 a) is the share of what has burnt that is still char, and
+///
+///     look = q CHAR_LEAF (1 - f) + (1 - q) burn
+///
+/// which is `burn` where there is one reaction, without char.
+static float look_of(const SingeSurface *surface, uint32_t i, float burn) {
+    if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return burn;
+    float charred = clampf(finite_or(surface->char_fraction[i], 0), 0, 1);
+    float ash = clampf(finite_or(surface->ash_fraction[i], 0), 0, 1);
+    if (charred <= 0) return burn;
+    float fuel = clampf(finite_or(surface->mass[i], 1) - charred - ash, 0, 1);
+    return mixf(burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
+}
+
 static void pack_vertex(const Preview *preview, const SingeSurface *surface, uint32_t i, PaperVertex *out,
                         float position[4]) {
     const float zero[3] = {0, 0, 0};
@@ -55,6 +71,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
     if (surface->time_ignited && surface->time_ignited[i] >= 0)
         out->age = clampf((float)(preview->time - (double)surface->time_ignited[i]) * preview->def.pace, 0, 1e6f);
     else if (out->burn > 0) out->age = 60;
+    out->burn = look_of(surface, i, out->burn);
     for (int c = 0; c < 3; c++) position[c] = surface->position[i][c];
     position[3] = 0;
 }

@@ -191,11 +191,45 @@ static void test_grounds(void **state) {
     }
 }
 
+/// What pyrolysis leaves is a black leaf, whatever little mass it has; it greys as it glows away, and only where it does
+/// so does it shine: not a leaf that is hot and still loses mass, but the line between leaf and ash.
+static void test_char_leaf(void **state) {
+    (void)state;
+    static uint8_t rgb[BYTES];
+    float mass[4], charred[4], ash[4], green[3], red[2];
+    Quad q;
+    PreviewDef def = above();
+    quad_make(&q, 0.1f, 0.01f);
+    q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;
+    for (int k = 0; k < 3; k++) { // with one reaction, with a leaf of char, with ash
+        for (int i = 0; i < 4; i++) {
+            charred[i] = k == 1 ? 0.25f : 0, ash[i] = k == 2 ? 0.12f : 0, mass[i] = k == 2 ? 0.12f : 0.25f;
+            q.burn[i] = (1 - mass[i]) / 0.88f, q.peak[i] = 900;
+        }
+        draw(&def, &q.surface, 1, rgb);
+        green[k] = middle(rgb, 1);
+    }
+    print_message("one reaction %.0f, leaf %.0f, ash %.0f\n", (double)green[0], (double)green[1], (double)green[2]);
+    assert_true(green[1] < 60 && green[2] > green[1] + 30 && green[0] > green[1]);
+    for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
+    for (int line = 0; line < 2; line++) {
+        for (int i = 0; i < 4; i++) {
+            bool gone = line && (i == 1 || i == 2);
+            charred[i] = gone ? 0 : 0.25f, ash[i] = gone ? 0.12f : 0, mass[i] = charred[i] + ash[i];
+            q.burn[i] = (1 - mass[i]) / 0.88f, q.temperature[i] = 1100, q.rate[i] = 1;
+        }
+        draw(&def, &q.surface, 1, rgb);
+        red[line] = mean(rgb, 0) - mean(rgb, 2);
+    }
+    print_message("red of a hot leaf %.1f, of a line of embers %.1f\n", (double)red[0], (double)red[1]);
+    assert_true(red[1] > red[0] + 1.5f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_white_paper), cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
         cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember), cmocka_unit_test(test_ash_pales),
-        cmocka_unit_test(test_skies), cmocka_unit_test(test_grounds),
+        cmocka_unit_test(test_skies), cmocka_unit_test(test_char_leaf), cmocka_unit_test(test_grounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
