@@ -19,12 +19,13 @@ static SingeResult add_colliders(SingeSim *sim) {
     return singe_sim_add_collider(sim, &sphere, &id);
 }
 
-static SingeResult fill(SingeSim *sim, double springs) {
+static SingeResult fill(SingeSim *sim, const BenchOptions *options, double springs) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId sheet_id;
     sheet.material.mass_rate.field = SINGE_FIELD_NOISE;
     sheet.material.mass_rate.to = 2 * sheet.material.mass_rate.value;
     sheet.material.mass_rate.noise = (SingeNoise){0.05f, 4, 1};
+    if (options->curvature.count) sheet.material.curvature_max = singe_param((float)options->curvature.values[0]);
     TRY(sheet_add(sim, &sheet, options_cells(springs), 0.3f, true, &sheet_id));
     TRY(singe_sim_commit(sim));
 
@@ -52,7 +53,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     if (allocator) def.allocator = *allocator;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = fill(*sim, springs);
+    result = fill(*sim, options, springs);
     if (!result) return SINGE_OK;
     *error = *singe_sim_error(*sim);
     error->code = result;

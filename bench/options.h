@@ -20,6 +20,9 @@ typedef enum BenchState {
     BENCH_HANG,   ///< hangs from two corner patches that come nearer to each other
 } BenchState;
 
+/// What sheets are cut to.
+typedef enum BenchOutline { BENCH_ALL_OUTLINES, BENCH_SQUARE, BENCH_DISC } BenchOutline;
+
 /// A material, and what sources say of its fire, from .. to; 0 and 0 where they say nothing.
 typedef struct BenchMaterial {
     const char *name;
@@ -34,6 +37,10 @@ typedef struct BenchOptions {
     BenchList cells;     ///< a side of the square sheet
     BenchList thickness; ///< m
     BenchList springs;
+    BenchList curvature; ///< 1/m, limits of it; 0: none
+    BenchList seeds;     ///< of noise
+    BenchOutline outline;
+    bool creases;        ///< sharp bends stay
     BenchState state;
     SingeSolverMethod solver;
     SingeInstructions instructions;

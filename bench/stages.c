@@ -8,13 +8,14 @@
 enum { WARM_UP = 40 };
 
 enum {
-    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_LEAST, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS, ITERATIONS,
-    CONTACTS, BURNT, MEMORY, YARDSTICK, STEP_COLUMNS
+    SPRINGS, SOLVER, LIMIT, THREADS, STEP_MEDIAN, STEP_LEAST, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS,
+    ITERATIONS, CONTACTS, BURNT, MEMORY, YARDSTICK, STEP_COLUMNS
 };
 
 static const BenchColumn step_columns[STEP_COLUMNS] = {
     [SPRINGS] = {"springs", "%.0f", 8, NULL},
     [SOLVER] = {"solver", NULL, 11, NULL},
+    [LIMIT] = {"curvature_max", "%.0f", 13, NULL},
     [THREADS] = {"threads", "%.0f", 7, NULL},
     [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
     [STEP_LEAST] = {"least_ms", "%.4g", 8, NULL},
@@ -36,6 +37,7 @@ static void fill_step(BenchValue *row, const BenchOptions *options, const SingeS
     double springs = timing_springs(sim), step = timing_median(timing, TIMED_STEP);
     row[SPRINGS] = bench_number(springs);
     row[SOLVER] = bench_text(options_solver_name(options->solver));
+    row[LIMIT] = bench_number(options->curvature.values[0]);
     row[THREADS] = bench_number(options->threads);
     row[STEP_MEDIAN] = bench_number(step);
     row[STEP_LEAST] = bench_number(timing_least(timing, TIMED_STEP));
@@ -115,12 +117,18 @@ static SingeResult measure(const BenchOptions *options, int stage, double spring
 }
 
 SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    const double default_limit = (double)singe_default_material().curvature_max.value;
     BenchList springs = bench_list(&options->springs, 1, (const double[]){1e5});
+    BenchList limits = bench_list(&options->curvature, 1, &default_limit);
     Yardstick *yardstick = yardstick_create();
     SingeResult result = yardstick ? SINGE_OK : SINGE_ERROR_MEMORY;
     *table = table_begin("step", step_columns, STEP_COLUMNS, table->text);
-    for (int i = 0; i < springs.count && !result; i++)
-        result = measure(options, TIMED_STEP, springs.values[i], yardstick, table, error);
+    for (int i = 0; i < springs.count; i++)
+        for (int l = 0; l < limits.count && !result; l++) {
+            BenchOptions limited = *options;
+            limited.curvature = (BenchList){.count = 1, .values = {limits.values[l]}};
+            result = measure(&limited, TIMED_STEP, springs.values[i], yardstick, table, error);
+        }
     yardstick_destroy(yardstick);
     return result;
 }

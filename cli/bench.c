@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "cli/args.h"
 #include "cli/bench_args.h"
+#include "cli/bench_isotropy.h"
 #include "cli/bench_materials.h"
 #include "cli/bench_plot.h"
 #include "cli/bench_preview.h"
@@ -36,7 +37,7 @@ static const struct {
      "A strip with a weak line is pulled apart: the load at which it breaks, by cell size and time step."},
     {"dynamics", "bench dynamics", bench_dynamics, SIZES | SOLVER | BENCH_BIT(STATE) | BENCH_BIT(QUICK),
      "The stage dynamics and its projection of springs by size, against the machine's peaks."},
-    {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT),
+    {"step", "bench step", bench_step, SIZES | SOLVER | BENCH_BIT(LIMIT) | BENCH_BIT(CURVATURE),
      "Whole steps of a burning sheet with a sphere and the ground: milliseconds of each stage."},
     {"heat", "bench heat", bench_heat, SIZES, "The stage heat of burning steps."},
     {"ablate", "bench ablate", bench_ablate, SIZES, "The stage ablate of burning steps."},
@@ -72,6 +73,11 @@ static const struct {
     {"fold", "bench fold", bench_fold,
      BENCH_BIT(SUBSTEPS) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) | OUTPUT,
      "A strip is folded by 180 degrees and let go: the angle that stays, at other resolutions and time steps."},
+    {"isotropy", "bench isotropy", bench_isotropy,
+     BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(CURVATURE) | BENCH_BIT(CREASES) | BENCH_BIT(OUTLINE) |
+         BENCH_BIT(SEEDS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | BENCH_BIT(INSTRUCTIONS) |
+         BENCH_BIT(QUICK) | OUTPUT,
+     "The same burn on a grid and on one turned by 45 degrees: whether folds follow the mesh."},
     {"spectrum", "bench spectrum", bench_spectrum,
      BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(QUICK) | BENCH_BIT(INSTRUCTIONS) |
          BENCH_BIT(SUBSTEPS) | OUTPUT,

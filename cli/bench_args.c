@@ -24,6 +24,10 @@ static const ArgOption all_options[BENCH_OPT_COUNT] = {
     [BENCH_OPT_QUICK] = {"quick", 0, NULL, "a short run"},
     [BENCH_OPT_TIMED] = {"steps", 0, "N", "steps to time, 1 to 100000 [by size]"},
     [BENCH_OPT_MATERIAL] = {"material", 0, "NAME,NAME,...", "materials or material files [all that are built in]"},
+    [BENCH_OPT_CURVATURE] = {"curvature", 0, "1/M,1/M,...", "curvature_max, 0 (none) to 1e6 [the material's]"},
+    [BENCH_OPT_SEEDS] = {"seeds", 0, "N,N,...", "seeds of the noise, 1 to 1000000 [1,2,3,4]"},
+    [BENCH_OPT_OUTLINE] = {"outline", 0, "square|disc", "one of the two alone [both]"},
+    [BENCH_OPT_CREASES] = {"creases", 0, NULL, "sharp bends stay, by the material's crease_radius"},
     [BENCH_OPT_JSON] = {"json", 0, NULL, "prints JSON"},
     [BENCH_OPT_CSV] = {"csv", 0, "FILE", "writes the table to FILE, too"},
 };
@@ -105,6 +109,14 @@ static bool read_state(const Parser *parser, const char *text, BenchState *state
     return true;
 }
 
+static bool read_outline(const Parser *parser, const char *text, BenchOutline *outline) {
+    static const char *const words[] = {"square", "disc"};
+    int value;
+    if (!read_word(parser, text, words, 2, "square or disc", &value)) return false;
+    *outline = value ? BENCH_DISC : BENCH_SQUARE;
+    return true;
+}
+
 static bool read_option(Parser *parser, const char *text, BenchRequest *request) {
     BenchOptions *o = &request->options;
     const ArgReader *reader = &parser->reader;
@@ -132,6 +144,12 @@ static bool read_option(Parser *parser, const char *text, BenchRequest *request)
     case BENCH_OPT_QUICK: o->quick = true; return true;
     case BENCH_OPT_TIMED: return args_int(reader, option, text, 1, 100000, &o->steps);
     case BENCH_OPT_MATERIAL: request->materials = text; return true;
+    case BENCH_OPT_CURVATURE:
+        return read_list(parser, text, 0, 1e6, false, 1, "numbers from 0 to 1e6 as in 0,390", &o->curvature);
+    case BENCH_OPT_SEEDS:
+        return read_list(parser, text, 1, 1e6, true, 1, "whole numbers from 1 to 1000000 as in 1,2", &o->seeds);
+    case BENCH_OPT_OUTLINE: return read_outline(parser, text, &o->outline);
+    case BENCH_OPT_CREASES: o->creases = true; return true;
     case BENCH_OPT_JSON: request->json = true; return true;
     case BENCH_OPT_CSV: request->csv = text; return true;
     case BENCH_OPT_COUNT: break;

@@ -26,6 +26,8 @@ TINY = (
     ("width", ["--springs", "1000", "--steps", "5"], ["instructions", "bytes"]),
     ("stability", ["--cells", "8", "--quick", "--time", "0.1"], ["result", "max_strain_pct"]),
     ("spectrum", ["--quick", "--time", "0.05", "--substeps", "2"], ["wavelength_mm", "base", "h_x_2", "s_div_2"]),
+    ("isotropy", ["--quick", "--outline", "disc", "--cells", "12", "--time", "0.05", "--seeds", "3"],
+     ["r_0", "r_45", "effect", "mean"]),
     ("look", ["--cells", "8", "--quick", "--time", "0.2"], ["sag_m", "shape_mm", "wavelength_mm"]),
 )
 
@@ -177,6 +179,9 @@ class Bench(Case):
             (["dynamics", "--json=1"], "takes no value"),
             (["step", "--limit-ms", "-1"], "milliseconds"),
             (["memory", "--steps", "3"], "unknown option"),
+            (["isotropy", "--outline", "ring"], "square or disc"),
+            (["isotropy", "--curvature", "-1"], "numbers from 0 to 1e6"),
+            (["isotropy", "--seeds", "0"], "whole numbers from 1 to 1000000"),
         ):
             with self.subTest(args=args):
                 self.assertIn(hint, self.singe("bench", *args, expect=2)[1])

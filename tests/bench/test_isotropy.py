@@ -1,0 +1,33 @@
+"""singe bench isotropy: folds of what burns do not follow the mesh where its curvature is limited, and do where not.
+
+The short form: two seeds of squares. The whole, four seeds of squares and discs, is in docs/equations.md."""
+
+import json
+import os
+import subprocess
+import unittest
+
+
+class Isotropy(unittest.TestCase):
+    def effect(self, *options):
+        command = [os.environ["SINGE"], "bench", "isotropy", "--quick", "--outline", "square", "--json", *options]
+        rows = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)["rows"]
+        self.assertEqual(len(rows), 2)
+        for row in rows:
+            self.assertAlmostEqual(row["effect"], (row["r_0"] / row["r_45"]) ** 0.5, delta=1e-3)
+            self.assertGreater(row["bend_per_m"], 20)  # it is wrinkled at all
+        mean = rows[-1]["mean"]
+        print(f"{' '.join(options)}: mesh effect {mean:.3f}")
+        return mean
+
+    def test_folds_do_not_follow_the_mesh(self):
+        mean = self.effect("--curvature", "390")
+        self.assertTrue(0.87 <= mean <= 1.15)
+
+    def test_without_a_limit_they_do(self):
+        """The bad case on the other side of the bar."""
+        self.assertGreater(self.effect("--curvature", "0"), 1.3)
+
+
+if __name__ == "__main__":
+    unittest.main()
