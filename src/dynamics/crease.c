@@ -22,8 +22,8 @@
 //
 //   f = (cos psi + sin^2 beta (psi - psi_p)/sin psi)/cos phi
 //
-// A mesh of cells s holds less than 2 beta = 2 atan(2 t/s) an edge away from the centres, and less than pi - 2 beta
-// towards them. Both angles are held to CREASE_HOLDS of the way there.
+// with CREASE_LEVER of sin beta at least in place of |sin psi|. A mesh of cells s holds less than 2 beta an edge away
+// from the centres, and less than pi - 2 beta towards them. Both angles are held to CREASE_HOLDS of the way there.
 //
 // Plasticity, in curvatures k = angle/s (1/m), which mean the same on every mesh. Elastic is what is neither crease nor
 // eq 6's own doing, k_e = k - k_6 - k_p, where layers that shrink by ratios a (green) and b (blue) curl by
@@ -35,6 +35,21 @@
 // let go has |k_e| = 0 at k = k_p: only a bend by k_y the other way opens the crease again. k - k_6 is
 // taken through a low pass of CREASE_TIME: trembling does not crease.
 //
+// Three things keep creases from running along rows of the mesh.
+//
+// Width. What yields is soft, and would take all of a bend into one row of edges: of k - k_6 no more counts than
+// CREASE_PEAK of the mean about an edge, of its own bend and half as much of those before and behind it along the
+// strand. An arc of any length loses nothing by that, a single edge a third.
+//
+// Direction. A fold of the curvature k whose line is turned by omega from the edge bends it by k cos^2 omega and twists
+// it by k sin omega cos omega, as a cylinder, for a sheet does not stretch: the twist tau is what turns n_1 into n_2
+// about the direction across the edge. So that a fold keeps the same whichever way it runs, k_y counts
+// cos^2 omega = theta^2/(theta^2 + (tau - tau_0)^2) of itself at the edge, theta without theta_0 and eq 6's part, and
+// CREASE_SLANT at least. Else creases along the mesh come at k_y and those along its diagonals at 2 k_y.
+//
+// Sharpness. Of what is bent beyond curvature_max, which the mesh gives back (curvature.c), nothing stays: k - k_6
+// counts up to cos^2 omega of it, so that |k_p| <= c (curvature_max - k_y) cos^2 omega.
+//
 // Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
 // and no more than that share of a bend comes to stay.
 #include "base/quad.h"
@@ -45,6 +60,16 @@ static const float CREASE_TIME = 0.02f;
 
 /// Share of the way to where l(theta) is flat or 0 that is left to a crease, so that it stays firm.
 static const float CREASE_HOLDS = 0.85f;
+
+/// Least lever of a creased spring, -sin psi, over that in a flat sheet. With less of it the force for the same moment
+/// would pull the cells into each other.
+static const float CREASE_LEVER = 0.5f;
+
+/// Least cos^2 omega that counts: at folds more nearly across an edge it bends little, and its direction is uncertain.
+static const float CREASE_SLANT = 0.4f;
+
+/// Most of an edge's bend that counts, over the mean about it: that of the last edge of an even arc.
+static const float CREASE_PEAK = 4.0f / 3;
 
 static const float CREASE_PI = 3.14159265f;
 
@@ -87,20 +112,38 @@ static inline float hinge_angle(Vec a, Vec b, Vec edge) {
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
 }
 
+/// curvature_max in the middle of an edge, where it has one at both ends, and what cells of this size bear at most.
+static float hinge_limit(const Shell *shell, uint32_t from, uint32_t to, float borne) {
+    float a = field_at(shell->matter.curvature_max, from), b = field_at(shell->matter.curvature_max, to);
+    return a > 0 && b > 0 ? fminf(0.5f * (a + b), borne) : INFINITY;
+}
+
+/// tau: of the turn from one unit normal to the other, the part about the direction across the edge.
+static float hinge_twist(Vec a, Vec b, Vec edge) {
+    const Vec turn = vec_cross(a, b), across = vec_cross(vec_add(a, b), edge);
+    const float sine = vec_length(turn), length = vec_length(across);
+    if (!(sine > 0 && length > 0)) return 0;
+    return atan2f(sine, vec_dot(a, b)) / sine * vec_dot(turn, across) / length;
+}
+
 static Hinge hinge_measure(const Shell *shell, uint32_t green) {
     const uint32_t *ends = shell->springs[SINGE_GREEN].ends[green];
     const float(*x)[4] = (const float(*)[4])shell->rest_position;
     uint32_t cell[2] = {ends[0] - shell->vertex_count, ends[1] - shell->vertex_count};
     Hinge hinge = {.side = {hinge_side(shell, cell[0], cell[1]), hinge_side(shell, cell[1], cell[0])}};
     const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
-    Vec from = vec_load(x[corner[hinge.side[0]]]), to = vec_load(x[corner[(hinge.side[0] + 1) & 3]]);
+    const uint32_t first = corner[hinge.side[0]], second = corner[(hinge.side[0] + 1) & 3];
+    Vec from = vec_load(x[first]), to = vec_load(x[second]);
     Vec edge = vec_sub(to, from), middle = vec_scale(vec_add(from, to), 0.5f);
     hinge.arc = vec_length(vec_sub(hinge_middle(x, corner), middle)) +
                 vec_length(vec_sub(hinge_middle(x, other), middle));
     float thickness = 0.5f * (field_at(shell->matter.thickness, ends[0]) + field_at(shell->matter.thickness, ends[1]));
-    float angle = hinge_angle(hinge_normal(x, corner), hinge_normal(x, other), edge);
+    const Vec normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
+    float angle = hinge_angle(normal, beyond, edge);
     hinge.angle = isnan(angle) ? 0 : angle;
+    hinge.twist = hinge_twist(normal, beyond, edge);
     hinge.most = atan2f(2 * thickness, hinge.arc);
+    hinge.limit = hinge_limit(shell, first, second, hinge.most / hinge.arc);
     // of what is folded into a point at rest no length is made
     hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.most, 1.5f));
     return hinge;
@@ -121,8 +164,8 @@ static float crease_lean(const Hinge *hinge, float angle) {
 }
 
 float crease_ratio(const Hinge *hinge, float stays, float now) {
-    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->most), at = sinf(lean);
-    float moment = at < -0.1f ? flat * flat * (lean - kept) / at : 0;
+    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->most);
+    float moment = flat * flat * (lean - kept) / fminf(sinf(lean), -CREASE_LEVER * flat);
     return fmaxf(cosf(lean) + moment, 0.05f) / cosf(hinge->lean);
 }
 
@@ -158,17 +201,71 @@ static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, co
     return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
 }
 
+static Vec crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
+    const uint32_t *corner = job->shell->cells[ends[0] - job->shell->vertex_count];
+    return vec_sub(vec_load(x[corner[(hinge->side[0] + 1) & 3]]), vec_load(x[corner[hinge->side[0]]]));
+}
+
 /// The angle of a fold now. Flat on itself it is the same to both sides: then it is on the side where it came from.
 static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *hinge, float last) {
-    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
-    const uint32_t *corner = job->shell->cells[first];
-    Vec edge = vec_sub(vec_load(x[corner[(hinge->side[0] + 1) & 3]]), vec_load(x[corner[hinge->side[0]]]));
     const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
-    float angle = hinge_angle(vec_load(normal[first]), vec_load(normal[second]), edge);
+    float angle = hinge_angle(vec_load(normal[first]), vec_load(normal[second]), crease_edge(job, ends, hinge));
     if (angle - last > CREASE_PI) return CREASE_PI * -1 - hinge->angle;
     if (angle - last < -CREASE_PI) return CREASE_PI - hinge->angle;
     return angle - hinge->angle;
+}
+
+/// k - k_6 as it is now, in rad; NAN where it is not known. `last` is where it was.
+static float crease_turned(const Crease *job, uint32_t k, float last) {
+    const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
+    const Hinge *hinge = &job->plan->hinges[k];
+    bool whole = !job->burning || crease_kept(job->shell, job->state, k) == 1;
+    float curl = whole ? 0 : crease_curl(job, k, ends, hinge);
+    return crease_angle(job, ends, hinge, last + curl + hinge->angle) - curl;
+}
+
+/// cos^2 omega. The bend is the larger of that now and that which lasts: no edge seems aslant while its fold opens.
+static float crease_slant(const Crease *job, uint32_t k) {
+    const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
+    const Hinge *hinge = &job->plan->hinges[k];
+    uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
+    const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
+    const float lasting = job->dynamics->bend[k] * hinge->arc, now = crease_turned(job, k, lasting);
+    float bend = fmaxf(fabsf(lasting), fabsf(now)); // also where now is NAN
+    float twist = hinge_twist(vec_load(normal[first]), vec_load(normal[second]), crease_edge(job, ends, hinge));
+    twist -= hinge->twist;
+    float slant = bend * bend / fmaxf(bend * bend + twist * twist, 1e-20f);
+    return fmaxf(slant, CREASE_SLANT);
+}
+
+/// How much |k_p| grows at a bend k - k_6, with the sign of the bend that makes it; 0 where it does not yield.
+static float crease_yield(const Hinge *hinge, float bend, float held, float radius, float share, float slant) {
+    float most = slant * hinge->limit, elastic = fmaxf(-most, fminf(bend, most)) - held;
+    float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
+    return excess > 0 ? copysignf(share * excess, elastic) : 0;
+}
+
+/// Follows the bend of a green spring, but for what its layers do of themselves.
+static void crease_bend(const Crease *job, uint32_t k) {
+    float *bend = &job->dynamics->bend[k], arc = job->plan->hinges[k].arc;
+    float turned = crease_turned(job, k, *bend * arc);
+    if (!isnan(turned)) *bend += job->follows * (turned / arc - *bend);
+}
+
+/// Of a green spring's bend what counts beside those of its neighbours along the strand.
+static float crease_counts(const Crease *job, uint32_t k) {
+    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    const SpringSet *green = &job->shell->springs[SINGE_GREEN];
+    const float *bend = job->dynamics->bend;
+    float sum = bend[k], weight = 1;
+    if (k > 0 && flags[k - 1] & SINGE_ALIVE && green->ends[k - 1][1] == green->ends[k][0])
+        sum += 0.5f * bend[k - 1], weight += 0.5f;
+    if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1])
+        sum += 0.5f * bend[k + 1], weight += 0.5f;
+    const float most = CREASE_PEAK * fabsf(sum) / weight;
+    return sum * bend[k] > 0 ? fmaxf(-most, fminf(bend[k], most)) : 0;
 }
 
 /// Returns whether there is a crease.
@@ -176,20 +273,22 @@ static bool crease_spring(const Crease *job, uint32_t k) {
     const uint32_t *ends = job->shell->springs[SINGE_GREEN].ends[k];
     const Hinge *hinge = &job->plan->hinges[k];
     const Matter *matter = &job->shell->matter;
-    float *bend = &job->dynamics->bend[k], *crease = &job->dynamics->crease[k];
-    float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
-    float curl = kept < 1 ? crease_curl(job, k, ends, hinge) : 0;
-    float angle = crease_angle(job, ends, hinge, *bend * hinge->arc + curl + hinge->angle);
-    if (isnan(angle)) return *crease != 0;
-    *bend += job->follows * ((angle - curl) / hinge->arc - *bend);
+    float *crease = &job->dynamics->crease[k];
+    const float bend = crease_counts(job, k);
     float radius = 0.5f * (field_at(matter->crease_radius, ends[0]) + field_at(matter->crease_radius, ends[1]));
-    if (fabsf(*bend) * radius < 1 && *crease == 0) return false; // most are this
+    if (fabsf(bend) * radius < CREASE_SLANT && *crease == 0) return false; // most are this
+    float kept = job->burning ? crease_kept(job->shell, job->state, k) : 1;
     float share = 0.5f * (field_at(matter->crease_share, ends[0]) + field_at(matter->crease_share, ends[1]));
     if (!(radius > 0 && share > 0 && kept > 0)) return *crease != 0;
-    float held = kept * *crease, elastic = *bend - held;
-    float excess = fabsf(elastic) - 1 / radius - (1 / share - 1) * fabsf(held);
-    if (excess > 0) *crease += copysignf(kept * share * excess, elastic);
+    *crease += kept * crease_yield(hinge, bend, kept * *crease, radius, share, crease_slant(job, k));
     return *crease != 0;
+}
+
+static void crease_bends(void *task, int begin, int end) {
+    const Crease *job = task;
+    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    for (int k = begin; k < end; k++)
+        if (flags[k] & SINGE_ALIVE) crease_bend(job, (uint32_t)k);
 }
 
 static double crease_springs(void *task, int begin, int end) {
@@ -212,6 +311,7 @@ void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state,
     if (!plan->hinges) return;
     Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn.mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
+    pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);
     double creased = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);
     plan->creased = creased > 0;
 }

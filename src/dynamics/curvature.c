@@ -6,7 +6,10 @@
 //   |r| <= B,   r = x_a - 2 x_b + x_c,   B^2 = |r_0|^2 + (2 l sin(min(kappa l, 2.8)/2))^2
 //
 // with r_0 what it is at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
-// to the next. Once a substep what exceeds that is reduced by BEND_GAIN of the excess, with momentum kept:
+// to the next. Cells s that are large for the thickness t cannot bear that: their moment is greatest at about
+// beta = atan(2 t/s), and kappa is beta/s at most (with l/s times the chord of beta for the chord of beta l/s).
+//
+// Once a substep what exceeds that is reduced by BEND_GAIN of the excess, with momentum kept:
 //
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
@@ -33,12 +36,15 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
 }
 
 /// B above, of the vertex between two springs.
-static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, float length) {
+static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, float length, float side) {
     const float(*x)[4] = (const float(*)[4])shell->rest_position;
     const float curvature = field_at(shell->matter.curvature_max, b);
     if (!(curvature > 0)) return INFINITY;
     Vec rest = vec_sub(vec_sub(vec_load(x[c]), vec_load(x[b])), vec_sub(vec_load(x[b]), vec_load(x[a])));
     float turned = 2 * length * sinf(0.5f * fminf(curvature * length, 2.8f));
+    float thickness = field_at(shell->matter.thickness, b);
+    float cosine = side / sqrtf(side * side + 4 * thickness * thickness); // of beta
+    turned = fminf(turned, 2 * length * length / side * sqrtf(0.5f * (1 - cosine)));
     return sqrtf(vec_dot(rest, rest) + turned * turned);
 }
 
@@ -46,6 +52,7 @@ void curvature_prepare(const Shell *shell, const State *state, SingeColour colou
     const SpringSet *springs = &shell->springs[colour];
     const float *mass = state->burn.mass, *length = state->burn.spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
+    const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand];
     for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
         const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];
@@ -58,8 +65,8 @@ void curvature_prepare(const Shell *shell, const State *state, SingeColour colou
         const uint32_t a = springs->ends[before][0];
         bool fresh = mass[a] > BEND_FRESH && mass[b] > BEND_FRESH && mass[c] > BEND_FRESH;
         bool whole = set->weight[slot] > 0 && set->weight[slot_before] > 0; // neither burnt nor torn
-        set->bend_limit[slot] =
-            fresh && whole ? bend_limit(shell, a, b, c, 0.5f * (length[before] + length[k])) : INFINITY;
+        const float mean = 0.5f * (length[before] + length[k]);
+        set->bend_limit[slot] = fresh && whole ? bend_limit(shell, a, b, c, mean, side * mean) : INFINITY;
     }
 }
 

@@ -65,8 +65,10 @@ typedef struct Hinge {
     uint8_t side[2]; ///< of the cell at each of the spring's ends
     float arc;       ///< m, s, from middle to middle along the sheet
     float angle;     ///< rad, theta_0
+    float twist;     ///< rad, tau_0
     float most;      ///< rad, beta
     float lean;      ///< rad, phi
+    float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY where there is none
 } Hinge;
 
 struct DynamicsPlan {

@@ -127,6 +127,19 @@ static void gentle_bends_are_not_touched(void **unused) {
     bench_close(&bench);
 }
 
+/// A limit beyond what cells of this size bear is that of the cells: beta, 45 degrees for these.
+static void coarse_cells_have_their_own(void **unused) {
+    (void)unused;
+    Bench bench;
+    const float beta = atanf(2 * singe_default_material().thickness.value / cell);
+    open_sheet(&bench, quads_grid(NX, NY, cell, cell, false), 1e5f);
+    fold(&bench, 0.95f * beta * 8, 8);
+    assert_false(is_touched(&bench));
+    fold(&bench, 1.2f * beta * 8, 8);
+    assert_true(is_touched(&bench));
+    bench_close(&bench);
+}
+
 static void without_a_limit_nothing_is_touched(void **unused) {
     (void)unused;
     Bench bench;
@@ -203,6 +216,7 @@ int main(void) {
         cmocka_unit_test(sharp_folds_are_rounded),
         cmocka_unit_test(momenta_are_kept),
         cmocka_unit_test(gentle_bends_are_not_touched),
+        cmocka_unit_test(coarse_cells_have_their_own),
         cmocka_unit_test(without_a_limit_nothing_is_touched),
         cmocka_unit_test(char_folds_as_it_likes),
         cmocka_unit_test(what_is_gone_does_not_bend),
