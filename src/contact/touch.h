@@ -51,6 +51,7 @@ typedef struct TouchCounters {
     uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
     uint64_t pushes;     ///< pairs of points that a substep had to push apart, summed over substeps
     uint64_t stops;      ///< pairs of cells whose way was cut short
+    uint64_t looks;      ///< pairs of cells that were looked at again, as a round had moved one of them
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
     uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since

@@ -11,6 +11,7 @@ typedef struct Guard {
     DynamicsState *dynamics;
     const uint8_t *cell_flags;
     float time; ///< s since the search
+    uint64_t looked; ///< pairs, in all rounds but the first
 } Guard;
 
 static inline bool guard_is_alive(const Guard *guard, uint32_t c) { return guard->cell_flags[c] & SINGE_ALIVE; }
