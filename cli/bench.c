@@ -12,6 +12,7 @@
 #include "cli/bench_preview.h"
 #include "cli/cli.h"
 #include "cli/console.h"
+#include "cli/streams.h"
 #include "formats/printable.h"
 
 #define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
@@ -94,7 +95,7 @@ static void help(void) {
 }
 
 static ExitCode write_csv(Console *console, const char *path, const BenchTable *table) {
-    FILE *file = fopen(path, "w");
+    FILE *file = streams_create(path);
     if (file) table_write_csv(table, file);
     bool failed = !file || ferror(file);
     if (file && fclose(file)) failed = true;

@@ -20,6 +20,7 @@
 #include "cli/job.h"
 #include "cli/pictures.h"
 #include "cli/rim.h"
+#include "cli/streams.h"
 #include "cli/text.h"
 #include "cli/wrinkles.h"
 #include "formats/formats.h"
@@ -336,7 +337,7 @@ static void write_row(FILE *file, const Measure *measure, int index) {
 }
 
 static ExitCode write_csv(Measure *measure) {
-    FILE *file = fopen(measure->csv, "w");
+    FILE *file = streams_create(measure->csv);
     if (file) {
         write_header(file);
         for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);

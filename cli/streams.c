@@ -17,6 +17,16 @@ int streams_open(void) {
     return 0;
 }
 
+FILE *streams_create(const char *path) {
+    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (fd < 0) return NULL;
+    FILE *file = NULL;
+    int flags = fcntl(fd, F_GETFL);
+    if (flags >= 0 && fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) == 0) file = fdopen(fd, "w");
+    if (!file) close(fd);
+    return file;
+}
+
 int streams_finish(int code) {
     errno = 0;
     bool failed = fflush(stdout) != 0;

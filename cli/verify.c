@@ -13,6 +13,7 @@
 #include "cli/interrupt.h"
 #include "cli/job.h"
 #include "cli/stats_table.h"
+#include "cli/streams.h"
 #include "cli/text.h"
 #include "formats/printable.h"
 
@@ -175,7 +176,7 @@ static uint64_t print_table(const Verify *verify) {
 }
 
 static ExitCode write_csv(Verify *verify) {
-    FILE *file = fopen(verify->csv, "w");
+    FILE *file = streams_create(verify->csv);
     if (file) {
         fputs("frame,vertices,triangles", file);
         for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);

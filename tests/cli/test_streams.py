@@ -23,6 +23,18 @@ class Streams(Case):
         options.setdefault("stderr", subprocess.DEVNULL)
         return subprocess.run([SINGE, *args], timeout=120, **options).returncode
 
+    def test_a_table_into_a_pipe(self):
+        """A pipe without a reader is not waited for; one with a reader gets the table."""
+        self.run_scene("o", "--quiet", "--frames", "2")
+        pipe = self.path("pipe")
+        os.mkfifo(pipe)
+        _, err = self.singe("verify", self.path("o"), "--csv", pipe, expect=1, timeout=20)
+        self.assertIn("cannot write", err)
+        reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, reader)
+        self.singe("verify", self.path("o"), "--csv", pipe, timeout=20)
+        self.assertTrue(os.read(reader, 4096).startswith(b"frame,vertices"))
+
     def test_every_combination(self):
         self.scene = self.write_scene(frames=3)
         self.run_scene("whole", "--quiet", preview=True)
