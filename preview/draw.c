@@ -207,17 +207,17 @@ static bool is_mixed(const Block *block, const int *active) {
 }
 
 /// The lanes whose first samples differ, from each other or from their neighbours'. Returns how many.
-static int find_restless(const Preview *preview, const Block *block, const int *active, int *more) {
+static int find_restless(const Preview *preview, const Block *block, const int *active, bool bare, int *more) {
     // where a lens or a shutter spreads things thin, some pixels' first samples all miss what their neighbours' meet
-    // ... and where a shadow has its rim, all but few of a pixel's first rays to the sun may agree
-    bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (block->sunlit && block->shaded);
+    // ... and where a shadow has its rim on the table, all but few of a pixel's first rays to the sun may agree
+    bool mixed = (is_blurred(preview) && is_mixed(block, active)) || (bare && block->sunlit && block->shaded);
     float low = INFINITY, high = -INFINITY;
     for (int i = 0; i < LANES; i++) low = minf(low, block->low[i]), high = maxf(high, block->high[i]);
     int count = 0;
     for (int i = 0; i < LANES; i++) {
         const LayerSum *sum = &block->layer[i];
         bool edge = sum->hits > 0 && sum->hits < sum->samples; // even where only fire lights it, which is not in `high`
-        bool calm = !edge && block->high[i] - block->low[i] < 0.02f && high - low < 0.15f && !mixed;
+        bool calm = !edge && block->high[i] - block->low[i] < 0.026f && high - low < 0.15f && !mixed;
         more[i] = active[i] && !calm ? -1 : 0, count += more[i] != 0;
     }
     return count;
@@ -229,7 +229,7 @@ static bool keep_restless(const Block *block, int *more, int sample, int *taken)
     for (int i = 0; i < LANES; i++) {
         const LayerSum *sum = &block->layer[i];
         bool edge = sum->hits > 0 && sum->hits < sum->samples;
-        if (more[i] && !edge && block->high[i] - block->low[i] < 0.10f) more[i] = 0, taken[i] = sample;
+        if (more[i] && !edge && block->high[i] - block->low[i] < 0.22f) more[i] = 0, taken[i] = sample;
         any = any || more[i];
     }
     return any;
@@ -276,9 +276,9 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
         if (bare && !block->shaded && !block->clouded && !is_blurred(preview)) first = s + 1;
     }
     if (first == 1 && bare) samples = 1;
-    bool on = first < samples && find_restless(preview, block, active, more);
+    bool on = first < samples && find_restless(preview, block, active, bare, more);
     // where a shadow has its rim more rays are sent, and where there is none the first have told all
-    int rays = block->sunlit && block->shaded ? RIM_RAYS : 0;
+    int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
     for (int s = first; s < samples && on; s++) {
         if (s == samples / 2 && !rays && !is_blurred(preview)) on = keep_restless(block, more, s, taken);

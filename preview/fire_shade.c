@@ -23,9 +23,9 @@
 #define FLAME_HOT 2050.0f
 #define FLAME_DIM 0.4f     ///< radiance of a thick flame at its coolest and its hottest
 #define FLAME_BRIGHT 3.7f
-#define SOOT_DENSE 40.0f   ///< 1/m: radiance gathered a metre over that of a thick flame
+#define SOOT_DENSE 32.0f   ///< 1/m: radiance gathered a metre over that of a thick flame
 #define SOOT_OPAQUE 6.0f   ///< 1/m, extinction
-#define BLUE_DENSE 3.0f   ///< 1/m: radiance of the base gathered a metre
+#define BLUE_DENSE 2.4f   ///< 1/m: radiance of the base gathered a metre
 #define EDGE 0.19f         ///< share of burning at which a flame has its edge
 #define STAND_OFF 0.002f  ///< m above the paper, where nothing is seen yet
 #define SOOT_BEGINS 0.010f ///< m
@@ -119,7 +119,7 @@ static V3 flame_colour(const Fire *fire, float hot) {
     return v3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-V3 fire_emission(const Preview *preview) { return v3_scale(flame_colour(&preview->fire, 1), 100); }
+V3 fire_emission(const Preview *preview) { return v3_scale(flame_colour(&preview->fire, 1), 140); }
 
 float fire_share(const FireCell *cell) {
     if (cell->flame <= 0.05f) return 0;

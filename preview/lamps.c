@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum { LAMP_SAMPLES = 4 }; ///< of a pixel that ask; the rest only add light
-static const float too_faint = 2e-3f;
+static const float too_faint = 4e-3f;
 
 /// Four lamps at a time.
 typedef float Four __attribute__((vector_size(16)));
@@ -89,12 +89,13 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
         if (wanted[i] > 0) block->lamp_asked[i] += wanted[i], block->lamp_seen[i] += wanted[i] * block->clear[i];
 }
 
-/// What white paper sends back at the lane's point. It is known where the last one was next to it and faced as it does.
+/// What white paper sends back at the lane's point. It is known where the last one was next to it and faced as it does,
+/// or where that makes little of a difference, on char.
 static V3 white_light(const Preview *preview, Block *block, int lane, bool ask, float weight[LIGHT_LIMIT]) {
     const Point *point = &block->point[lane];
     V3 moved = v3_sub(point->position, block->lamp_place[lane]);
     if (!ask && v3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
-        v3_dot(point->normal, block->lamp_normal[lane]) > 0.99f)
+        (v3_dot(point->normal, block->lamp_normal[lane]) > 0.99f || v3_luminance(point->albedo) < 0.08f))
         return block->lamp_white[lane];
     block->lamp_place[lane] = point->position, block->lamp_normal[lane] = point->normal;
     return block->lamp_white[lane] = gather(&preview->scene.lights, point, preview->scene.light_count, weight);
