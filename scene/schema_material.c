@@ -113,7 +113,7 @@ static const SchemaRow material_rows[] = {
           "hot and air comes to it. At mass_min or below there is no char: one reaction, the paper's eq 4"),
     PARAM("char_density", char_density, DIM_FRACTION, OVER(0), "density of char over the density at the start"),
     PARAM("char_heat", char_heat, DIM_SPECIFIC_ENERGY, FROM(0),
-          "heat that a kilogram of char gives as it glows away; all of it stays in the sheet"),
+          "heat that a kilogram of char gives as it glows away to CO2, all of it in the sheet; hot embers make CO and give less"),
     PARAM("char_rate", char_rate, DIM_RATE, FROM(0),
           "share of hot char that the air at an edge burns in a second; noise makes embers die here and live there"),
     PARAM("char_air", char_air, DIM_FRACTION, WITHIN(0, 1),

@@ -125,7 +125,7 @@ typedef struct SingeMaterialDef {
     /// m_min there is no char, and one reaction goes down to m_min: the paper's eq 4
     SingeParam char_yield;
     SingeParam char_density;         ///< rho of char over rho_init, > 0
-    SingeParam char_heat;            ///< J for a kg of char that glows away, all of it in the sheet, >= 0
+    SingeParam char_heat;            ///< J for a kg of char that goes to CO2, in the sheet, >= 0
     SingeParam char_rate;            ///< 1/s, at which air at an edge can burn hot char, >= 0
     SingeParam char_air;             ///< share of char_rate within a leaf, away from edges and ash, 0 to 1
     SingeParam shrink_front;         ///< how much of eq 6's shrinkage the front (centre) layer takes, 0 to 2

@@ -39,8 +39,13 @@ static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
 /// Stamps what reached its ignition temperature and pushes its events in order of particle.
 void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
 
-/// The second reaction: the share of char that is left of `share` after dt s (glow.c).
-float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float dt);
+/// The share of the air that reaches hot char, left in burn->release until burn_lose_mass writes that (glow.c).
+void burn_air(BurnJob *job, Pool *pool);
+
+/// The second reaction: the share of char that is left of `share` after dt s.
+float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt);
+/// K by which a mass fraction of char warms unit mass as it glows away.
+float burn_glow_heat(const BurnJob *job, uint32_t i);
 
 /// Eq 4 and what glows. Returns the mass that went as gas, kg; not finite where a mass is not.
 double burn_lose_mass(BurnJob *job, Pool *pool);

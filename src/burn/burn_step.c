@@ -16,6 +16,7 @@ SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float 
         .thickening = thickening, .partial = partial, .burn = burn,
     };
     burn_ignite(&job, pool, events);
+    burn_air(&job, pool);
     double lost = burn_lose_mass(&job, pool);
     if (!isfinite(lost)) return diverged(shell, burn, error);
     burn->mass_burnt += lost;

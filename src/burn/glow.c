@@ -8,9 +8,9 @@
 //   r      1/s, kinetics of the oxidation of cellulose's char: A = 5.667e9 1/s, E = 160 kJ/mol (Kashiwagi & Nambu,
 //          Combust. Flame 88, 1992, 345-368)
 //   k_air  1/s, char_rate: what air at an edge can burn
-//   s      share of it that reaches a particle, s = (1 - f)^2 max(s_0, 1 - f - z, 1 at an edge): gas that leaves the
-//          fuel keeps the air away; within a leaf little air comes, s_0 = char_air; at an edge, and where the char has
-//          begun to burn away and is porous, all of it
+//   s      share of it that reaches a particle, s = (1 - f)^2 max(s_0, w, 1 at an edge): gas that leaves the fuel keeps
+//          the air away; within a leaf little air comes, s_0 = char_air; at an edge, and where char has burnt away and
+//          ash is porous, all of it. w is the most of 1 - f - z at the particle and beside it, in the other layer
 //   F      front thickening, by which every rate is divided
 //
 // Slow kinetics and slow supply are resistances in series, as in the theory of burning carbon (Glassman, Combustion,
@@ -19,52 +19,93 @@
 //
 // The heat of what glows stays in the sheet and warms what is left there,
 //
-//   dT/dt = (H_c/c_p)(1 - m_min/nu)(-dc/dt)/max(m, floor)
+//   dT/dt = (H/c_p)(1 - m_min/nu)(-dc/dt)/max(m, floor),   H = H_c (h + (1 - h)/(1 + q)),   q = 2500 exp(-6240 K/T)
 //
-// as the losses are over what is left (heat/heat.c).
+// over what is left as the losses are (heat/heat.c). H_c is the heat of char that goes to CO2; q is how much goes to CO in
+// place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2 of
+// 32.8 MJ/kg of carbon. So the hotter an ember is the less it gives, and more air makes it faster rather than hotter.
 #include "burn/burn_job.h"
 
 #include <math.h>
 
 static const float GLOW_PRE_EXPONENTIAL = 5.667e9f; // 1/s
+static const float GLOW_CO = 2500, GLOW_CO_TEMPERATURE = 6240, GLOW_CO_HEAT = 0.28f;
 static const float GLOW_TEMPERATURE = 160e3f / 8.314462618f; // K, E/R
+
+/// The share of a particle that has gone on to ash.
+static float glow_ash(const BurnJob *job, uint32_t i) {
+    const Matter *matter = &job->shell->matter;
+    float fuel = job->burn->fuel[i], least = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i);
+    return 1 - fuel - shell_char(job->burn->mass[i], fuel, least, yield);
+}
 
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
     return cell == SHELL_NONE || !(job->state->ablate.cell_flags[cell] & SINGE_ALIVE);
 }
 
-/// Whether a particle lies at an edge: of the sheet, of a hole or of a tear.
-static bool glow_at_edge(const BurnJob *job, uint32_t particle) {
+/// w of a cell's centre; 1 beside a cell that is gone, and at the border.
+static float glow_centre(const BurnJob *job, uint32_t cell) {
     const Shell *shell = job->shell;
-    if (!shell_is_corner(shell, particle)) {
-        uint32_t cell = particle - shell->vertex_count;
-        for (int k = 0; k < 4; k++)
-            if (glow_is_gone(job, shell_neighbour(shell, cell, k))) return true;
-        return false;
+    float ash = glow_ash(job, shell_centre(shell, cell));
+    for (int k = 0; k < 4; k++) {
+        if (glow_is_gone(job, shell_neighbour(shell, cell, k))) return 1;
+        ash = fmaxf(ash, glow_ash(job, shell->cells[cell][k]));
     }
-    for (uint32_t f = shell->fan_first[particle]; f < shell->fan_first[particle + 1]; f++) {
+    return ash;
+}
+
+/// w of a corner.
+static float glow_corner(const BurnJob *job, uint32_t vertex) {
+    const Shell *shell = job->shell;
+    float ash = glow_ash(job, vertex);
+    for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
         uint32_t cell = shell->fan[f];
         int i = 0;
-        while (shell->cells[cell][i] != particle) i++;
+        while (shell->cells[cell][i] != vertex) i++;
         if (glow_is_gone(job, cell) || glow_is_gone(job, shell_neighbour(shell, cell, i)) ||
             glow_is_gone(job, shell_neighbour(shell, cell, (i + 3) & 3)))
-            return true;
+            return 1;
+        ash = fmaxf(ash, glow_ash(job, shell_centre(shell, cell)));
     }
-    return false;
+    return ash;
 }
 
-/// 1/s, k above.
-static float glow_rate(const BurnJob *job, uint32_t i, float fuel, float share, float temperature) {
-    const Matter *matter = &job->shell->matter;
-    float air = fmaxf(field_at(matter->char_air, i), 1 - fuel - share), burnt = 1 - fuel;
-    if (air < 1 && glow_at_edge(job, i)) air = 1;
-    float supply = field_at(matter->char_rate, i) * air * burnt * burnt;
-    float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / temperature);
-    return supply > 0 && kinetics > 0 ? supply * (kinetics / (kinetics + supply)) : 0;
+static void glow_air_run(BurnJob *job, uint32_t first, uint32_t last) {
+    const Shell *shell = job->shell;
+    for (uint32_t i = first; i < last; i++) {
+        bool chars = field_at(shell->matter.char_yield, i) > field_at(shell->matter.mass_min, i);
+        if (!chars || job->burn->fuel[i] >= 1 || !(job->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+        float ash = shell_is_corner(shell, i) ? glow_corner(job, i) : glow_centre(job, i - shell->vertex_count);
+        job->burn->release[i] = fmaxf(ash, field_at(shell->matter.char_air, i));
+    }
 }
 
-float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float dt) {
+static void glow_air_blocks(void *context, int begin, int end) {
+    BurnJob *job = context;
+    for (int block = begin; block < end; block++) {
+        uint32_t first, last, run;
+        burn_block(job, block, &first, &last);
+        for (; first < last; first = run) {
+            run = burn_run_end(first, last);
+            if (burn_is_hot(job, first, run)) glow_air_run(job, first, run);
+        }
+    }
+}
+
+void burn_air(BurnJob *job, Pool *pool) {
+    pool_for(pool, pool_blocks((int)job->shell->particle_count), 1, glow_air_blocks, job);
+}
+
+float burn_glow_heat(const BurnJob *job, uint32_t i) {
+    float monoxide = GLOW_CO * expf(-GLOW_CO_TEMPERATURE / job->state->heat.temperature[i]);
+    return field_at(job->shell->matter.char_heating, i) * (GLOW_CO_HEAT + (1 - GLOW_CO_HEAT) / (1 + monoxide));
+}
+
+float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt) {
     if (!(share > 0)) return share;
-    float half = 0.5f * dt * glow_rate(job, i, fuel, share, job->state->heat.temperature[i]), root = sqrtf(share);
+    float burnt = 1 - fuel, supply = field_at(job->shell->matter.char_rate, i) * air * burnt * burnt;
+    float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / job->state->heat.temperature[i]);
+    float rate = supply > 0 && kinetics > 0 ? supply * (kinetics / (kinetics + supply)) : 0;
+    float half = 0.5f * dt * rate, root = sqrtf(share);
     return half > root ? 0 : (root - half) * (root - half);
 }

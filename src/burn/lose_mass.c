@@ -71,12 +71,12 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     float least = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - least;
     float before = burn->mass[i], fuel = burn->fuel[i], left = lower_fuel(matter, i, fuel, excess, dt);
     float fresh = shell_char(before, fuel, least, yield) + (span > 0 ? fuel - left : 0);
-    float share = span > 0 ? burn_glow(job, i, left, fresh, dt) : 0;
+    float share = span > 0 ? burn_glow(job, i, left, fresh, fuel < 1 ? burn->release[i] : 0, dt) : 0;
     float after = least + (1 - least) * left + span * share;
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
     burn->burn_rate[i] = (before - burn->mass[i]) / job->h;
-    float glow = field_at(matter->char_heating, i) * span * (fresh - share) / fmaxf(before, floor_mass);
+    float glow = fresh > share ? burn_glow_heat(job, i) * span * (fresh - share) / fmaxf(before, floor_mass) : 0;
     burn->release[i] = (field_at(matter->heating, i) * (1 - yield) * (fuel - left) + glow) / job->h;
 }
 
@@ -87,9 +87,11 @@ static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost)
     const uint8_t *flags = job->state->ablate.particle_flags;
     BurnState *burn = job->burn;
     for (uint32_t i = first; i < last; i++) {
-        burn->burn_rate[i] = burn->release[i] = 0;
         float excess = temperature[i] - field_at(matter->ignition_temperature, i);
-        if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) continue;
+        if (excess <= 0 || !(flags[i] & SINGE_ALIVE)) {
+            burn->burn_rate[i] = burn->release[i] = 0;
+            continue;
+        }
         if (excess > field_at(matter->rate_ceiling, i)) excess = field_at(matter->rate_ceiling, i); // NaN stays NaN
         float before = burn->mass[i];
         react(job, i, excess);

@@ -25,21 +25,22 @@ static SingeMaterialDef standard_material(void) {
         .temperature = singe_param(293.15f),
         .ignition_temperature = singe_param(513.15f),
         .heat_of_combustion = singe_param(16e6f),
-        .heat_share = singe_param(0.2f),
+        .heat_share = singe_param(0.25f),
         .mass_rate = singe_param(9e-3f),
         .rate_ceiling = singe_param(260),
         .ash_exponent = singe_param(0.5f),
         .mass_min = singe_param(0.15f),
-        .mass_loss = singe_param(0.25f),
-        .ash_density = singe_param(0.3f),
-        .char_yield = singe_param(0),
+        // the flame opens holes where it is above char_yield, embers do where it is above mass_min, elsewhere ash stays
+        .mass_loss = {.value = 0, .to = 0.45f, .field = SINGE_FIELD_NOISE, .noise = {0.025f, 5, 7}},
+        .ash_density = singe_param(0.22f),
+        .char_yield = singe_param(0.35f),
         .char_density = singe_param(0.45f),
-        .char_heat = singe_param(28e6f),
-        .char_rate = singe_param(0.5f),
-        .char_air = singe_param(0.1f),
-        // the front shrinks more in patches of a centimetre: fine wrinkles, and curl towards the front
-        .shrink_front = {.value = 0.1f, .to = 0.9f, .field = SINGE_FIELD_NOISE, .noise = {0.008f, 2, 2}},
-        .shrink_back = singe_param(0.3f),
+        .char_heat = singe_param(25e6f),
+        .char_rate = {.value = 0.2f, .to = 0.8f, .field = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}},
+        .char_air = singe_param(0.05f),
+        // the front, which the flame heats, shrinks more in the mean, in patches of 5 cm that curl this way and that
+        .shrink_front = {.value = 0.5f, .to = 1.7f, .field = SINGE_FIELD_NOISE, .noise = {0.05f, 2, 2}},
+        .shrink_back = singe_param(0.8f),
         .fibre_angle = singe_param(0.43633231f), // 25 degrees
         .fibre_shrink = singe_param(2),
         .ablate = true,
@@ -49,10 +50,10 @@ static SingeMaterialDef standard_material(void) {
         .crease_radius = singe_param(15e-3f),
         .crease_share = singe_param(0.8f),
         .strength = singe_param(100),
-        .char_strength = singe_param(0.3f),
+        .char_strength = {.value = 1, .to = 10, .field = SINGE_FIELD_NOISE, .noise = {0.015f, 4, 3}},
         .pre_exponential = singe_param(0), // eq 4
         .activation_energy = singe_param(0),
-        .curvature_max = singe_param(0),
+        .curvature_max = singe_param(400),
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);

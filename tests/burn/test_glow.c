@@ -70,6 +70,12 @@ static void leaves_glow_slower_than_edges(void **unused) {
     assert_float_equal(1 - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * AIR, 2e-4);
     assert_float_equal(b->state.burn.mass[fuelled], 0.5f + 0.5f * (float)YIELD, 0);
     assert_float_equal(b->state.burn.mass[cold], YIELD, 1e-7);
+    // ash beside it lets air through
+    uint32_t centre = b->shell.vertex_count + 3 * 6 + 3;
+    b->state.burn.mass[centre] = (float)(LEAST + 0.5 * (YIELD - LEAST));
+    double root = sqrt(left_of_char(b, inner));
+    assert_int_equal(step(b, 0.1f, 1, 1), SINGE_OK);
+    assert_float_equal(root - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * 0.5, 1e-3);
     // a hole beside it is an edge
     uint32_t before = inner;
     double was = sqrt(left_of_char(b, before));
@@ -104,7 +110,8 @@ static void ledgers_close_from_fuel_to_ash(void **unused) {
         }
         assert_float_equal(last, LEAST, 1e-6);
         assert_float_equal(b->state.burn.mass_burnt / first, 1 - LEAST, 1e-6);
-        double eta = 0.25 * 16e6 / 1400 * (1 - YIELD), glow = 28e6 / 1400 * (YIELD - LEAST);
+        double monoxide = 2500 * exp(-6240 / (double)HOT), heat = 0.28 + 0.72 / (1 + monoxide);
+        double eta = 0.25 * 16e6 / 1400 * (1 - YIELD), glow = 28e6 / 1400 * heat * (YIELD - LEAST);
         if (s < 2) assert_float_equal(warmed, eta + glow, 2e-3 * (eta + glow));
         burning_sheet_free(b);
     }

@@ -10,6 +10,9 @@ SingeMaterialDef scene_quick_material(void) {
     material.heat_of_combustion = singe_param(1500 * 1400), material.heat_share = singe_param(1);
     material.mass_rate = singe_param(0.08f);
     material.shrink_back = singe_param(0.9f);
+    // one reaction, and no leaf that stays: holes open wherever it burns
+    material.char_yield = singe_param(0), material.mass_loss = singe_param(0.25f);
+    material.ash_density = singe_param(0.3f);
     return material;
 }
 

@@ -14,7 +14,9 @@ static void a_million_springs(void **state) {
                   (double)census.memory / 1e6, (double)hook.peak / 1e6);
     assert_true(springs >= 1000000);
     assert_int_equal(census.memory, hook.bytes);
-    assert_true(census.memory <= 150 * springs);
+    print_message("%.1f bytes a spring\n", (double)census.memory / (double)springs);
+    // of it 1.6 the fuel and the heat that burning gives, 2.4 noises of the default material, 1.6 the limit of curvature
+    assert_true(census.memory <= 155 * springs);
     assert_true(hook.peak <= 250 * springs); // while the sheet and the shell are built
     test_ok(sim, singe_sim_step(sim));
     assert_int_equal(census.memory, hook.bytes);
