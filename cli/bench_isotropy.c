@@ -53,6 +53,7 @@ static SingeMaterialDef material(const Burn *burn) {
     def.char_strength = noise(1, 10, 0.015f, 4, seed + 3);
     def.shrink_front = noise(0.5f, 1.3f, 0.05f, 2, seed + 2);
     def.shrink_back = singe_param(0.65f);
+    def.char_yield = singe_param(0), def.heat_share = singe_param(0.2f), def.ash_density = singe_param(0.3f); // eq 4
     return def;
 }
 

@@ -181,7 +181,7 @@ void lab_sets_mass(SingeMaterialDef *material) {
     material->ash_exponent = singe_param(0), material->ash_density = singe_param(1);
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
     material->mass_min = (SingeParam){.value = 0, .to = 1, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
-    material->mass_loss = singe_param(0);
+    material->mass_loss = material->char_yield = singe_param(0);
 }
 
 // ---- shapes

@@ -78,8 +78,10 @@ static SingeResult burn_strip(const SingeMaterialDef *material, StripResult *out
 }
 
 static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
-    SingeMaterialDef usual = singe_default_material(), lossless = usual;
+    SingeMaterialDef usual = singe_default_material(), lossless;
     StripResult ours, hot;
+    usual.char_yield = singe_param(0), usual.mass_loss = singe_param(0.25f), usual.heat_share = singe_param(0.2f);
+    lossless = usual;
     lossless.convection = lossless.emissivity = singe_param(0);
     SingeResult result = burn_strip(&usual, &ours, error);
     if (!result) result = burn_strip(&lossless, &hot, error);

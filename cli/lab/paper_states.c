@@ -13,6 +13,7 @@ static void shrink_material(SingeMaterialDef *material) {
     material->mass_rate = singe_param(rate), material->rate_ceiling = singe_param(1e6f);
     material->ash_exponent = singe_param(0), material->heat_share = singe_param(0);
     material->mass_min = singe_param(0.8f), material->mass_loss = singe_param(0.1f);
+    material->char_yield = singe_param(0);
     material->ash_density = singe_param(1), material->char_weight = singe_param(1);
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
     material->convection = material->emissivity = singe_param(0);

@@ -109,6 +109,7 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
         material.ignition_temperature = singe_param((float)pmma_vapour);
         material.heat_of_combustion = singe_param(25e6f);
         material.mass_min = singe_param(0.01f), material.mass_loss = singe_param(0.1f);
+        material.char_yield = singe_param(0), material.heat_share = singe_param(0.2f); // no char: one reaction
         StripSetup setup = strip_setup(&material);
         // steps in proportion to the grammage, as the fire is
         setup.time_step *= (float)(bass_um[i] / 100);

@@ -100,6 +100,7 @@ static SingeResult one_simulated(Lab *lab, double kelvin_per_minute, KineticsRun
     grid.material.activation_energy = singe_param((float)one_e);
     grid.material.ash_exponent = singe_param((float)one_order);
     grid.material.mass_min = singe_param((float)char_left), grid.material.mass_loss = singe_param(0);
+    grid.material.char_yield = singe_param(0);
     grid.material.shrink_front = grid.material.shrink_back = singe_param(0);
     SingeSim *sim;
     SingeSourceDef source = singe_default_source();

@@ -7,7 +7,8 @@
 //
 // with r_0 what it is at rest and kappa = curvature_max: an arc of the curvature kappa turns by kappa l from one spring
 // to the next. Cells s that are large for the thickness t cannot bear that: their moment is greatest at about
-// beta = atan(2 t/s), and kappa is beta/s at most (with l/s times the chord of beta for the chord of beta l/s).
+// beta = atan(2 t/s), and kappa is beta/s at most (with l/s times the chord of beta for the chord of beta l/s). Cells of
+// more than 8 t, which show no folds of paper, would be held nearly flat by that, and have no limit.
 //
 // Once a substep what exceeds that is reduced by BEND_GAIN of the excess, with momentum kept:
 //
@@ -20,6 +21,8 @@
 
 /// Mass fraction above which a vertex counts as unburnt. Char is weak, and folds as it likes.
 static const float BEND_FRESH = 0.98f;
+/// Cells over thickness above which there is no limit.
+static const float BEND_COARSE = 8;
 
 bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
     const Field limit = shell->matter.curvature_max;
@@ -39,10 +42,10 @@ bool curvature_create(Memory *memory, const Shell *shell, Strands *strands) {
 static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, float length, float side) {
     const float(*x)[4] = (const float(*)[4])shell->rest_position;
     const float curvature = field_at(shell->matter.curvature_max, b);
-    if (!(curvature > 0)) return INFINITY;
+    float thickness = field_at(shell->matter.thickness, b);
+    if (!(curvature > 0) || side > BEND_COARSE * thickness) return INFINITY;
     Vec rest = vec_sub(vec_sub(vec_load(x[c]), vec_load(x[b])), vec_sub(vec_load(x[b]), vec_load(x[a])));
     float turned = 2 * length * sinf(0.5f * fminf(curvature * length, 2.8f));
-    float thickness = field_at(shell->matter.thickness, b);
     float cosine = side / sqrtf(side * side + 4 * thickness * thickness); // of beta
     turned = fminf(turned, 2 * length * length / side * sqrtf(0.5f * (1 - cosine)));
     return sqrtf(vec_dot(rest, rest) + turned * turned);

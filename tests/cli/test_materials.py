@@ -28,8 +28,8 @@ class Materials(Case):
         return path
 
     def test_check_tells_the_front(self):
-        for material, line in (("newsprint", "newsprint, 45 g/m2: a level front of 9."),
-                               ("{grammage: 160 g/m2}", "its own, 160 g/m2: a level front of 2."),
+        for material, line in (("newsprint", "newsprint, 45 g/m2: a level front of 11."),
+                               ("{grammage: 160 g/m2}", "its own, 160 g/m2: a level front of 3."),
                                ("{base: tissue, name: kerchief}", "kerchief, 20 g/m2: a level front of 2"),
                                ("{heat_share: 0}", "its own, 80 g/m2: a level strip of it goes out\n")):
             with self.subTest(material):

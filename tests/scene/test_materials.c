@@ -64,10 +64,10 @@ static void expect_same_def(const SingeMaterialDef *a, const SingeMaterialDef *b
 /// Each is good, has its name, and knows what sources say; the first of them, calibrated, is the program's default.
 static void test_built_in(void **state) {
     (void)state;
-    static const char *const names[] = {"cotton", "newsprint", "office-paper", "tissue"};
-    static const float grammage[] = {0.120f, 0.045f, 0.080f, 0.020f};
+    static const char *const names[] = {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"};
+    static const float grammage[] = {0.120f, 0.045f, 0.080f, 0.080f, 0.020f};
     const SingeMaterialDef standard = singe_default_material();
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         char text[200];
         assert_string_equal(scene_material_name(i), names[i]);
         snprintf(text, sizeof text, SHEET "    material: %s\n", names[i]);
@@ -82,7 +82,7 @@ static void test_built_in(void **state) {
             expect_same_def(&material->def, &standard);
         scene_free(scene);
     }
-    assert_null(scene_material_name(4));
+    assert_null(scene_material_name(5));
     assert_null(scene_material_name(400));
 }
 
@@ -257,7 +257,7 @@ static void test_mistakes(void **state) {
 
     expect_mistake(in, "    material: newsprnt\n", "scene.yaml:3:15", "did you mean 'newsprint'?", 1);
     expect_mistake(in, "    material: silk\n", "scene.yaml:3:15",
-                   "built in are cotton, newsprint, office-paper, tissue", 1);
+                   "built in are cotton, newsprint, office-paper, one-reaction, tissue", 1);
     expect_mistake(in, "    material: {base: [1]}\n", "scene.yaml:3:22", "base must be a material (cotton", 1);
     expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15",
                    "material must be a map (key: value) or a material (", 1);
