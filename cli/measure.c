@@ -17,6 +17,7 @@
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
+#include "cli/folds.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
 #include "cli/rim.h"
@@ -39,7 +40,7 @@ static const ArgCommand measure_command = {
 
 /// A number of every frame, and how it is summed up.
 typedef enum Number {
-    BIAS, BEND, BURNT, UNBURNT, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS
+    BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS
 } Number;
 
 static const struct {
@@ -50,6 +51,7 @@ static const struct {
     [BEND] = {"crease_bend_per_m", "bend of creases, 1/m", "%.2f", true},
     [BURNT] = {"burnt_angle_deg", "normal at 3-15 mm where burnt, rms degrees", "%.3f", false},
     [UNBURNT] = {"unburnt_angle_deg", "normal at 3-15 mm where not, rms degrees", "%.3f", true},
+    [FOLD] = {"fold_angle_deg", "normal along folds below 3 cells, rms degrees", "%.3f", true},
     [CURL] = {"curl_p50_deg", "curl of the rim over 10 mm, median degrees", "%.1f", false},
     [CURL_STRONG] = {"curl_p90_deg", "curl of the rim over 10 mm, p90", "%.1f", false},
     [CURL_MAX] = {"curl_max_deg", "curl of the rim over 10 mm, max", "%.1f", false},
@@ -74,6 +76,7 @@ typedef struct Measure {
     double *times;
     Rim *rims;                ///< of every frame
     Wrinkles all;
+    Folds all_folds;
     Rim all_rim;
     Moment moments[3];        ///< this frame's at index frame mod 3
     Job job;
@@ -148,13 +151,14 @@ static void sum_up(const Wrinkles *frame, Wrinkles *all) {
 static double degrees(double power) { return sqrt(power) * 180 / acos(-1); }
 
 /// The numbers of a frame's wrinkles and rim; `area` is what creases were looked for on.
-static void fill_row(const Wrinkles *frame, const Rim *rim, double area, double *row) {
+static void fill_row(const Wrinkles *frame, const Folds *folds, const Rim *rim, double area, double *row) {
     double bend = 0;
     for (int b = 0; b < WRINKLE_BINS; b++) bend += frame->crease[b];
     row[BIAS] = wrinkles_bias(frame);
     row[BEND] = area > 0 ? bend / area : (double)NAN;
     row[BURNT] = degrees(wrinkles_burnt(frame));
     row[UNBURNT] = degrees(wrinkles_unburnt(frame));
+    row[FOLD] = folds_angle(folds);
     row[CURL] = rim_percentile(rim->curl, 0.5);
     row[CURL_STRONG] = rim_percentile(rim->curl, 0.9);
     row[CURL_MAX] = isnan(row[CURL]) ? (double)NAN : rim->curl_max;
@@ -191,16 +195,18 @@ static bool is_drawn(const Measure *measure, int frame) {
 static SingeResult measure_frame(Measure *measure, int frame, SingeError *error) {
     SingeSurface surface = {0};
     Wrinkles wrinkles = {0};
+    Folds folds = {0};
     const int index = frame - measure->first;
     SingeResult result = read_frame(measure, frame, &surface, &measure->times[index], error);
     if (result) return result;
     Rim *rim = &measure->rims[index];
-    if (!wrinkles_add(&surface, &wrinkles) || !rim_add(&surface, rim) ||
+    if (!wrinkles_add(&surface, &wrinkles) || !folds_add(&surface, &folds) || !rim_add(&surface, rim) ||
         !moment_take(&surface, measure->times[index], &measure->moments[index % 3]))
         result = out_of_memory(error);
     if (!result) {
-        fill_row(&wrinkles, rim, rest_area(&surface), measure->rows[index]);
+        fill_row(&wrinkles, &folds, rim, rest_area(&surface), measure->rows[index]);
         sum_up(&wrinkles, &measure->all);
+        measure->all_folds.power += folds.power, measure->all_folds.count += folds.count;
         rim_sum(rim, &measure->all_rim);
         const Moment *m = measure->moments;
         if (index >= 2)
@@ -243,7 +249,7 @@ static void print_number(const char *format, double number) {
 /// Of all frames together, each with its area, or NaN where that says nothing.
 static double of_all(const Measure *measure, Number number) {
     double row[NUMBERS];
-    fill_row(&measure->all, &measure->all_rim, 0, row);
+    fill_row(&measure->all, &measure->all_folds, &measure->all_rim, 0, row);
     return row[number];
 }
 

@@ -115,7 +115,8 @@ static const SchemaRow scene_rows[] = {
      .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
     {"detail", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_detail), WITHIN(0, 1000),
      .doc = "how finely the drawn mesh is cut near the front: distance of the points that are asked what has burnt, a "
-            "cell's side over 23 at least; 0: the cells' own corners and centres, as in the paper"},
+            "cell's side over 23 at least; and bent cells everywhere, on a smooth surface; 0: flat cells, asked at their "
+            "own corners and centres, as in the paper"},
     {"raggedness", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_raggedness), WITHIN(0, 1000),
      .doc = "how far noise eats into burnt edges at most, and no farther than half a cell; acts with `detail` only"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,

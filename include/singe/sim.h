@@ -204,14 +204,14 @@ typedef struct SingeCensus {
 SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
-/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely and burnt edges ragged by noise that
-/// is fixed to the sheet (docs/equations.md); vertices of the input keep their `source_vertex`. All arrays belong to
-/// the surface.
+/// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely, burnt edges ragged by noise fixed to
+/// the sheet, and all lies on a smooth surface (docs/equations.md); vertices of the input keep their `source_vertex`.
+/// All arrays belong to the surface.
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;
     uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
     float (*position)[3];      ///< m
-    float (*normal)[3];        ///< unit, area-weighted
+    float (*normal)[3];        ///< unit; area-weighted where the surface is not smooth
     float (*uv)[2];            ///< 0 where the sheet has none
     float (*velocity)[3];      ///< m/s
     float (*rest_position)[3]; ///< m

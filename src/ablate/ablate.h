@@ -40,8 +40,8 @@ typedef struct SurfaceDetail {
     float size;       ///< m, distance of the points of the level set, > 0
     float raggedness; ///< m, how far burnt edges are eaten into at most, >= 0
     uint32_t seed;    ///< of the noise; each sheet's is another
-    const uint8_t *flat; ///< [vertices] 1 where another surface is so near that triangles are drawn flat; NULL: nowhere
-    float bulge_most;    ///< m, how far the surface leaves flat triangles at most elsewhere; 0: only by the cells' size
+    const float *room;   ///< [vertices] m, how far another surface is, or INFINITY; NULL: none is near
+    float leaves_most;   ///< m, how far the surface leaves flat triangles at most; 0: only by the cells' size
 } SurfaceDetail;
 
 /// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes

@@ -1,8 +1,8 @@
-// Marching triangles over fine triangles, coarse ones, and fans between them.
+// Marching triangles over fine triangles and coarse ones.
 //
-// A split cell's triangle is k^2 fine ones. Another cell's triangle is one, or, where its side is split for the cell
-// across, a fan of k from the cell's centre. Each is clipped as in surface.c, once to count and once to draw; a fine
-// side's cut is made once and shared, on the sides of cells through `cuts`.
+// A cell's triangle is k^2 fine ones in k rows, k = 1 for a flat cell that is not split. The row at the side has as many
+// parts along the side as both of its cells draw there. Each is clipped as in surface.c, once to count and once to draw;
+// a fine side's cut is made once and shared, on the sides of cells through `cuts`.
 //
 // A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn
 // there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
@@ -100,11 +100,6 @@ static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, 
     return &fine->cuts[fine->side_cut[blue] + (uint32_t)(forwards ? i : parts - 1 - i)];
 }
 
-static bool side_is_split(const Fine *fine, uint32_t cell, int side) {
-    uint32_t blue = fine->shell->cell_springs[cell].blue[side];
-    return fine->side_cut[blue + 1] - fine->side_cut[blue] > 1;
-}
-
 // ---- what has been torn
 
 /// Products of a cell's triangle's sides from its virtual centre.
@@ -122,8 +117,7 @@ static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
     return !left;
 }
 
-/// Whether a cell's triangle is left out.
-static bool is_torn(const Fine *fine, uint32_t cell, int side) {
+bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
     if (!has_lost_a_spring(fine, cell)) return false;
     float rest[3], now[3];
     metric(fine->shell->cells[cell], side, (const float (*)[4])fine->shell->rest_position, rest);
@@ -134,87 +128,79 @@ static bool is_torn(const Fine *fine, uint32_t cell, int side) {
     return half_trace + sqrtf(fmaxf(0, half_trace * half_trace - product)) > TORN * TORN;
 }
 
-// ---- a cell that is not split
+// ---- a triangle of a cell
 
-static void march_coarse(Marching *march, uint32_t cell) {
+/// A row of fine triangles: between `lower` parts of the line j and `upper` parts of the line j + 1. Cuts of both lines'
+/// parts, and of the first and the last side between them.
+typedef struct Row {
+    uint32_t cell;
+    int side, splits, j, lower, upper;
+    uint32_t *lower_cut[FINE_SPLITS_MAX], *upper_cut[FINE_SPLITS_MAX], *first, *last;
+} Row;
+
+/// Point i of the row's lower or upper line.
+static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint32_t *point, FinePlace *place) {
+    int j = row->j + upper, parts = row->j == 0 && !upper ? row->lower : row->splits;
+    *point = j == 0 ? fine_side_point(fine, row->cell, row->side, parts, i)
+                    : fine_point(fine, row->cell, row->side, row->splits, i, j);
+    *place = fine_point_place(row->cell, row->side, parts, i, j);
+}
+
+/// Where a line's point i is along the row, 0 to 1.
+static float along_row(const Row *row, bool upper, int i) {
+    int parts = upper ? row->upper : row->lower;
+    float inset = upper ? 0.5f / (float)(row->splits - row->j) : 0;
+    return parts == 0 ? 0.5f : inset + (1 - 2 * inset) * (float)i / (float)parts;
+}
+
+/// Whether the next triangle stands on the lower line: where that leaves the lines' ends nearer to each other.
+static bool stands(const Row *row, int low, int high) {
+    if (low == row->lower || high == row->upper) return low < row->lower;
+    return along_row(row, false, low + 1) - along_row(row, true, high) <=
+           along_row(row, true, high + 1) - along_row(row, false, low);
+}
+
+static void march_row(Marching *march, const Row *row) {
     Fine *fine = march->fine;
-    uint32_t line[4] = {0}; // cuts of the lines from the corners to the centre
-    for (int side = 0; side < 4; side++) {
-        int parts = side_is_split(fine, cell, side) ? fine_splits(fine, cell) : 1, next = (side + 1) & 3;
-        uint32_t spoke[FINE_SPLITS_MAX] = {0}; // within a fan
-        if (is_torn(fine, cell, side)) continue;
-        for (int i = 0; i < parts; i++) {
-            uint32_t point[3] = {fine_point(fine, cell, side, parts, i, 0),
-                                 fine_point(fine, cell, side, parts, i + 1, 0), shell_centre(fine->shell, cell)};
-            int inside = inside_count(fine, point);
-            if (!march->drawing) count(march, inside);
-            if (!march->drawing || inside == 0) continue;
-            Piece piece = {.cut = {side_cut(fine, cell, side, parts, i), i == parts - 1 ? &line[next] : &spoke[i + 1],
-                                   i == 0 ? &line[side] : &spoke[i]}};
-            memcpy(piece.point, point, sizeof point);
-            piece.place[0] = fine_point_place(cell, side, parts, i, 0);
-            piece.place[1] = fine_point_place(cell, side, parts, i + 1, 0);
-            piece.place[2] = (FinePlace){cell, (uint8_t)side, {0, 0, 1}};
-            draw(fine, &piece);
-        }
+    uint32_t rung[2 * FINE_SPLITS_MAX + 1] = {0}; // cuts of the sides between the lines
+    int low = 0, high = 0, steps = row->lower + row->upper;
+    for (int step = 0; step < steps; step++) {
+        Piece piece;
+        bool on_lower = stands(row, low, high);
+        row_point(fine, row, false, low, &piece.point[0], &piece.place[0]);
+        row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.place[1]);
+        row_point(fine, row, true, high, &piece.point[2], &piece.place[2]);
+        uint32_t *back = step == 0 ? row->first : &rung[step], *on = step + 1 == steps ? row->last : &rung[step + 1];
+        piece.cut[0] = on_lower ? row->lower_cut[low] : on, piece.cut[1] = on_lower ? on : row->upper_cut[high];
+        piece.cut[2] = back;
+        int inside = inside_count(fine, piece.point);
+        if (!march->drawing) count(march, inside);
+        else if (inside > 0) draw(fine, &piece);
+        if (on_lower) low++;
+        else high++;
     }
 }
 
-// ---- a cell that is
-
-/// Cuts of the fine sides of a triangle, each beginning at point (i, j): to (i + 1, j), to (i, j + 1), and from
-/// (i + 1, j) to (i, j + 1).
-typedef struct FineCuts {
-    uint32_t along[FINE_SPLITS_MAX][FINE_SPLITS_MAX], inwards[FINE_SPLITS_MAX][FINE_SPLITS_MAX],
-        across[FINE_SPLITS_MAX][FINE_SPLITS_MAX];
-} FineCuts;
-
-/// Draws the fine triangle with these points, given as pairs (i, j).
-static void march_one(Marching *march, uint32_t cell, int side, int splits, const int at[3][2],
-                      uint32_t *const cut[3]) {
-    Fine *fine = march->fine;
-    Piece piece;
-    for (int k = 0; k < 3; k++) piece.point[k] = fine_point(fine, cell, side, splits, at[k][0], at[k][1]);
-    int inside = inside_count(fine, piece.point);
-    if (!march->drawing) count(march, inside);
-    if (!march->drawing || inside == 0) return;
-    for (int k = 0; k < 3; k++) {
-        piece.place[k] = fine_point_place(cell, side, splits, at[k][0], at[k][1]);
-        piece.cut[k] = cut[k];
+/// The rows of one of a cell's four triangles. `first` and `last` are cuts of its sides towards the centre.
+static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
+    const Fine *fine = march->fine;
+    int splits = fine->splits[cell];
+    uint32_t line[2][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines between rows
+    for (int j = 0; j < splits; j++) {
+        Row row = {cell, side, splits, j, j == 0 ? fine_parts(fine, cell, side) : splits - j, splits - j - 1,
+                   .first = &first[j], .last = &last[j]};
+        memset(line[j & 1], 0, sizeof line[j & 1]);
+        for (int i = 0; i < row.lower; i++)
+            row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];
+        for (int i = 0; i < row.upper; i++) row.upper_cut[i] = &line[j & 1][i];
+        march_row(march, &row);
     }
-    draw(fine, &piece);
 }
 
-static void march_fine_side(Marching *march, uint32_t cell, int side, int splits, FineCuts *cuts) {
-    for (int j = 0; j < splits; j++)
-        for (int i = 0; i + j < splits; i++) {
-            uint32_t *along = &cuts->along[j][i], *inwards = &cuts->inwards[j][i], *across = &cuts->across[j][i];
-            march_one(march, cell, side, splits, (const int[3][2]){{i, j}, {i + 1, j}, {i, j + 1}},
-                      (uint32_t *const[3]){along, across, inwards});
-            if (i + j + 1 >= splits) continue;
-            march_one(march, cell, side, splits, (const int[3][2]){{i + 1, j}, {i + 1, j + 1}, {i, j + 1}},
-                      (uint32_t *const[3]){&cuts->inwards[j][i + 1], &cuts->along[j + 1][i], across});
-        }
-}
-
-static void march_fine(Marching *march, uint32_t cell) {
-    int splits = fine_splits(march->fine, cell);
-    uint32_t line[4][FINE_SPLITS_MAX] = {{0}};
-    FineCuts cuts;
-    for (int side = 0; side < 4; side++) {
-        int next = (side + 1) & 3;
-        if (is_torn(march->fine, cell, side)) continue;
-        memset(&cuts, 0, sizeof cuts);
-        for (int i = 0; i < splits; i++) { // what the triangle shares with others goes in, and out again
-            cuts.along[0][i] = *side_cut(march->fine, cell, side, splits, i);
-            cuts.inwards[i][0] = line[side][i], cuts.across[i][splits - 1 - i] = line[next][i];
-        }
-        march_fine_side(march, cell, side, splits, &cuts);
-        for (int i = 0; i < splits; i++) {
-            *side_cut(march->fine, cell, side, splits, i) = cuts.along[0][i];
-            line[side][i] = cuts.inwards[i][0], line[next][i] = cuts.across[i][splits - 1 - i];
-        }
-    }
+static void march_cell(Marching *march, uint32_t cell) {
+    uint32_t line[4][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines from the corners to the centre
+    for (int side = 0; side < 4; side++)
+        if (!fine_is_torn(march->fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
 }
 
 // ---- all
@@ -225,23 +211,18 @@ static void march_cells(Marching *march) {
         if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
         if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         uint32_t before = fine->surface->triangle_count;
-        if (!fine_is_split(fine, c)) march_coarse(march, c);
-        else march_fine(march, c), fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
+        march_cell(march, c);
+        if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
     }
     if (fine->cell_triangle && march->drawing)
         fine->cell_triangle[fine->shell->cell_count] = fine->surface->triangle_count;
 }
 
-/// Lays out the cuts on the cells' sides: one where neither cell is split.
+/// Lays out the cuts on the cells' sides.
 static void lay_cuts(Fine *fine) {
-    const Shell *shell = fine->shell;
-    uint32_t sides = shell->springs[SINGE_BLUE].count;
-    for (uint32_t s = 0; s < sides; s++) fine->side_cut[s + 1] = 1;
+    uint32_t sides = fine->shell->springs[SINGE_BLUE].count;
     fine->side_cut[0] = 0;
-    for (uint32_t n = 0; n < fine->near_count; n++)
-        for (int i = 0; i < 4 && fine_is_split(fine, fine->near[n]); i++)
-            fine->side_cut[shell->cell_springs[fine->near[n]].blue[i] + 1] = (uint32_t)fine_splits(fine, fine->near[n]);
-    for (uint32_t s = 0; s < sides; s++) fine->side_cut[s + 1] += fine->side_cut[s];
+    for (uint32_t s = 0; s < sides; s++) fine->side_cut[s + 1] = fine->side_cut[s] + fine->parts[s];
     fine->cut_count = fine->side_cut[sides];
 }
 

@@ -4,6 +4,9 @@
 // spline, and may be positive in itself. Its sides and triangles get points, k - 1 within a side and within each line
 // from a corner to the centre, (k - 1)(k - 2)/2 within a triangle, and the level is evaluated there; on a side once,
 // for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles will do.
+//
+// Unless it is bent: then it gets the points that show how, in fewer parts. Its sides are drawn in the more of its parts
+// and those of the cell across.
 #include "ablate/surface_fine.h"
 
 #include <string.h>
@@ -52,12 +55,16 @@ static bool negative_around(const Fine *fine, uint32_t cell) {
     return false;
 }
 
+static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
+    return fine->shell->cell_springs[cell].blue[side];
+}
+
 static int inner_points(int splits) { return 4 * (splits - 1) + 2 * (splits - 1) * (splits - 2); }
 
 static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
     int splits = fine_splits(fine, cell);
     for (int i = 0; i < 4; i++) {
-        uint32_t blue = fine->shell->cell_springs[cell].blue[i];
+        uint32_t blue = side_of_cell(fine, cell, i);
         if (fine->side_point[blue] != SHELL_NONE) continue;
         fine->side_owner[fine->side_count++] = 4 * cell + (uint32_t)i;
         fine->side_point[blue] = (uint32_t)*point;
@@ -66,6 +73,25 @@ static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
     fine->cell_point[cell] = (uint32_t)*point;
     fine->near[fine->near_count++] = cell;
     *point += (uint64_t)inner_points(splits);
+}
+
+/// Points of bent cells and of their sides, in case that they are not split.
+static void number_bent(Fine *fine, uint64_t *point) {
+    const Shell *shell = fine->shell;
+    memset(fine->parts, 1, shell->springs[SINGE_BLUE].count);
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4 && fine->bent[c] > 1; i++) {
+            uint8_t *parts = &fine->parts[side_of_cell(fine, c, i)];
+            if (*parts < fine->bent[c]) *parts = fine->bent[c];
+        }
+    for (uint32_t s = 0; s < shell->springs[SINGE_BLUE].count; s++) {
+        fine->bent_side[s] = (uint32_t)*point;
+        *point += (uint64_t)fine->parts[s] - 1;
+    }
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->bent_point[c] = (uint32_t)*point;
+        *point += (uint64_t)inner_points(fine->bent[c]);
+    }
 }
 
 static SingeResult number(Fine *fine, SingeError *error) {
@@ -77,25 +103,28 @@ static SingeResult number(Fine *fine, SingeError *error) {
         bool near = fine->flags[c] & FINE_LIP || negative_around(fine, c);
         if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
         else fine->flags[c] &= (uint8_t)~FINE_NEAR;
-        if (point > INT32_MAX)
-            return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
+        if (point > INT32_MAX) break;
     }
+    number_bent(fine, &point);
+    if (point > INT32_MAX)
+        return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
     fine->point_count = (uint32_t)point;
     return SINGE_OK;
 }
 
+uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i) {
+    const uint32_t *at = fine->shell->cells[cell];
+    if (i == 0) return at[side];
+    if (i == parts) return at[(side + 1) & 3];
+    uint32_t blue = side_of_cell(fine, cell, side);
+    bool forwards = fine->shell->springs[SINGE_BLUE].ends[blue][0] == at[side];
+    return fine->side_point[blue] + (uint32_t)((forwards ? i : parts - i) - 1);
+}
+
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j) {
-    const Shell *shell = fine->shell;
-    const uint32_t *at = shell->cells[cell];
     int next = (side + 1) & 3, line = splits - 1;
-    if (j == splits) return shell_centre(shell, cell);
-    if (j == 0) {
-        if (i == 0) return at[side];
-        if (i == splits) return at[next];
-        uint32_t blue = shell->cell_springs[cell].blue[side];
-        bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == at[side];
-        return fine->side_point[blue] + (uint32_t)(forwards ? i - 1 : line - i);
-    }
+    if (j == splits) return shell_centre(fine->shell, cell);
+    if (j == 0) return fine_side_point(fine, cell, side, splits, i);
     uint32_t first = fine->cell_point[cell];
     if (i == 0) return first + (uint32_t)(side * line + j - 1);
     if (i + j == splits) return first + (uint32_t)(next * line + j - 1);
@@ -210,6 +239,62 @@ static void mark_split(void *context, int begin, int end) {
         if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
 }
 
+// ---- what is bent and not split
+
+/// Decides how cells and their sides are drawn.
+static void settle(Fine *fine) {
+    const Shell *shell = fine->shell;
+    uint32_t *split_side = fine->bent_side; // the two change places; back where a side belongs to a split cell
+    fine->bent_side = fine->side_point, fine->side_point = split_side;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->splits[c] = fine->bent[c];
+        if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
+    }
+    for (uint32_t n = 0; n < fine->near_count; n++) {
+        uint32_t c = fine->near[n];
+        if (!fine_is_split(fine, c)) continue;
+        fine->splits[c] = (uint8_t)fine_splits(fine, c);
+        for (int i = 0; i < 4; i++) {
+            uint32_t blue = side_of_cell(fine, c, i);
+            fine->parts[blue] = fine->splits[c], fine->side_point[blue] = fine->bent_side[blue];
+        }
+    }
+}
+
+/// The value at a place of a cell that is not split: on the same side of the level as at `particle`.
+static FineValue bent_value(const Fine *fine, uint32_t particle, FinePlace place) {
+    const FineValue *there = &fine->values[particle];
+    if (fine->flags[place.cell] & FINE_EVEN) return *there;
+    FineValue value = fine_value(fine, place);
+    value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
+    return value;
+}
+
+/// Whether a cell's side gets its points from this cell, and for bends.
+static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
+    uint32_t other = shell_neighbour(fine->shell, cell, side);
+    if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
+    return other == SHELL_NONE || !alive(fine, other) || (cell < other && !fine_is_split(fine, other));
+}
+
+static void evaluate_bent(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        int splits = fine->splits[c];
+        if (!alive(fine, c) || fine_is_split(fine, c)) continue;
+        for (int side = 0; side < 4; side++) {
+            int parts = fine_parts(fine, c, side);
+            for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
+                fine->values[fine_side_point(fine, c, side, parts, i)] =
+                    bent_value(fine, fine->shell->cells[c][side], fine_point_place(c, side, parts, i, 0));
+            for (int j = 1; j < splits; j++)
+                for (int i = 0; i + j < splits; i++)
+                    fine->values[fine_point(fine, c, side, splits, i, j)] =
+                        bent_value(fine, shell_centre(fine->shell, c), fine_point_place(c, side, splits, i, j));
+        }
+    }
+}
+
 SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
     bound_cells(fine);
@@ -222,5 +307,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);
     pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
     pool_for(fine->pool, (int)fine->near_count, 64, mark_split, fine);
+    settle(fine);
+    pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_bent, fine);
     return SINGE_OK;
 }

@@ -85,10 +85,9 @@ float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place) 
            (aa + ab) * x * z + (ab + bb) * y * z;
 }
 
-// Places in a cell's own coordinates: its corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2). `out` is the
-// distance from the centre towards a side, `along` runs from its first corner to its second.
+// `out` is the distance from the centre towards a side, `along` runs from its first corner to its second.
 
-static void to_coordinates(FinePlace place, float *x, float *y) {
+void fine_coordinates(FinePlace place, float *x, float *y) {
     float out = 0.5f * (place.weight[0] + place.weight[1]), along = 0.5f * (place.weight[1] - place.weight[0]);
     switch (place.side) {
     case 0: *x = along, *y = -out; break;
@@ -122,7 +121,7 @@ static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
 FinePlace fine_walk(const Shell *shell, FinePlace place, float dx, float dy) {
     uint32_t cell = place.cell;
     float x, y;
-    to_coordinates(place, &x, &y);
+    fine_coordinates(place, &x, &y);
     x += dx, y += dy;
     for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);

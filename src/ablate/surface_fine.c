@@ -21,54 +21,59 @@ static FineSheet describe(const SurfaceDetail *detail, const Sheet *sheet, uint3
     return fine;
 }
 
-static bool allocate(Fine *fine) {
+typedef struct FineArray {
+    size_t offset, size, count;
+} FineArray;
+
+/// Arrays whose sizes are known from the start, but the splines'. Returns how many.
+static int list_arrays(const Fine *fine, FineArray arrays[]) {
     const Shell *shell = fine->shell;
-    Memory *memory = fine->memory;
-    size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
-    bool good = !shell->corner_uv || NEW(memory, fine->cell_triangle, cells + 1);
-    good = good && NEW(memory, fine->sheets, shell->sheet_count) && NEW(memory, fine->raw_level, shell->particle_count);
+    const size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count, corners = shell->vertex_count;
+    int count = 0;
+#define ARRAY(field, number) \
+    arrays[count++] = (FineArray){offsetof(Fine, field), sizeof *fine->field, number}
+    if (shell->corner_uv) ARRAY(cell_triangle, cells + 1);
+    ARRAY(sheets, shell->sheet_count), ARRAY(raw_level, shell->particle_count);
+    ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(most, corners), ARRAY(corner, corners);
+    ARRAY(sound, cells), ARRAY(valence, corners), ARRAY(regular, corners), ARRAY(inner, cells), ARRAY(rail, sides);
+    ARRAY(limit, corners), ARRAY(shift, corners), ARRAY(bent, cells), ARRAY(bent_point, cells), ARRAY(bent_side, sides);
+    ARRAY(splits, cells), ARRAY(parts, sides), ARRAY(cell_value, cells), ARRAY(low, cells), ARRAY(flags, cells);
+    ARRAY(axes, cells), ARRAY(cell_point, cells), ARRAY(near, cells), ARRAY(side_point, sides);
+    ARRAY(side_owner, sides), ARRAY(side_cut, sides + 1);
+#undef ARRAY
+    return count;
+}
+
+enum { FINE_ARRAYS_MOST = 32 };
+
+static bool allocate(Fine *fine) {
+    FineArray arrays[FINE_ARRAYS_MOST];
+    int count = list_arrays(fine, arrays);
+    for (int i = 0; i < count; i++) {
+        void *block = memory_new(fine->memory, arrays[i].count, arrays[i].size);
+        if (!block) return false;
+        memcpy((char *)fine + arrays[i].offset, &block, sizeof block);
+    }
     for (int f = 0; f < SPLINE_COUNT; f++)
-        good = good && NEW(memory, fine->splines[f].edge, sides) &&
-               NEW(memory, fine->splines[f].corner, shell->vertex_count);
-    good = good && NEW(memory, fine->normal, shell->particle_count) &&
-           NEW(memory, fine->share, shell->particle_count) &&
-           NEW(memory, fine->most, shell->vertex_count) && NEW(memory, fine->corner, shell->vertex_count);
-    return good && NEW(memory, fine->centre, cells) && NEW(memory, fine->cell_value, cells) &&
-           NEW(memory, fine->low, cells) && NEW(memory, fine->flags, cells) && NEW(memory, fine->axes, cells) &&
-           NEW(memory, fine->cell_point, cells) && NEW(memory, fine->near, cells) &&
-           NEW(memory, fine->side_point, sides) && NEW(memory, fine->side_owner, sides) &&
-           NEW(memory, fine->side_cut, sides + 1);
+        if (!NEW(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count) ||
+            !NEW(fine->memory, fine->splines[f].corner, fine->shell->vertex_count))
+            return false;
+    return true;
 }
 
 static void release(Fine *fine) {
-    const Shell *shell = fine->shell;
-    Memory *memory = fine->memory;
-    size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count;
-    FREE(memory, fine->cell_triangle, cells + 1);
-    FREE(memory, fine->sheets, shell->sheet_count);
-    FREE(memory, fine->raw_level, shell->particle_count);
+    FineArray arrays[FINE_ARRAYS_MOST];
+    int count = list_arrays(fine, arrays);
+    for (int i = 0; i < count; i++)
+        memory_free(fine->memory, (char *)fine + arrays[i].offset, arrays[i].count, arrays[i].size);
     for (int f = 0; f < SPLINE_COUNT; f++) {
-        FREE(memory, fine->splines[f].edge, sides);
-        FREE(memory, fine->splines[f].corner, shell->vertex_count);
+        FREE(fine->memory, fine->splines[f].edge, fine->shell->springs[SINGE_BLUE].count);
+        FREE(fine->memory, fine->splines[f].corner, fine->shell->vertex_count);
     }
-    FREE(memory, fine->normal, shell->particle_count);
-    FREE(memory, fine->share, shell->particle_count);
-    FREE(memory, fine->most, shell->vertex_count);
-    FREE(memory, fine->corner, shell->vertex_count);
-    FREE(memory, fine->centre, cells);
-    FREE(memory, fine->cell_value, cells);
-    FREE(memory, fine->low, cells);
-    FREE(memory, fine->flags, cells);
-    FREE(memory, fine->axes, cells);
-    FREE(memory, fine->cell_point, cells);
-    FREE(memory, fine->near, cells);
-    FREE(memory, fine->side_point, sides);
-    FREE(memory, fine->side_owner, sides);
-    FREE(memory, fine->side_cut, sides + 1);
-    FREE(memory, fine->values, fine->point_count);
-    FREE(memory, fine->drawn, fine->point_count);
-    FREE(memory, fine->cuts, fine->cut_count);
-    FREE(memory, fine->vertices, fine->vertex_capacity);
+    FREE(fine->memory, fine->values, fine->point_count);
+    FREE(fine->memory, fine->drawn, fine->point_count);
+    FREE(fine->memory, fine->cuts, fine->cut_count);
+    FREE(fine->memory, fine->vertices, fine->vertex_capacity);
 }
 
 /// The level that is made smooth. The mass of what is gone stands still as it was when it went, just below m_loss;
@@ -105,6 +110,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
     for (int f = 0; f < SPLINE_COUNT; f++)
         if (fields[f]) fine_spline(fine, fields[f], &fine->splines[f]);
     fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);
+    fine_place(fine);
     TRY(fine_points(fine, error));
     TRY(fine_march(fine, error));
     TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
@@ -116,7 +122,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
-    fine.flat = detail->flat, fine.bulge_most = detail->bulge_most > 0 ? detail->bulge_most : INFINITY;
+    fine.room = detail->room, fine.leaves_most = detail->leaves_most > 0 ? detail->leaves_most : INFINITY;
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = draw(&fine, detail, error);

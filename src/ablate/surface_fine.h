@@ -63,8 +63,8 @@ typedef struct Fine {
     const State *state;
     Memory *memory;
     Pool *pool;
-    const uint8_t *flat;     ///< [vertices] of SurfaceDetail
-    float bulge_most;        ///< m, of SurfaceDetail
+    const float *room;       ///< [vertices] m, of SurfaceDetail
+    float leaves_most;       ///< m, of SurfaceDetail
     FineSheet *sheets;       ///< [sheets]
     Spline splines[SPLINE_COUNT];
     float *raw_level;        ///< [particles] m'; below 0 for what is gone
@@ -76,6 +76,11 @@ typedef struct Fine {
     uint32_t *side_point;    ///< [blue springs] first of the points on a side, or SHELL_NONE
     uint32_t *near;          ///< [near_count] the cells near the front
     uint32_t *side_owner;    ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
+    uint8_t *bent;           ///< [cells] parts of a side that show how a cell is bent, if it is not split
+    uint32_t *bent_point;    ///< [cells] as cell_point, of points for that
+    uint32_t *bent_side;     ///< [blue springs] as side_point; those of a split cell's sides once cells are settled
+    uint8_t *splits;         ///< [cells] k of the cell as it is drawn
+    uint8_t *parts;          ///< [blue springs] of a side as it is drawn: the more of its cells'
     uint32_t near_count, side_count, point_count;
     FineValue *values;       ///< [point_count]
     uint32_t *drawn;         ///< [point_count] 1 + index of the vertex drawn there, 0 for none
@@ -83,10 +88,16 @@ typedef struct Fine {
     uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
     float (*normal)[3];      ///< [particles] unit, or 0
-    float *most;             ///< [vertices] m, how far they go there
-    float (*corner)[4];      ///< [vertices] m, where they are drawn
-    float *share;            ///< [particles] of their terms that they keep where vertices leave flat triangles
-    float (*centre)[3];      ///< [cells] m, where the virtual centre is drawn
+    float *most;             ///< [vertices] m, how far the surface leaves flat triangles there
+    float *share;            ///< [vertices] of its way to the patches that it goes there
+    float (*corner)[4];      ///< [vertices] m, of the flat triangles
+    uint8_t *sound;          ///< [cells] 1: it is there and not torn
+    float *valence;          ///< [vertices] n of fine_patch.c
+    float *regular;          ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
+    float (*inner)[4][3];    ///< [cells] m, points of the patches beside the corners,
+    float (*rail)[2][3];     ///< [blue springs] on sides, in the order of their ends,
+    float (*limit)[3];       ///< [vertices] and at the corners
+    float (*shift)[3];       ///< [vertices] m, by which the first two are moved; the third is
     FineVertex *vertices;    ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
     uint32_t *cell_triangle; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
@@ -109,6 +120,9 @@ float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place);
 /// The place that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
 /// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
 FinePlace fine_walk(const Shell *shell, FinePlace place, float x, float y);
+
+/// A place in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
+void fine_coordinates(FinePlace place, float *x, float *y);
 
 /// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth
 /// curves where their sides have corners, so that the sides are nowhere to be seen.
@@ -140,6 +154,9 @@ float fine_lip_level(const Fine *fine, FinePlace place);
 /// which cells are split.
 SingeResult fine_points(Fine *fine, SingeError *error);
 
+/// Point i of a cell's side, of `parts` that it is in.
+uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i);
+
 /// Point (i, j) of a cell's triangle: i of k along the side, j of k towards the centre.
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j);
 FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j);
@@ -150,10 +167,48 @@ static inline int fine_splits(const Fine *fine, uint32_t cell) {
     return fine->sheets[fine->shell->matter.sheet[shell_centre(fine->shell, cell)]].splits;
 }
 
+/// The parts in which a side of a cell is drawn.
+static inline int fine_parts(const Fine *fine, uint32_t cell, int side) {
+    return fine->parts[fine->shell->cell_springs[cell].blue[side]];
+}
+
 // ---- fine_march.c
 
 /// Draws the triangles and lists their vertices.
 SingeResult fine_march(Fine *fine, SingeError *error);
+
+/// Whether a cell's triangle is left out.
+bool fine_is_torn(const Fine *fine, uint32_t cell, int side);
+
+// ---- fine_patch.c
+
+/// A cell's points b_ij: i along side 0, j along side 3 backwards.
+typedef struct FinePatch {
+    Vec net[4][4];
+} FinePatch;
+
+/// A point of a patch and its derivatives.
+typedef struct FinePoint {
+    Vec position, along_u, along_v;
+} FinePoint;
+
+/// Finds the sound cells.
+void fine_find_sound(Fine *fine);
+
+/// Works out the points of all patches. Sound cells, corners, normals, shares and most are in place.
+void fine_patches(Fine *fine);
+
+FinePatch fine_patch(const Fine *fine, uint32_t cell);
+FinePoint fine_patch_at(const FinePatch *patch, float u, float v);
+
+// ---- fine_place.c
+
+/// Works out where the surface is, and how finely bent cells are to be drawn.
+void fine_place(Fine *fine);
+
+/// Position and unit normal at a place, with the patch of its cell.
+void fine_place_at(const Fine *fine, const FinePatch *patch, const FinePlace *place, float position[3],
+                   float normal[3]);
 
 // ---- fine_vertices.c
 

@@ -61,8 +61,8 @@ typedef struct TouchCounters {
 
 TouchCounters touch_counters(const TouchPlan *plan);
 
-/// 1 at vertices whose cells have another near, in the present state, else 0: there the drawn surface leaves its flat
-/// triangles by nothing. `near` is [vertices].
-void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near);
+/// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the drawn
+/// surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
+void touch_room(const TouchPlan *plan, const Shell *shell, const State *state, float *room);
 
 #endif

@@ -303,10 +303,10 @@ SingeResult touch_open(TouchPlan *plan, const Shell *shell, const State *state, 
 
 // ---- for drawing
 
-void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
+void touch_room(const TouchPlan *plan, const Shell *shell, const State *state, float *room) {
     const float(*x)[4] = (const float(*)[4])state->dynamics.position;
-    float bulges = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
-    TouchFar far = {bulges, bulges, bulges, true};
+    float looks = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
+    TouchFar far = {looks, looks, looks, true};
     TouchNear found[TOUCH_NEAR];
     TouchCell p, q;
     for (uint32_t k = 0; plan->searched && k < plan->listed_count; k++) {
@@ -320,8 +320,10 @@ void touch_mark_near(const TouchPlan *plan, const Shell *shell, const State *sta
         if (pair->bridge != SHELL_NONE && touch_is_within(touch_normals(p.node), touch_normals(q.node), TOUCH_CONE))
             continue;
         float nearest;
-        if (touch_cells_apart(&p, &q) > bulges || !touch_features(shell, pair, &p, &q, &far, found, &nearest))
+        if (touch_cells_apart(&p, &q) > looks || !touch_features(shell, pair, &p, &q, &far, found, &nearest))
             continue;
-        for (int i = 0; i < 4; i++) near[a[i]] = near[b[i]] = 1;
+        for (int i = 0; i < 16; i++)
+            if (a[i / 4] == b[i % 4]) nearest = 0; // towards what they share
+        for (int i = 0; i < 4; i++) room[a[i]] = fminf(room[a[i]], nearest), room[b[i]] = fminf(room[b[i]], nearest);
     }
 }

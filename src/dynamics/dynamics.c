@@ -112,9 +112,9 @@ TouchCounters dynamics_plan_touches(const DynamicsPlan *plan) {
     return plan->touch ? touch_counters(plan->touch) : (TouchCounters){0};
 }
 
-void dynamics_plan_mark_near(const DynamicsPlan *plan, const Shell *shell, const State *state, uint8_t *near) {
-    memset(near, 0, shell->vertex_count);
-    if (plan->touch) touch_mark_near(plan->touch, shell, state, near);
+void dynamics_plan_room(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room) {
+    for (uint32_t v = 0; v < shell->vertex_count; v++) room[v] = INFINITY;
+    if (plan->touch) touch_room(plan->touch, shell, state, room);
 }
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {

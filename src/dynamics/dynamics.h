@@ -55,8 +55,8 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
 /// What contact of sheets has done so far; zero without.
 TouchCounters dynamics_plan_touches(const DynamicsPlan *plan);
 
-/// Marks vertices that have another part of a sheet near ([vertices], 1 or 0).
-void dynamics_plan_mark_near(const DynamicsPlan *plan, const Shell *shell, const State *state, uint8_t *near);
+/// How far another part of a sheet is from the cells at each vertex ([vertices], m), where that is near, else INFINITY.
+void dynamics_plan_room(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room);
 
 typedef struct DynamicsCounters {
     uint64_t strands, contacts, springs, iterations;

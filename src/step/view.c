@@ -70,7 +70,7 @@ SingeCensus singe_sim_census(const SingeSim *sim) {
 }
 
 /// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
-static float bulge_most(const SingeSim *sim) {
+static float leaves_most(const SingeSim *sim) {
     float cell = INFINITY;
     if (!sim->def.contact.enabled) return 0;
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
@@ -81,15 +81,15 @@ SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
-                            bulge_most(sim)};
+                            leaves_most(sim)};
     if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
-    uint8_t *near;
-    if (!NEW(&sim->memory, near, sim->shell.vertex_count))
+    float *room;
+    if (!NEW(&sim->memory, room, sim->shell.vertex_count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
-    dynamics_plan_mark_near(sim->dynamics, &sim->shell, &sim->state, near);
-    detail.flat = near;
+    dynamics_plan_room(sim->dynamics, &sim->shell, &sim->state, room);
+    detail.room = room;
     SingeResult result = ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
                                              surface, &sim->error);
-    FREE(&sim->memory, near, sim->shell.vertex_count);
+    FREE(&sim->memory, room, sim->shell.vertex_count);
     return result;
 }
