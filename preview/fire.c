@@ -48,7 +48,7 @@ static void find_roots(Preview *preview) {
     Fire *fire = &preview->fire;
     memset(fire->roots, 0, fire->cell_capacity * sizeof *fire->roots);
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
-        float rate = scene->vertices[i].burn_rate, rest;
+        float rate = scene->vertices[i].flaming, rest;
         if (rate < 0.02f) continue;
         V3 g = v3_scale(v3_sub(v3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
         int place[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};

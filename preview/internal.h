@@ -33,6 +33,7 @@ typedef struct PaperVertex {
     float peak;          ///< K, highest so far
     float burn;          ///< how far it looks burnt, 0 to 1
     float burn_rate;     ///< 1/s
+    float flaming;       ///< 1/s, of it what feeds a flame: none where char glows
     float gradient;      ///< 1/m, of burn in rest space
     int32_t sheet;       ///< -1: none
     float rim;           ///< 1 on the border of a piece, 0 inside

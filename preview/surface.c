@@ -51,6 +51,13 @@ static float look_of(const SingeSurface *surface, uint32_t i, float burn) {
     return mixf(burn, CHAR_LEAF * (1 - fuel), charred / (charred + 2 * ash));
 }
 
+/// What of the rate feeds a flame: char that has no fuel left glows without one.
+static float flaming_rate(const SingeSurface *surface, uint32_t i, float rate) {
+    if (!surface->char_fraction || !surface->ash_fraction || !surface->mass) return rate;
+    float fuel = surface->mass[i] - surface->char_fraction[i] - surface->ash_fraction[i];
+    return fuel > 0.01f ? rate : 0; // not for NaN
+}
+
 static void pack_vertex(const Preview *preview, const SingeSurface *surface, uint32_t i, PaperVertex *out,
                         float position[4]) {
     const float zero[3] = {0, 0, 0};
@@ -64,6 +71,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
         .peak = clampf(finite_or(surface->temperature_peak[i], 293), 0, 5000),
         .burn = clampf(finite_or(surface->burn[i], 0), 0, 1),
         .burn_rate = clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f),
+        .flaming = flaming_rate(surface, i, clampf(finite_or(surface->burn_rate[i], 0), 0, 1e6f)),
         .sheet = surface->sheet[i],
         .piece = surface->piece ? surface->piece[i] : -1,
     };
