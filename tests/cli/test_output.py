@@ -52,7 +52,7 @@ class Output(Case):
 
     def test_what_is_torn_out_of_shape(self):
         """Sheets that a plane throws out by many cells are warned of twice: as they begin, and for what came of it."""
-        for depth, told in (("0 m", False), ("0.3 m", True)):
+        for depth, told in (("0 m", False), ("0.6 m", True)):
             with self.subTest(depth):
                 _, err = self.run_scene("strained", "--set", "frames=2", "--set",
                                         "colliders=[{kind: plane, rotation: [0, 40, 0], offset: %s}]" % depth)

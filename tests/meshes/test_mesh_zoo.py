@@ -138,7 +138,8 @@ class MeshZoo(Case):
                 continue
             x, y, z = (scale * c for c in mesh.points[number])
             place = x, y * math.cos(angle) - z * math.sin(angle), y * math.sin(angle) + z * math.cos(angle) + 0.15
-            if math.dist(place, [row[axis] for axis in "xyz"]) > 2e-6:
+            # what is drawn is smooth: it leaves bent cells by at most 0.45 of the 0.5 mm that contact keeps
+            if math.dist(place, [row[axis] for axis in "xyz"]) > 2.3e-4:
                 return f"vertex {number} is not at {place}"
             known = uv[number]
             if known and min(math.dist(t, (row["s"], row["t"])) for t in known) > 1e-6:
