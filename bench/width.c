@@ -68,7 +68,7 @@ static SingeResult measure(const BenchOptions *options, const BenchSetup *setup,
     SingeSim *sim;
     Timing timing = {0};
     SingeResult result = sheet_build(setup, &sim, error);
-    if (result == SINGE_ERROR_ARGUMENT && setup->instructions != SINGE_INSTRUCTIONS_PLAIN)
+    if (result == SINGE_ERROR_LIMIT && setup->instructions != SINGE_INSTRUCTIONS_PLAIN)
         return add_absent(table, setup); // refused: this processor lacks them
     if (result) return result;
     int steps = options->steps ? options->steps : timing_steps(timing_springs(sim), 5, 200);
