@@ -250,6 +250,7 @@ V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
 typedef struct PaperState {
     V3 rest;
     float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
+    float glowing; ///< 1/s, of burn_rate what char without fuel burns at
     float age; ///< s since it caught fire, as a fire of real pace has it; 0: not yet
     int32_t sheet, piece;
 } PaperState;

@@ -43,6 +43,17 @@ static V3 line(const Preview *preview, const PaperState *state, const Bent *bent
     return v3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
 }
 
+/// A leaf of char that glows away: as hot as it is, where it burns. Its heat spreads over a cell or two, and real lines of
+/// embers are thinner: they follow threads of noise, and break.
+static V3 leaf(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
+    float activity = ember_activity(state->glowing);
+    if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return v3(0, 0, 0);
+    float life = line_life(preview, bent) * minf(air, 1.2f);
+    float temperature = ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->middle;
+    float strength = activity * (0.15f + 0.85f * life) * air;
+    return v3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
+}
+
 static V3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     float warm = stepf(420, 640, state->temperature) * stepf(0.76f, 0.86f, bent->burn);
     if (warm <= 0 || state->age <= 0) return v3(0, 0, 0);
@@ -59,4 +70,5 @@ void ember_shade(const Preview *preview, const PaperState *state, const Bent *be
     float air = ember_air(preview, point->position);
     point->glow = v3_add(line(preview, state, bent, air, point->footprint),
                          sparks(preview, state, bent, air, point->footprint));
+    point->glow = v3_add(point->glow, leaf(preview, state, bent, air));
 }

@@ -43,6 +43,7 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .peak = w * a->peak + u * b->peak + v * c->peak,
         .burn = w * a->burn + u * b->burn + v * c->burn,
         .burn_rate = w * a->burn_rate + u * b->burn_rate + v * c->burn_rate,
+        .glowing = w * (a->burn_rate - a->flaming) + u * (b->burn_rate - b->flaming) + v * (c->burn_rate - c->flaming),
         .gradient = w * a->gradient + u * b->gradient + v * c->gradient,
         .heat_gradient = w * a->heat_gradient + u * b->heat_gradient + v * c->heat_gradient,
         .spacing = w * a->spacing + u * b->spacing + v * c->spacing,

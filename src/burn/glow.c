@@ -2,16 +2,21 @@
 // of the initial mass f of fuel, c of char and a of ash, and the share z = c/nu,
 //
 //   m = f + c + a,   a = m_min (1 - f - z)
-//   dc/dt = -nu df/dt - nu (k/F) z^(1/2),   1/k = 1/r(T) + 1/(s k_air),   r = A exp(-E/(R T))
+//   dc/dt = -nu df/dt - nu (k/(F F_c)) z^(1/2),   1/k = 1/r(T) + 1/(s k_air),   r = A exp(-E/(R T))
 //
 //   nu     char_yield: what pyrolysis leaves; at or below m_min there is no char, and nothing here
 //   r      1/s, kinetics of the oxidation of cellulose's char: A = 5.667e9 1/s, E = 160 kJ/mol (Kashiwagi & Nambu,
 //          Combust. Flame 88, 1992, 345-368)
 //   k_air  1/s, char_rate: what air at an edge can burn
-//   s      share of it that reaches a particle, s = (1 - f)^2 max(s_0, w, 1 at an edge): gas that leaves the fuel keeps
-//          the air away; within a leaf little air comes, s_0 = char_air; at an edge, and where char has burnt away and
-//          ash is porous, all of it. w is the most of 1 - f - z at the particle and beside it, in the other layer
+//   s      share of it that reaches a particle, s = (1 - f_n)^8 max(s_0, w, 1 at an edge): what leaves the fuel, and
+//          the flame, keep the air away; within a leaf little air comes, s_0 = char_air; at an edge, and where char has
+//          burnt away and ash is porous, all of it. w is the largest 1 - f - z, and f_n the largest f, of the particle
+//          and those beside it in the other layer
 //   F      front thickening, by which every rate is divided
+//   F_c    1 + 3 (1 - f)^8: the diffusivity alpha stands for heat that the flame's gas carries along the sheet. Char has
+//          no flame, alpha/F_c is left for it, and its front is thickened F_c times for the cells: so conduction stays
+//          as it is, and what burns and cools char is F_c times slower (also heat/heat.c). Without this the heat of an
+//          ember reaches half a cell, and embers go out where the flame leaves them
 //
 // Slow kinetics and slow supply are resistances in series, as in the theory of burning carbon (Glassman, Combustion,
 // 9B). So char that is hot glows at edges and dies where it loses more than it gets, and embers crawl into a leaf from
@@ -70,13 +75,33 @@ static float glow_corner(const BurnJob *job, uint32_t vertex) {
     return ash;
 }
 
+static float glow_fuel_near(const BurnJob *job, uint32_t i) {
+    const Shell *shell = job->shell;
+    const float *fuel = job->burn->fuel;
+    float most = fuel[i];
+    if (!shell_is_corner(shell, i)) {
+        for (int k = 0; k < 4; k++) most = fmaxf(most, fuel[shell->cells[i - shell->vertex_count][k]]);
+        return most;
+    }
+    for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++)
+        if (!glow_is_gone(job, shell->fan[f])) most = fmaxf(most, fuel[shell_centre(shell, shell->fan[f])]);
+    return most;
+}
+
+static float glow_power_8(float x) {
+    float squared = x * x;
+    squared *= squared;
+    return squared * squared;
+}
+
 static void glow_air_run(BurnJob *job, uint32_t first, uint32_t last) {
     const Shell *shell = job->shell;
     for (uint32_t i = first; i < last; i++) {
         bool chars = field_at(shell->matter.char_yield, i) > field_at(shell->matter.mass_min, i);
         if (!chars || job->burn->fuel[i] >= 1 || !(job->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
         float ash = shell_is_corner(shell, i) ? glow_corner(job, i) : glow_centre(job, i - shell->vertex_count);
-        job->burn->release[i] = fmaxf(ash, field_at(shell->matter.char_air, i));
+        float air = fmaxf(ash, field_at(shell->matter.char_air, i));
+        job->burn->release[i] = air * glow_power_8(1 - glow_fuel_near(job, i));
     }
 }
 
@@ -103,9 +128,9 @@ float burn_glow_heat(const BurnJob *job, uint32_t i) {
 
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt) {
     if (!(share > 0)) return share;
-    float burnt = 1 - fuel, supply = field_at(job->shell->matter.char_rate, i) * air * burnt * burnt;
+    float supply = field_at(job->shell->matter.char_rate, i) * air;
     float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / job->state->heat.temperature[i]);
     float rate = supply > 0 && kinetics > 0 ? supply * (kinetics / (kinetics + supply)) : 0;
-    float half = 0.5f * dt * rate, root = sqrtf(share);
+    float half = 0.5f * dt * rate / shell_glow_slowing(&job->shell->matter, i, fuel), root = sqrtf(share);
     return half > root ? 0 : (root - half) * (root - half);
 }

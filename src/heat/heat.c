@@ -1,21 +1,21 @@
 // Eq 1, with the losses that it lacks:
 //
 //   T*  = T + r h + dt (q + g (Ts - T*))/C''
-//   T** : dT/dt = -[h_c (T - Ta) + eps sigma (T^4 - Ta^4)]/(C'' max(m, floor) F)
+//   T** : dT/dt = -[h_c (T - Ta) + eps sigma (T^4 - Ta^4)]/(C'' max(m, floor) F F_c)
 //
 // T      K         temperature; Ta ambient, Ts of a source
 // r      K/s       what burning in the last step warms by: eta (-dm) of eq 4 (burn/lose_mass.c), and char (burn/glow.c)
 // q, g   W/m2, W/(m2 K)  flux and conductance of the sources
 // C''    J/(m2 K)  capacity per area of a layer, unburnt
 // h_c    W/(m2 K)  convection; eps emissivity; sigma Stefan and Boltzmann's constant. Each layer owns one side
-// m      mass fraction; F front thickening (thicken.c)
+// m      mass fraction; F front thickening (thicken.c), F_c that of char that glows (burn/glow.c)
 // h, dt  s         scene time; fire time dt = h pace
 //
 // Sources are implicit, T* = (T1 + dt (q + g Ts)/C'')/(1 + dt g/C''), so T* never passes Ts; with the flux at the
 // end of the step, f = (q + g Ts - g T1)/(1 + dt g/C''), it is T* = T1 + dt f/C''. A flux below 0 takes no more than
 // brings T* to 1 K. Losses are implicit too,
 // with T^4 - Ta^4 = (T + Ta)(T^2 + Ta^2)(T - Ta) and the first two factors at T*:
-//   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/F.
+//   T** = (T* + dt K Ta)/(1 + dt K),  K = [h_c/C'' + eps sigma/C'' (T* + Ta)(T*^2 + Ta^2)]/max(m, floor)/(F F_c).
 //
 // Ledger: heat in = A dt f, heat lost = C dt K (T** - Ta), heat of combustion = C r h, with the unburnt
 // capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
@@ -42,6 +42,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     uint32_t sheet = matter->sheet[i];
     const float *temperature = pass->state->heat.temperature, *mass = pass->state->burn.mass;
     const float *burn_rate = pass->state->burn.burn_rate, *release = pass->state->burn.release;
+    const float *fuel = pass->state->burn.fuel;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
@@ -65,7 +66,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
         float floor_mass = field_at(matter->loss_mass_floor, i), burnt = mass[i] > floor_mass ? mass[i] : floor_mass;
         float radiation = field_at(matter->emissivity, i) * STEFAN_BOLTZMANN;
         float exchange = field_at(matter->convection, i) + radiation * (T2 + ambient) * (T2 * T2 + ambient * ambient);
-        float rate = warmth * exchange / burnt * slower; // dt K
+        float rate = warmth * exchange / burnt * slower / shell_glow_slowing(matter, i, fuel[i]); // dt K
         float loss = rate * (T2 - ambient) / (1 + rate);
         plan->star[i] = T2 - loss;
         plan->delta[i] = combustion + warmth * flux - loss;

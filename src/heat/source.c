@@ -259,7 +259,7 @@ static void source_gas_task(void *context, int begin, int end) {
     HeatPlan *plan = job->pass->plan;
     const GasState *gas = &job->pass->state->gas;
     const float *temperature = job->pass->state->heat.temperature, ambient = plan->settings.ambient_temperature;
-    const float *mass = job->pass->state->burn.mass;
+    const float *mass = job->pass->state->burn.mass, *fuel = job->pass->state->burn.fuel;
     const Matter *matter = &job->pass->shell->matter;
     for (int i = begin; i < end; i++)
         if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
@@ -269,7 +269,8 @@ static void source_gas_task(void *context, int begin, int end) {
             // what the losses take by convection: at the gas's temperature, to which no more than this may bring it; or
             // what they give, where it is colder than the air
             float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
-            float real = convection / (left * plan->thickening[matter->sheet[i]]);
+            float slower = shell_glow_slowing(matter, (uint32_t)i, fuel[i]);
+            float real = convection / (left * plan->thickening[matter->sheet[i]] * slower);
             float most = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
             plan->flux[i] += T > ambient ? fminf(back, most) : fmaxf(back, real * (T - ambient));
         }

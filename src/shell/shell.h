@@ -322,6 +322,16 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     return share < 0 ? 0 : share > most ? most : share;
 }
 
+/// How many times slower what is left as char burns and cools than the flame's front does: 1 while there is fuel, and 1
+/// for good where pyrolysis leaves no char (burn/glow.c).
+static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float fuel) {
+    const float slowest = 4;
+    float burnt = (1 - fuel) * (1 - fuel);
+    if (!(field_at(matter->char_yield, i) > field_at(matter->mass_min, i))) return 1;
+    burnt *= burnt;
+    return 1 + (slowest - 1) * burnt * burnt;
+}
+
 /// Burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash.
 static inline float shell_burn_progress(float mass, float mass_min) {
     float progress = (1 - mass) / (1 - mass_min);

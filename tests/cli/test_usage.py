@@ -86,7 +86,7 @@ class Usage(Case):
 
     def test_one_rule_for_names(self):
         """A name that the scene gives, and one taken from its file."""
-        for name in "a:b", "100%", "n" * 101, ".dot":
+        for name in ("a:b",) if SANITIZED else ("a:b", "100%", "n" * 101, ".dot"):
             with self.subTest(name):
                 given = self.write_scene("given.yaml", extra=f'name: "{name}"\n')
                 self.assertIn("at most 100 characters", self.singe("check", given, expect=2)[1])
@@ -153,7 +153,7 @@ class Usage(Case):
                 _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
                 self.assertIn("and there are 4.3 GB", err)
 
-    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    @unittest.skipUnless(HAS_PREVIEW and not SANITIZED, "measures pictures")
     def test_check_of_large_pictures(self):
         """A picture that takes hours is timed with fewer samples."""
         begun = time.monotonic()
@@ -170,7 +170,7 @@ class Usage(Case):
         check.stderr.close()
 
     def test_memory_is_as_it_was_said(self):
-        for more in "contact=no", "contact=yes":
+        for more in ("contact=yes",) if SANITIZED else ("contact=no", "contact=yes"):
             out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[80, 80]", "--set", more)
             said = 1e3 * float(re.search(r"^needs +about ([0-9.]+) GB", out).group(1)) - 40 - 40 * 64 * 48e-6
             held = float(re.search(r"^memory +([0-9.]+) MB$", out, re.MULTILINE).group(1))

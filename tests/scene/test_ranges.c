@@ -119,8 +119,8 @@ static void try_number(const Walk *walk, const SchemaRow *row, const char *path,
     bool list = row->type == ROW_POINTS;
     if (row->type == ROW_INDICES)
         snprintf(value, sizeof value, "[%s]", number);
-    else if (row->type == ROW_INTS) // the most of both is more than all cells may be
-        snprintf(value, sizeof value, "[%s, 16]", number);
+    else if (row->type == ROW_INTS) // the maximum of both is more than all cells may be
+        snprintf(value, sizeof value, "[%s, 2]", number);
     else if (row->length == 2)
         snprintf(value, sizeof value, "[%s, %s]", number, number);
     else if (row->length == 3)
