@@ -15,7 +15,8 @@
 //   g = g_0 B/(e^B - 1),   B = m'' cp/g_0,   T = T_gas(x + side cell/2 - reach u/(|u| + u_0))
 //
 // Gas that leaves the sheet pushes the hot gas away from it: m'' kg/(m2 s) of it lower the conductance by the classical
-// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). The gas loses what the sheet takes.
+// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). Char that glows takes less by its front
+// thickening F_c (burn/glow.c). The gas loses what the sheet takes.
 //
 // The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
 // whole sheet the gas flows along it, and only flakes and edges are in its way.
@@ -186,7 +187,8 @@ static void sheets_meet(void *context, int begin, int end) {
         if (temperature < ambient + SHEET_LEAST) continue;
         float gone = (pass->from->fuel[i] - pass->state->burn.fuel[i]) * (1 - field_at(matter->char_yield, i));
         float flux = gone * matter->mass[i] / (matter->area[i] * pass->fire); // m''
-        pass->to->conductance[i] = g0 * sheets_blown(flux * SHEET_CP / g0);
+        float slower = shell_glow_slowing(matter, i, pass->state->burn.fuel[i]);
+        pass->to->conductance[i] = g0 * sheets_blown(flux * SHEET_CP / g0) / slower;
         pass->to->temperature[i] = temperature;
     }
 }

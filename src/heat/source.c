@@ -265,11 +265,11 @@ static void source_gas_task(void *context, int begin, int end) {
         if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
             source_add(plan, (uint32_t)i, gas->conductance[i], gas->temperature[i]);
             float convection = field_at(matter->convection, (uint32_t)i), hot = gas->temperature[i], T = temperature[i];
-            float back = convection * (T - ambient);
+            float slower = shell_glow_slowing(matter, (uint32_t)i, fuel[i]);
+            float back = convection * (T - ambient) / slower;
             // what the losses take by convection: at the gas's temperature, to which no more than this may bring it; or
             // what they give, where it is colder than the air
             float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
-            float slower = shell_glow_slowing(matter, (uint32_t)i, fuel[i]);
             float real = convection / (left * plan->thickening[matter->sheet[i]] * slower);
             float most = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
             plan->flux[i] += T > ambient ? fminf(back, most) : fmaxf(back, real * (T - ambient));

@@ -36,7 +36,7 @@ static SingeMaterialDef standard_material(void) {
         .char_yield = singe_param(0.35f),
         .char_density = singe_param(0.45f),
         .char_heat = singe_param(25e6f),
-        .char_rate = {.value = 1, .to = 3, .field = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}},
+        .char_rate = {.value = 1, .to = 2.8f, .field = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}},
         .char_air = singe_param(0.05f),
         // the front, which the flame heats, shrinks more in the mean, in patches of 5 cm that curl this way and that
         .shrink_front = {.value = 0.5f, .to = 1.7f, .field = SINGE_FIELD_NOISE, .noise = {0.05f, 2, 2}},
