@@ -47,7 +47,8 @@ build-tsan:
 
 demo:
 	scripts/setup.sh
-	$(MAKE) build
+	cmake --preset release
+	cmake --build --preset release --target singe_program
 	build/cli/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
 	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
 

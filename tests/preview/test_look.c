@@ -191,12 +191,12 @@ static void test_grounds(void **state) {
     }
 }
 
-/// What pyrolysis leaves is a black leaf, whatever little mass it has; it greys as it glows away, and only where it does
-/// so does it shine: not a leaf that is hot and still loses mass, but the line between leaf and ash.
+/// What pyrolysis leaves is a black leaf, whatever little mass it has, and it greys as it glows away. It shines where char
+/// burns: neither where a hot leaf burns no more, nor where it still has fuel, which burns in the flame.
 static void test_char_leaf(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    float mass[4], charred[4], ash[4], green[3], red[2];
+    float mass[4], charred[4], ash[4], green[3], red[3];
     Quad q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
@@ -212,17 +212,17 @@ static void test_char_leaf(void **state) {
     print_message("one reaction %.0f, leaf %.0f, ash %.0f\n", (double)green[0], (double)green[1], (double)green[2]);
     assert_true(green[1] < 60 && green[2] > green[1] + 30 && green[0] > green[1]);
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
-    for (int line = 0; line < 2; line++) {
+    for (int k = 0; k < 3; k++) { // idle, with fuel, glowing
         for (int i = 0; i < 4; i++) {
-            bool gone = line && (i == 1 || i == 2);
-            charred[i] = gone ? 0 : 0.25f, ash[i] = gone ? 0.12f : 0, mass[i] = charred[i] + ash[i];
-            q.burn[i] = (1 - mass[i]) / 0.88f, q.temperature[i] = 1100, q.rate[i] = 1;
+            charred[i] = 0.25f, ash[i] = 0, mass[i] = k == 1 ? 0.4f : 0.25f;
+            q.burn[i] = (1 - mass[i]) / 0.88f, q.temperature[i] = 1100, q.rate[i] = k > 0;
         }
         draw(&def, &q.surface, 1, rgb);
-        red[line] = mean(rgb, 0) - mean(rgb, 2);
+        red[k] = mean(rgb, 0) - mean(rgb, 2);
     }
-    print_message("red of a hot leaf %.1f, of a line of embers %.1f\n", (double)red[0], (double)red[1]);
-    assert_true(red[1] > red[0] + 1.5f);
+    print_message("red of a hot leaf that is idle %.1f, has fuel %.1f, glows %.1f\n", (double)red[0], (double)red[1],
+                  (double)red[2]);
+    assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f);
 }
 
 int main(void) {
