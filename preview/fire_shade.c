@@ -25,7 +25,7 @@
 #define FLAME_BRIGHT 3.7f
 #define SOOT_DENSE 32.0f   ///< 1/m: radiance gathered a metre over that of a thick flame
 #define SOOT_OPAQUE 6.0f   ///< 1/m, extinction
-#define BLUE_DENSE 1.0f   ///< 1/m: radiance of the base gathered a metre
+#define BLUE_DENSE 0.55f  ///< 1/m: radiance of the base gathered a metre
 #define EDGE 0.19f         ///< share of burning at which a flame has its edge
 #define STAND_OFF 0.002f  ///< m above the paper, where nothing is seen yet
 #define SOOT_BEGINS 0.010f ///< m
