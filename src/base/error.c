@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,7 +12,7 @@ SingeResult error_set(SingeError *error, SingeResult code, const char *stage, in
     snprintf(error->stage, sizeof error->stage, "%s", stage);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(error->message, sizeof error->message, format, arguments);
+    text_format(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
     return code;
 }

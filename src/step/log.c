@@ -1,8 +1,7 @@
 // What a simulation tells its host's log. Errors are results, not lines: the log has what no result says.
 #include "step/sim.h"
 
-#include <stdarg.h>
-#include <stdio.h>
+#include "base/text.h"
 
 static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format, ...) {
     const SingeLog *log = &sim->def.log;
@@ -10,7 +9,7 @@ static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format
     char line[256];
     va_list list;
     va_start(list, format);
-    vsnprintf(line, sizeof line, format, list);
+    text_format(line, sizeof line, format, list);
     va_end(list);
     log->write(log->context, level, line);
 }

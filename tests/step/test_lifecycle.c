@@ -1,6 +1,7 @@
 // Create, add, commit, step, read: what is allowed when, and how particles are numbered.
 #include "step/scenes.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -179,6 +180,20 @@ static void hear(void *context, SingeLogLevel level, const char *line) {
     snprintf(heard->last[level], sizeof heard->last[level], "%s", line);
 }
 
+/// The log's lines are the same where the host's decimal point is a comma.
+static void the_log_has_no_locale(void **state) {
+    (void)state;
+    if (!test_comma_locale()) skip();
+    Heard heard = {0};
+    SingeSimDef def = singe_default_sim();
+    def.log = (SingeLog){hear, &heard};
+    def.time_step = 0.1f;
+    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+    singe_sim_destroy(sim);
+    setlocale(LC_ALL, "C");
+    assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
+}
+
 /// What was made is told at the commit; a step too long for the cells is warned of.
 static void the_log_hears_of_the_commit(void **state) {
     (void)state;
@@ -293,6 +308,7 @@ int main(void) {
         cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
         cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
         cmocka_unit_test(the_log_hears_of_the_commit),
+        cmocka_unit_test(the_log_has_no_locale),
         cmocka_unit_test(the_log_hears_of_what_begins_inside),
         cmocka_unit_test(warns_once_of_conduction_cut_short), cmocka_unit_test(every_byte_is_counted_and_freed),
     };

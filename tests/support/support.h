@@ -4,6 +4,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -72,6 +73,12 @@ typedef struct TestBytes {
     size_t size;
 } TestBytes;
 TestBytes test_save(SingeSim *sim);
+
+// ---- locales (locale.c)
+
+/// Sets a locale whose decimal point is a comma, which setlocale(LC_ALL, "C") undoes. Without one it says so and
+/// returns false. Tests that call it are named in `locale_tests` of tests/CMakeLists.txt.
+bool test_comma_locale(void);
 
 // ---- memory (allocator.c)
 
