@@ -1,4 +1,4 @@
-// The device, the acceleration structure and packets of rays, on Embree 3.
+// The device, the acceleration structure and packets of rays, on Embree.
 //
 // One builder thread: the tree, and with it the order in which equal hits are met, must not depend on the
 // number of threads. Debian's Embree checks its arguments: lanes that are not in use must hold a valid ray.
@@ -14,7 +14,7 @@ static SingeResult embree_check(const Preview *preview, SingeError *error) {
 
 /// What a packet of shadow rays has met on its way.
 typedef struct Passage {
-    struct RTCIntersectContext context; ///< first: Embree hands it back
+    TraceContext context; ///< first: Embree hands it back
     float clear[LANES];
 } Passage;
 
@@ -122,10 +122,7 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
         count += wanted[i] != 0;
     }
     if (!scene->embree || !count) return;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(wanted, scene->embree, &context, rays);
+    trace_nearest16(scene->embree, wanted, rays);
 }
 
 static bool shape_blocks(const Preview *preview, float time, V3 o, V3 d, float far) {
@@ -149,8 +146,8 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
         count += valid[i] != 0;
     }
     if (!count) return;
-    rtcInitIntersectContext(&passage.context);
-    rtcOccluded16(valid, scene->embree, &passage.context, ray);
+    trace_init(&passage.context);
+    trace_occluded16(scene->embree, valid, &passage.context, ray);
     for (int i = 0; i < LANES; i++)
         if (valid[i]) clear[i] = ray->tfar[i] < 0 ? 0 : passage.clear[i];
 }

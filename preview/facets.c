@@ -151,9 +151,7 @@ float facets_intersect(const Facets *facets, V3 o, V3 d, float near, float far, 
     struct RTCRayHit hit = {.ray = {.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
                                     .tnear = maxf(near, 0), .tfar = far, .mask = ~0u}};
     hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(facets->embree, &context, &hit);
+    trace_nearest(facets->embree, &hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;
     const V3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
     float u = hit.hit.u, v = hit.hit.v;

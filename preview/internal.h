@@ -5,8 +5,7 @@
 #include "preview/fire.h"
 #include "preview/noise.h"
 #include "preview/preview.h"
-
-#include <embree3/rtcore.h>
+#include "preview/trace.h"
 
 enum {
     LANES = 16,            ///< rays in a packet: a block of 4 x 4 pixels

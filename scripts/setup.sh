@@ -1,22 +1,63 @@
 #!/bin/bash
-# Installs the Debian packages that building, testing and running need. Does nothing when all are there.
+# Installs the packages that building, testing and running need, on Debian and Ubuntu. Does nothing when all are there.
+#   setup.sh [--check] [--list]
+# --check: also what fuzzing and all of make check need. --list: prints the names and installs nothing.
 set -euo pipefail
 
-packages=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev libjpeg62-turbo-dev libembree-dev
-          libopenexr-dev libassimp-dev libcmocka-dev ffmpeg python3 python3-openvdb valgrind)
-if [ "${1:-}" = --check ]; then
-    packages+=(clang libclang-rt-14-dev assimp-testmodels) # the fuzz targets, models to burn
-fi
-
-missing=()
-for package in "${packages[@]}"; do
-    state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$state" = installed ] || missing+=("$package")
+# a|b: the first that the system's package lists have. No name has a version in it: compilers and their libraries are
+# the system's own.
+needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
+        'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libcmocka-dev python3)
+# without these a run leaves no video and tests are skipped
+useful=(ffmpeg python3-openvdb valgrind locales)
+only_list=false
+for argument in "$@"; do
+    case $argument in
+    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels) ;; # fuzz targets; models to burn
+    --list) only_list=true ;;
+    *) echo "usage: setup.sh [--check] [--list]" >&2; exit 2 ;;
+    esac
 done
-[ ${#missing[@]} -gt 0 ] || exit 0
 
-echo "installing: ${missing[*]}"
+installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null || true)" = installed ]; }
+known() { [ -n "$(apt-cache policy "$1" 2>/dev/null | sed -n '/Candidate: [^(]/p')" ]; }
+
+# first TEST a|b: prints the first name that passes
+first() {
+    local name
+    for name in ${2//|/ }; do
+        if "$1" "$name"; then echo "$name"; return; fi
+    done
+    return 1
+}
+
+# names that are not installed
+missing() {
+    local name
+    for name in "$@"; do first installed "$name" >/dev/null || echo "$name"; done
+}
+
+mapfile -t must < <(missing "${needed[@]}")
+mapfile -t may < <(missing "${useful[@]}")
+if $only_list; then must=("${needed[@]}") may=("${useful[@]}"); fi
+[ $((${#must[@]} + ${#may[@]})) -gt 0 ] || exit 0
+
 root=()
 [ "$(id -u)" -eq 0 ] || root=(sudo)
-"${root[@]}" apt-get update -q
-"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+if ! $only_list && { [ ${#must[@]} -gt 0 ] || ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; }; then
+    "${root[@]}" apt-get update -q
+fi
+
+names=()
+for entry in "${must[@]}"; do
+    name=$(first known "$entry") || { echo "setup.sh: no package ${entry//|/ or } in this system's lists" >&2; exit 1; }
+    names+=("$name")
+done
+for entry in "${may[@]}"; do
+    if name=$(first known "$entry"); then names+=("$name"); else echo "not in this system's lists: $entry" >&2; fi
+done
+if $only_list; then printf '%s\n' "${names[@]}"; exit 0; fi
+[ ${#names[@]} -gt 0 ] || exit 0
+
+echo "installing: ${names[*]}"
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${names[@]}"
