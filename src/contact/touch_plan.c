@@ -151,8 +151,10 @@ static bool touch_fits(const TouchPlan *plan, const uint8_t *cell_flags) {
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             if (!isfinite(plan->place[v][k]) || !isfinite(plan->speed[v][k])) return false;
+    uint8_t groups = 0; // numbered in the order of their lowest cells
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (plan->alive[c] > 1 || plan->tangled[c] > 1) return false;
+        if (plan->alive[c] > 1 || plan->tangled[c] > groups + 1) return false;
+        if (plan->tangled[c] > groups) groups = plan->tangled[c];
         if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
     }
     return true;

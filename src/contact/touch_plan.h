@@ -119,7 +119,9 @@ struct TouchPlan {
     float (*place)[4];       ///< [vertices] m
     float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
-    uint8_t *tangled;        ///< [cells] crossed another, or lay in its place, at the start, and has not parted since
+    /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number of
+    /// their group, from 1 on; of others 0
+    uint8_t *tangled;
 
     // what was found
     uint32_t steps;          ///< that the search is for
@@ -200,7 +202,7 @@ uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uin
 SingeResult touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count,
                                  const float (*x)[4]);
 
-/// Marks cells that cross another: all of them at the first search, later those that have not parted since.
+/// Groups cells that cross: all of them at the first search, later those that have not parted since.
 void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first);
 
 /// Mean of four vectors; fourth: the largest deviation from it.
@@ -293,9 +295,9 @@ static inline bool touch_owns_edge(const TouchPlan *plan, uint32_t cell, int i) 
     return i >= 4 || (plan->owned[cell] >> (4 + i) & 1);
 }
 
-/// Two cells that crossed at the start and have not parted.
+/// Two cells of one group: they crossed at the start, or others joined them by crossings, and they have not parted.
 static inline bool touch_is_tangled(const TouchPlan *plan, const TouchPair *pair) {
-    return plan->tangled[pair->a] && plan->tangled[pair->b];
+    return plan->tangled[pair->a] && plan->tangled[pair->a] == plan->tangled[pair->b];
 }
 
 #endif
