@@ -19,7 +19,7 @@ enum {
 
 /// The cells around a vertex and who borders on whom there.
 typedef struct Fan {
-    int count;                ///< 0 where there are too many
+    int count;                ///< 0 where there are too many; the rest holds as many as it says
     uint32_t cell[SPLIT_FAN]; ///< in the order of shell->fan
     uint8_t corner[SPLIT_FAN];
     int8_t after[SPLIT_FAN];  ///< the one counter-clockwise of it, across side corner - 1; -1 where there is none

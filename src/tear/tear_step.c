@@ -137,7 +137,7 @@ static void choose_leaders(TearPlan *plan, const State *state) {
     }
 }
 
-/// The cells of a fan in turning order, those that hang together with the first.
+/// The cells of a fan in turning order, those that hang together with the first; none of a fan without cells.
 typedef struct Turn {
     int count, at[SPLIT_FAN];
     bool closed;
@@ -146,6 +146,7 @@ typedef struct Turn {
 static Turn turn_order(const Fan *fan) {
     Turn turn = {0};
     int start = 0;
+    if (fan->count == 0) return turn;
     for (int k = 0; k < fan->count && fan->before[start] >= 0; k++) start = fan->before[start];
     turn.closed = fan->before[start] >= 0;
     if (turn.closed) start = 0;

@@ -426,6 +426,75 @@ static void strong_sheets_tear_when_held_too_far_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
+/// A disc: a hub of SPOKES / 2 cells, more than a split knows, in rings of SPOKES vertices.
+enum { SPOKES = 56, RINGS = 6 };
+
+static TestMesh make_disc(void) {
+    TestMesh mesh = {.vertex_count = 1 + SPOKES * RINGS, .cell_count = SPOKES / 2 + SPOKES * (RINGS - 1)};
+    mesh.positions = calloc(3 * mesh.vertex_count, sizeof *mesh.positions);
+    mesh.uv = calloc(2 * mesh.vertex_count, sizeof *mesh.uv);
+    mesh.cells = calloc(4 * mesh.cell_count, sizeof *mesh.cells);
+    assert_true(mesh.positions && mesh.uv && mesh.cells);
+    for (uint32_t v = 1; v < mesh.vertex_count; v++) {
+        float angle = 6.2831853f * (float)((v - 1) % SPOKES) / SPOKES;
+        float radius = side * (float)(8 + (v - 1) / SPOKES);
+        mesh.positions[3 * v] = radius * cosf(angle), mesh.positions[3 * v + 1] = radius * sinf(angle);
+    }
+    uint32_t *cell = mesh.cells;
+    for (uint32_t k = 0; k < SPOKES; k += 2, cell += 4)
+        cell[1] = 1 + k, cell[2] = 2 + k, cell[3] = 1 + (k + 2) % SPOKES;
+    for (uint32_t ring = 1; ring < RINGS; ring++)
+        for (uint32_t k = 0; k < SPOKES; k++, cell += 4) {
+            uint32_t next = (k + 1) % SPOKES, in = 1 + SPOKES * (ring - 1), out = in + SPOKES;
+            cell[0] = in + k, cell[1] = out + k, cell[2] = out + next, cell[3] = in + next;
+        }
+    return mesh;
+}
+
+/// Spare vertices in use that lie where vertex `of` lies at rest.
+static uint32_t twins(const SingeView *view, uint32_t input_count, uint32_t of) {
+    uint32_t count = 0;
+    for (uint32_t v = input_count; v < view->vertex_count; v++)
+        count += (view->particle_flags[v] & SINGE_ALIVE) &&
+                 !memcmp(view->rest_position[v], view->rest_position[of], sizeof view->rest_position[v]);
+    return count;
+}
+
+/// A tear that runs into a vertex of more cells than can be split ends there.
+static void a_hub_of_many_cells_stays_whole(void **unused) {
+    (void)unused;
+    SingeSimDef def = pull_def();
+    TestMesh mesh = make_disc();
+    float weak[1 + SPOKES * RINGS];
+    for (uint32_t v = 0; v < mesh.vertex_count; v++) weak[v] = v > 0 && (v - 1) % (SPOKES / 2) == SPOKES / 4;
+    const SingeAttribute attribute = {"weak", weak};
+    SingeSheetDef sheet = test_sheet(&mesh);
+    SingeSheetId id;
+    SingeSim *sim;
+    sheet.attribute_count = 1, sheet.attributes = &attribute;
+    sheet.material.strength = (SingeParam){.value = 20, .to = 1, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+    test_ok(sim, singe_sim_commit(sim));
+    for (int right = 0; right < 2; right++) {
+        uint32_t held[SPOKES], count = 0;
+        for (uint32_t v = 1 + SPOKES * (RINGS - 1); v < mesh.vertex_count; v++)
+            if (right ? mesh.positions[3 * v] > 6 * side : mesh.positions[3 * v] < -6 * side) held[count++] = v;
+        const SingePoseKey path[2] = {test_key(0, 0, 0, 0), test_key(0.25f, right ? 9e-3f : 0, 0, 0)};
+        SingePinDef pin = singe_default_pin();
+        SingePinId made;
+        pin.vertex_count = count, pin.vertices = held, pin.path_count = 2, pin.path = path, pin.sheet = id;
+        test_ok(sim, singe_sim_add_pin(sim, &pin, &made));
+    }
+    test_steps(sim, STEPS);
+    SingeView view = singe_sim_view(sim);
+    assert_true(twins(&view, mesh.vertex_count, 1 + SPOKES / 4) > 0); // beside the hub
+    assert_int_equal(twins(&view, mesh.vertex_count, 0), 0);
+    check_view(sim);
+    test_mesh_free(&mesh);
+    singe_sim_destroy(sim);
+}
+
 static void flux_fails(void *context, const SingeView *view, float *flux, float *conductance, float *temperature) {
     (void)conductance, (void)temperature;
     for (uint32_t i = 0; i < view->particle_count && *(bool *)context; i++) flux[i] = NAN;
@@ -471,6 +540,7 @@ int main(void) {
         cmocka_unit_test(cold_sheets_swing_whole),
         cmocka_unit_test(strong_sheets_tear_when_held_too_far_apart),
         cmocka_unit_test(several_sheets_keep_their_numbers),
+        cmocka_unit_test(a_hub_of_many_cells_stays_whole),
         cmocka_unit_test(without_reserve_it_tears_no_further),
         cmocka_unit_test(out_of_memory),
     };
