@@ -398,7 +398,7 @@ typedef struct SingeGasDef {
     float cell_size;   ///< m, side of a cell of the grid, >= 0; 0: as the sheets' size asks for
     float height;      ///< m of room above the sheets as they start, > 0
     float conductance; ///< W/(m2 K), of each side of a sheet towards gas that is hotter than it, >= 0
-    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to 0.99
+    float radiated;    ///< share of the flames' power that leaves as radiation, 0 to 0.95
     float soot;        ///< kg of smoke per kg burnt, 0 to 1
 } SingeGasDef;
 
