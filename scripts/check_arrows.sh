@@ -54,7 +54,6 @@ check scene 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*'
 check cli 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*|bench/.*|cli/.*'
 check bench 'singe/.*|mesh/mesh\.h|bench/.*'
 check examples 'singe/.*'
-check web 'singe/.*|web/.*'
 
 # libsinge needs libc, libm and threads only
 if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|openexr|xxhash)' src include; then

@@ -127,10 +127,6 @@ void report_text(Report *report, const char *format, ...) {
     va_end(list);
 }
 
-void report_command(Report *report, const char *command) {
-    fprintf(body(report, BLOCK_NONE), "<p><code>%s</code></p>\n", command);
-}
-
 /// The same row on standard output, in columns.
 static void echo(const char *text) {
     printf(" ");

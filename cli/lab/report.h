@@ -39,9 +39,6 @@ FILE *report_drawing(Report *report);
 /// Holds a number against a bar: low <= value <= high, either infinite where there is none. NaN does not hold.
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high);
 
-/// The command that runs the same, for who wants to see it move.
-void report_command(Report *report, const char *command);
-
 /// Where the report is.
 const char *report_folder(const Report *report);
 

@@ -180,7 +180,7 @@ typedef struct SingeStats {
     /// ends.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
-    uint32_t tangled_cells;        ///< that crossed others, or lay in their place, as the simulation started
+    uint32_t tangled_cells;        ///< that crossed others, or lay in their place, at the start and have not parted
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.

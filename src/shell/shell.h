@@ -1,7 +1,8 @@
 // The shell: the body-centred square of section 3.2, what it is made of, and its state.
 //
 // Particles: vertex v is particle v (corner, blue layer); cell c is particle vertex_count + c
-// (centre, green layer). A Shell never changes once built; everything that does is in State.
+// (centre, green layer). A built Shell changes by splits of vertices alone (shell/split.h), which tears make; all else
+// that changes is in State.
 #ifndef SHELL_SHELL_H
 #define SHELL_SHELL_H
 
