@@ -50,6 +50,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads, def.instructions = options->instructions, def.solver = setup.solver;
     def.pace = pace, def.surface_detail = (float)options->detail;
+    def.contact.enabled = options->contact;
     if (allocator) def.allocator = *allocator;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;

@@ -1,15 +1,17 @@
-// Bytes a spring by size: what a simulation holds, what building it takes at most, and what its drawn mesh takes.
+// Bytes a spring by size: what a simulation holds, what contact adds to it, what building it takes at most, and what
+// its drawn mesh takes.
 #include <stdlib.h>
 
 #include "bench/bench.h"
 #include "bench/burning.h"
 #include "bench/timing.h"
 
-enum { SPRINGS, SIMULATION, BUILDING, SURFACE, TOGETHER, MEGABYTES, COLUMNS };
+enum { SPRINGS, SIMULATION, CONTACT, BUILDING, SURFACE, TOGETHER, MEGABYTES, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
     [SPRINGS] = {"springs", "%.0f", 8, NULL},
     [SIMULATION] = {"bytes_spring", "%.1f", 12, NULL},
+    [CONTACT] = {"contact_bytes_spring", "%.1f", 20, NULL},
     [BUILDING] = {"building_bytes_spring", "%.1f", 21, NULL},
     [SURFACE] = {"surface_bytes_spring", "%.1f", 20, NULL},
     [TOGETHER] = {"all_bytes_spring", "%.1f", 16, NULL},
@@ -34,11 +36,28 @@ static void *resize(void *context, void *block, size_t old_size, size_t new_size
     return moved;
 }
 
+/// What a simulation holds with contact, after a step.
+static SingeResult measure_contact(const BenchOptions *options, double springs, size_t *held_bytes, SingeError *error) {
+    Held held = {0};
+    const SingeAllocator counting = {resize, &held};
+    BenchOptions with = *options;
+    SingeSim *sim;
+    with.contact = true;
+    if (burning_build(&with, &counting, springs, 1, &sim, error)) return error->code;
+    SingeResult result = singe_sim_step(sim);
+    if (result) *error = *singe_sim_error(sim);
+    *held_bytes = held.now;
+    singe_sim_destroy(sim);
+    return result;
+}
+
 static SingeResult measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
     Held held = {0};
     const SingeAllocator counting = {resize, &held};
     SingeSim *sim;
     SingeSurface surface = {.allocator = counting};
+    size_t with_contact;
+    if (measure_contact(options, springs, &with_contact, error)) return error->code;
     if (burning_build(options, &counting, springs, 1, &sim, error)) return error->code;
     size_t building = held.most;
     SingeResult result = singe_sim_step(sim);
@@ -49,6 +68,7 @@ static SingeResult measure(const BenchOptions *options, double springs, BenchTab
     BenchValue row[COLUMNS] = {
         [SPRINGS] = bench_number(springs),
         [SIMULATION] = bench_number((double)simulation / springs),
+        [CONTACT] = bench_number(((double)with_contact - (double)simulation) / springs),
         [BUILDING] = bench_number((double)building / springs),
         [SURFACE] = bench_number((double)(held.now - simulation) / springs),
         [TOGETHER] = bench_number((double)held.now / springs),

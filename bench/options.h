@@ -41,6 +41,7 @@ typedef struct BenchOptions {
     BenchList seeds;     ///< of noise
     BenchOutline outline;
     bool creases;        ///< sharp bends stay
+    bool contact;        ///< with themselves
     BenchState state;
     SingeSolverMethod solver;
     SingeInstructions instructions;
