@@ -1,6 +1,7 @@
 # make         builds Singe into build/
-# make demo    installs what it needs (Debian 12), builds, burns the letter and says where its video is
+# make demo    installs what it needs (Debian, Ubuntu), builds the program, burns the letter and says where its video is
 # make pictures  draws the pictures of the documentation again, after make build
+# make test    builds what the unit tests need, and runs them; PRESET=dev: with assertions
 # make check   installs, builds and runs every test; the last thing printed is the test runner's summary
 # make fuzz-long HOURS=8, make soak HOURS=1: what runs for as long as it is let
 
@@ -19,7 +20,9 @@ NO_COVERAGE = mesh_zoo|mesh_gate|cli_wrinkles|cli_rim|cli_crossings|cli_validate
 HOURS ?= 1
 MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
-.PHONY: all demo check check-examples gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+PRESET ?= release
+
+.PHONY: all demo test check check-examples gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -51,6 +54,11 @@ demo:
 	cmake --build --preset release --target singe_program
 	build/cli/singe run examples/letter/letter.yaml -o $(DEMO_DIR) $(DEMO_FLAGS)
 	@echo "the video: $$(realpath $(DEMO_DIR)/preview.mp4)"
+
+test:
+	cmake --preset $(PRESET)
+	cmake --build --preset $(PRESET) --target unit_tests
+	ctest --preset $(PRESET) -j2 -L '^unit$$'
 
 check:
 	scripts/setup.sh --check
@@ -106,4 +114,4 @@ pictures:
 	scripts/draw_gallery.sh
 
 clean:
-	rm -rf build build-asan build-tsan build-fuzz build-shared build-coverage
+	rm -rf build build-asan build-tsan build-fuzz build-shared build-coverage build-dev
