@@ -12,7 +12,7 @@
 SingeResult play_open(Play *play, Lab *lab, const char *scene, const char *const *sets, SingeError *error) {
     SetList list = {0};
     *play = (Play){.lab = lab};
-    if (lab->quick) set_add(&list, "preview.size=[192, 128]"), set_add(&list, "preview.samples=4");
+    if (lab->quick) set_add(&list, "preview.size=[320, 240]"), set_add(&list, "preview.samples=4");
     for (; sets && *sets; sets++)
         if (**sets) set_add(&list, *sets);
     char *path = text_format("%s/%s", lab->scenes, scene);
@@ -53,10 +53,15 @@ static void make_plain(SingeSurface *surface) {
     }
 }
 
+static void dim(SingeSurface *surface, float glow) {
+    for (uint32_t v = 0; v < surface->vertex_count; v++) surface->temperature[v] = fminf(surface->temperature[v], glow);
+}
+
 static const uint8_t *draw(Play *play, int size[2], SingeError *error) {
     if (!play->pictures && pictures_open(&play->job, &play->pictures, error)) return NULL;
     if (play_surface(play, error)) return NULL;
     if (play->plain) make_plain(&play->surface);
+    if (play->glow > 0) dim(&play->surface, play->glow);
     SingeGas gas = singe_sim_gas(play->sim);
     pictures_size(play->pictures, &size[0], &size[1]);
     double time = singe_sim_view(play->sim).time;

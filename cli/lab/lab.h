@@ -25,6 +25,7 @@ typedef struct Play {
     Pictures *pictures; ///< opened with the first
     SingeSurface surface;
     bool plain; ///< drawn as if nothing had burnt: for shapes
+    float glow; ///< K, no hotter than that is drawn; 0: as it is
 } Play;
 
 /// Builds a scene of the folder `paper`, with texts PATH=VALUE laid over it. `sets` ends with NULL; empty ones are

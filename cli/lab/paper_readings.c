@@ -78,13 +78,15 @@ static SingeResult burn_strip(const SingeMaterialDef *material, StripResult *out
 }
 
 static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
-    SingeMaterialDef usual = singe_default_material(), lossless;
-    StripResult ours, hot;
+    SingeMaterialDef usual = singe_default_material(), lossless, still;
+    StripResult ours, hot, radiating;
     usual.char_yield = singe_param(0), usual.mass_loss = singe_param(0.25f), usual.heat_share = singe_param(0.2f);
     lossless = usual;
     lossless.convection = lossless.emissivity = singe_param(0);
     SingeResult result = burn_strip(&usual, &ours, error);
     if (!result) result = burn_strip(&lossless, &hot, error);
+    still = usual, still.convection = singe_param(0);
+    if (!result) result = burn_strip(&still, &radiating, error);
     if (result) return result;
     const double printed = mass_left(-1), read = mass_left(1);
     report_row(lab->report,
@@ -103,11 +105,13 @@ static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
     report_row(lab->report,
                "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
                "the time by the line, %.0f %% by ours: ash is seen before it goes", 100 * sqrt(0.1));
-    report_measure(lab->report, "eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out", printed,
-                   0.9, 1);
-    report_measure(lab->report, "eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151);
-    report_measure(lab->report, "losses", "hottest without losses over that with them, kelvin",
-                   hot.hottest / ours.hottest, 1.1, INFINITY);
+    report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
+                                         printed, 0.9, 1, read, "as read"});
+    report_bar(lab->report,
+               &(ReportBar){"eq1_read", "eq 1 as read: share of mass left", read, 0.149, 0.151, printed, "as printed"});
+    report_bar(lab->report,
+               &(ReportBar){"losses", "K of the hottest without losses over that with them", hot.hottest / ours.hottest,
+                            1.1, INFINITY, radiating.hottest / ours.hottest, "without convection alone"});
     return SINGE_OK;
 }
 
@@ -124,6 +128,11 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     if ((result = lab_build(lab, &grid, &sim, error))) return result;
     SingeView view = singe_sim_view(sim);
     row = row_length(&view);
+    singe_sim_destroy(sim);
+    grid = lab_grid(6, 1, 0.01f);
+    if ((result = lab_build(lab, &grid, &sim, error))) return result;
+    view = singe_sim_view(sim);
+    const int narrow = row_length(&view);
     singe_sim_destroy(sim);
     const double divided = spring_error(0.1, true), multiplied = spring_error(0.1, false);
     report_heads(lab->report, "where|the paper|our reading|the other reading");
@@ -149,13 +158,19 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     report_row(lab->report,
                "sections 5, 8|balls in Figs 1, 11, textures in 4; or a hot start in 1, balls in 4, 11|section 8|all of "
                "these sources are there");
-    report_measure(lab->report, "literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0, 100);
-    report_measure(lab->report, "ours_steps", "as read: steps of 200", ours, 200, 200);
-    report_measure(lab->report, "mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6);
-    report_measure(lab->report, "divided", "section 7.2's division: error after 7 projections over that before",
-                   divided / 0.2, 10, INFINITY);
-    report_measure(lab->report, "multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8);
-    report_measure(lab->report, "row", "entries in a row of the matrix", row, 7, 7);
+    report_bar(lab->report, &(ReportBar){"literal_steps", "eq 9 to the letter: steps that the sheet lasts", literal, 0,
+                                         100, ours, "as read"});
+    report_bar(lab->report,
+               &(ReportBar){"ours_steps", "as read: steps of 200", ours, 200, 200, literal, "to the letter"});
+    report_bar(lab->report, &(ReportBar){"mass_centre", "eq 16 with M: how far the centre moves", with_mass, 0, 1e-6,
+                                         without, "without M"});
+    report_bar(lab->report,
+               &(ReportBar){"divided", "section 7.2's division: error after 7 projections over that before",
+                            divided / 0.2, 10, INFINITY, multiplied / 0.2, "eq 19"});
+    report_bar(lab->report, &(ReportBar){"multiplied", "eq 19: the same", multiplied / 0.2, 0.2, 0.8, divided / 0.2,
+                                         "section 7.2's division"});
+    report_bar(lab->report,
+               &(ReportBar){"row", "entries in a row of the matrix", row, 7, 7, narrow, "a strip one cell wide"});
     return SINGE_OK;
 }
 
@@ -163,62 +178,4 @@ SingeResult paper_readings(Lab *lab, SingeError *error) {
     report_heads(lab->report, "where|the paper|our reading|the other reading");
     SingeResult result = readings_of_heat(lab, error);
     return result ? result : readings_of_motion(lab, error);
-}
-
-// ---- adaptivity, section 8.2
-
-/// What a sheet of those cells costs and draws, burning from a corner.
-typedef struct Uniform {
-    double cell, speed, step_ms, triangles, edge; ///< mm, mm/s, ms, count, border over root of area
-} Uniform;
-
-static SingeResult uniform_run(Lab *lab, int cells, double detail, Uniform *out, SingeError *error) {
-    char grid[60], fine[40];
-    Play play;
-    snprintf(grid, sizeof grid, "sheets.0.grid.cells=[%d, %d]", cells, cells);
-    snprintf(fine, sizeof fine, "detail=%g mm", detail);
-    SingeResult result = play_open(&play, lab, "adaptive.yaml", (const char *const[]){grid, fine, NULL}, error);
-    const double until = lab->quick ? 1 : 1.2;
-    if (!result) result = play_until(&play, until, error);
-    if (!result) result = play_surface(&play, error);
-    if (!result) {
-        SingeTimers timers = singe_sim_timers(play.sim);
-        double seconds = 0;
-        for (int s = 0; s < SINGE_STAGE_COUNT; s++) seconds += timers.seconds[s];
-        *out = (Uniform){100.0 / cells, 1e3 * singe_sim_stats(play.sim).front_speed,
-                         1e3 * seconds / (double)timers.steps, play.surface.triangle_count,
-                         shape_border(&play.surface)};
-        char caption[80];
-        snprintf(caption, sizeof caption, "cells of %.1f mm, drawn by %.1f mm", out->cell, detail);
-        result = play_shoot(&play, caption, error);
-    }
-    play_close(&play);
-    return result;
-}
-
-SingeResult paper_adaptive(Lab *lab, SingeError *error) {
-    enum { CASES = 3 };
-    const int cells[CASES] = {25, 50, lab->quick ? 75 : 150};
-    Uniform rows[CASES];
-    SingeResult result = SINGE_OK;
-    report_pictures(lab->report, CASES);
-    for (int i = 0; i < CASES && !result; i++) result = uniform_run(lab, cells[i], 0.4, &rows[i], error);
-    if (result) return result;
-    report_heads(lab->report, "cells mm|front mm/s|ms a step|triangles|border");
-    double low = INFINITY, high = 0;
-    for (int i = 0; i < CASES; i++) {
-        report_row(lab->report, "%.2f|%.2f|%.2f|%.0f|%.2f", rows[i].cell, rows[i].speed, rows[i].step_ms,
-                   rows[i].triangles,                   rows[i].edge);
-        low = fmin(low, rows[i].speed), high = fmax(high, rows[i].speed);
-    }
-    report_text(lab->report,
-                "Cells that are refined near the front were not built. The front is thickened to what the cells hold, "
-                "so that its speed hardly hangs on them, and the edge is drawn finer than they are; what finer cells "
-                "add are finer wrinkles, which are wanted wherever it has burnt, and not only at the front. A step of "
-                "the finest sheet here costs %.0f times that of the coarsest.",
-                rows[CASES - 1].step_ms / rows[0].step_ms);
-    report_measure(lab->report, "speed", "fastest front over slowest, over these cells", high / low, 1, 1.15);
-    report_measure(lab->report, "edge", "border drawn of the coarsest cells over that of the finest", rows[0].edge /
-                   rows[CASES - 1].edge, 0.7, 1.4);
-    return SINGE_OK;
 }

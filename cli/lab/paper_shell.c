@@ -61,6 +61,20 @@ static void draw_springs(FILE *file, const SingeView *view, const Sight *sight, 
     fprintf(file, "</svg>\n");
 }
 
+/// The largest difference of the springs a cell from those of a sheet without end; as a table where there is a report.
+static double spring_counts(Report *report, const SingeView *view) {
+    static const char *const names[] = {"red", "green", "blue", "yellow"};
+    static const double expected[] = {4, 2, 2, 2};
+    double worst = 0;
+    if (report) report_heads(report, "springs|a cell, 60 x 60 cells|without end");
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
+        const double count = (double)view->spring_count[c] / view->cell_count;
+        if (report) report_row(report, "%s|%.3f|%.0f", names[c], count, expected[c]);
+        worst = fmax(worst, fabs(count - expected[c]));
+    }
+    return worst;
+}
+
 SingeResult paper_fig3(Lab *lab, SingeError *error) {
     LabGrid grid = lab_grid(4, 3, 0.01f);
     grid.material.thickness = singe_param(0.006f);
@@ -76,24 +90,17 @@ SingeResult paper_fig3(Lab *lab, SingeError *error) {
                 "style=\"color:#2ca02c\">green</b> between the centres of neighbouring cells, <b "
                 "style=\"color:#d62728\">red</b> from centre to corners, <b style=\"color:#e0b000\">yellow</b> across "
                 "a cell. Centres lie one thickness above the corners' plane.");
+    const double few = spring_counts(NULL, &view);
     singe_sim_destroy(sim);
     // counts a cell on a large grid; the border's share falls with its size
     enum { LARGE = 60 };
     grid = lab_grid(LARGE, LARGE, 0.01f);
     if ((result = lab_build(lab, &grid, &sim, error))) return result;
     view = singe_sim_view(sim);
-    static const char *const names[] = {"red", "green", "blue", "yellow"};
-    static const double expected[] = {4, 2, 2, 2};
-    report_heads(lab->report, "springs|a cell, 60 x 60 cells|without end");
-    double worst = 0;
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
-        double count = (double)view.spring_count[c] / view.cell_count;
-        report_row(lab->report, "%s|%.3f|%.0f", names[c], count, expected[c]);
-        worst = fmax(worst, fabs(count - expected[c]));
-    }
+    const double worst = spring_counts(lab->report, &view);
     singe_sim_destroy(sim);
-    report_measure(lab->report, "counts", "largest difference of the springs a cell from 4, 2, 2, 2", worst, 0,
-                   2.0 / LARGE + 1e-6);
+    report_bar(lab->report, &(ReportBar){"counts", "largest difference of the springs a cell from 4, 2, 2, 2", worst, 0,
+                                         2.0 / LARGE + 1e-6, few, "4 x 3 cells, which are half border"});
     return SINGE_OK;
 }
 
@@ -116,9 +123,10 @@ static double curl_measure(const SingeView *view) {
     return sum / count / (length / count);
 }
 
-/// Blue edges are a, green springs g and centres stand t above their cells: g = a cos(alpha/2) + 2 t sin(alpha/2).
-static double curl_exact(double shrink) {
-    double a = curl_cell * (1 - shrink), g = curl_cell, red = 1 - shrink / 2; // a red spring has half of its ends' mean
+/// Blue edges are a, green springs g and centres stand t above their cells: g = a cos(alpha/2) + 2 t sin(alpha/2). A red
+/// spring has the mean of its ends, so `red_share` is 1/2.
+static double curl_exact(double shrink, double red_share) {
+    double a = curl_cell * (1 - shrink), g = curl_cell, red = 1 - shrink * red_share;
     double diagonal = (curl_cell * curl_cell / 2 + curl_thickness * curl_thickness) * red * red;
     double t = sqrt(diagonal - a * a / 2), r = sqrt(a * a + 4 * t * t), beta = atan2(2 * t, a);
     return 2 * (beta - acos(fmin(1, g / r))) / a;
@@ -129,6 +137,7 @@ static double curl_beam(double shrink) { return shrink / ((1 - shrink) * curl_th
 
 SingeResult paper_fig2(Lab *lab, SingeError *error) {
     double measured[CURL_CASES], exact[CURL_CASES], beam[CURL_CASES], percent[CURL_CASES], worst = 0, off = 0;
+    double apart = 0, flat = 0; // of a shell whose red springs stay; of a strip that has not curled
     SingeResult result = SINGE_OK;
     for (int i = 0; i < CURL_CASES && !result; i++) {
         char set[60];
@@ -141,6 +150,7 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
             Sight sight = sight_fit(&view, 0, 0, 460, 60);
             draw_springs(report_drawing(lab->report), &view, &sight, "rgb");
         }
+        if (!result) flat = fmax(flat, fabs(curl_measure(&view) / curl_beam(curl_shrink[i]) - 1));
         if (!result) result = play_until(&play, 4, error);
         if (!result && curl_shrink[i] > 0.04) {
             view = singe_sim_view(play.sim);
@@ -150,10 +160,11 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
         if (!result) {
             view = singe_sim_view(play.sim);
             measured[i] = curl_measure(&view);
-            exact[i] = curl_exact(curl_shrink[i]), beam[i] = curl_beam(curl_shrink[i]);
+            exact[i] = curl_exact(curl_shrink[i], 0.5), beam[i] = curl_beam(curl_shrink[i]);
             percent[i] = 100 * curl_shrink[i];
             worst = fmax(worst, fabs(measured[i] / exact[i] - 1));
             off = fmax(off, fabs(measured[i] / beam[i] - 1));
+            apart = fmax(apart, fabs(curl_exact(curl_shrink[i], 0) / exact[i] - 1));
         }
         play_close(&play);
     }
@@ -170,8 +181,10 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"shell, exact", "#2166ac", percent, exact, CURL_CASES, false, false});
     plot_add(&plot, (PlotLine){"simulated", "#b2182b", percent, measured, CURL_CASES, true, false});
     report_plot(lab->report, &plot);
-    report_measure(lab->report, "exact", "largest difference from the shell's exact curvature", worst, 0, 0.02);
-    report_measure(lab->report, "beam", "largest difference from the two-layer beam", off, 0, 0.15);
+    report_bar(lab->report, &(ReportBar){"exact", "largest difference from the shell's exact curvature", worst, 0, 0.02,
+                                         apart, "that of a shell whose red springs keep their length"});
+    report_bar(lab->report, &(ReportBar){"beam", "largest difference from the two-layer beam", off, 0, 0.15, flat,
+                                         "a strip that stays flat"});
     return SINGE_OK;
 }
 
@@ -243,15 +256,16 @@ static void state_draw(FILE *file, const double *ratio, const double *cut) {
     fprintf(file, "</svg>\n");
 }
 
+static const double state_length[STATES] = {0.875, 0.625, 0.575, 0.5, -1}; ///< the paper's
+
 /// A row of the table for each spring. *worst and *worst_cut are the largest differences from the paper.
 static void state_table(Lab *lab, const double *ratio, const double *cut, double *worst, double *worst_cut) {
     static const char *const states[] = {"shrunk", "shrunk", "partly burnt", "partly burnt", "burnt"};
-    static const double expected[STATES] = {0.875, 0.625, 0.575, 0.5, -1};
     *worst = *worst_cut = 0;
     report_heads(lab->report, "case|m_0|m_1|state|length|paper|cut at t|eq 7");
     for (int i = 0; i < STATES; i++) {
         char length[40] = "removed|removed", cuts[40] = "-|-";
-        if (ratio[i] >= 0) snprintf(length, sizeof length, "%.2f %%|%.1f %%", 100 * ratio[i], 100 * expected[i]);
+        if (ratio[i] >= 0) snprintf(length, sizeof length, "%.2f %%|%.1f %%", 100 * ratio[i], 100 * state_length[i]);
         if (state_is_cut(i)) {
             const double t = state_left(i, 0) / (state_left(i, 0) - state_left(i, 1));
             if (ratio[i] >= 0) snprintf(cuts, sizeof cuts, "%.4f|%.4f", cut[i], t);
@@ -259,7 +273,7 @@ static void state_table(Lab *lab, const double *ratio, const double *cut, double
         }
         report_row(lab->report, "%c|%g|%g|%s|%s|%s", 'a' + i, state_mass[i][0], state_mass[i][1], states[i], length,
                    cuts);
-        *worst = fmax(*worst, fabs(ratio[i] - expected[i]));
+        *worst = fmax(*worst, fabs(ratio[i] - state_length[i]));
     }
 }
 
@@ -275,16 +289,19 @@ SingeResult paper_fig5(Lab *lab, SingeError *error) {
     SingeResult result = burn_to(lab, &grid, mass, state_loss, &sim, &surface, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        double worst, worst_cut, ratio[STATES], cut[STATES];
+        double worst, worst_cut, ratio[STATES], cut[STATES], worst_middle = 0, one_end = 0;
         for (int i = 0; i < STATES; i++) {
             ratio[i] = state_ratio(&view, (uint32_t)i);
             cut[i] = state_is_cut(i) ? state_cut(&surface, i, cell) : -1;
+            if (ratio[i] >= 0) one_end = fmax(one_end, fabs(state_mass[i][0] - state_length[i]));
+            if (state_is_cut(i)) worst_middle = fmax(worst_middle, fabs(0.5 - cut[i]));
         }
         state_table(lab, ratio, cut, &worst, &worst_cut);
         state_draw(report_drawing(lab->report), ratio, cut);
-        report_measure(lab->report, "lengths", "largest difference of the lengths, removed counting as -1", worst, 0,
-                       1e-4);
-        report_measure(lab->report, "cuts", "largest difference of the cuts of c and d from eq 7", worst_cut, 0, 1e-3);
+        report_bar(lab->report, &(ReportBar){"lengths", "largest difference of the lengths, removed counting as -1",
+                                             worst, 0, 1e-4, one_end, "v of the first end alone in eq 6"});
+        report_bar(lab->report, &(ReportBar){"cuts", "largest difference of the cuts of c and d from eq 7", worst_cut,
+                                             0, 1e-3, worst_middle, "cuts in the middle"});
     }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
@@ -367,21 +384,34 @@ static double drawn_area(const SingeSurface *surface) {
     return area;
 }
 
-static void march_report(Lab *lab, const SingeSurface *surface, const March *march, double side) {
-    static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
+/// What the bars of Fig 6 must not pass: cells drawn whole where any of their triangles is.
+static double march_whole(const March *march, double side) {
+    double area = 0;
+    for (int i = 0; i < march->count; i++) area += march->middles[i][2] > 0 ? side * side / 4 : 0;
+    return area;
+}
+
+static int march_fewest(const March *march) {
     int fewest = march->cases[0];
+    for (int k = 1; k <= 3; k++)
+        if (march->cases[k] < fewest) fewest = march->cases[k];
+    return fewest;
+}
+
+/// `fresh`: of the same sheet before it burns.
+static void march_report(Lab *lab, const SingeSurface *surface, const March *march, const March *fresh, double side) {
+    static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
     march_draw(report_drawing(lab->report), surface, side, march->middles, march->count);
     report_text(lab->report,
                 "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
                 "tell the case of each triangle.", MARCH_CELLS, MARCH_CELLS);
     report_heads(lab->report, "corners left|drawn as|triangles");
-    for (int k = 3; k >= 0; k--) {
-        report_row(lab->report, "%d|%s|%d", k, shapes[k], march->cases[k]);
-        if (march->cases[k] < fewest) fewest = march->cases[k];
-    }
-    report_measure(lab->report, "cases", "triangles of the rarest case", fewest, 1, INFINITY);
-    report_measure(lab->report, "area", "drawn area over that of eq 7", drawn_area(surface) / march->expected, 0.999,
-                   1.001);
+    for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march->cases[k]);
+    report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(march), 1, INFINITY,
+                                         march_fewest(fresh), "the sheet before it burns"});
+    report_bar(lab->report,
+               &(ReportBar){"area", "drawn area over that of eq 7", drawn_area(surface) / march->expected, 0.999, 1.001,
+                            march_whole(march, side) / march->expected, "whole triangles wherever a corner is left"});
 }
 
 SingeResult paper_fig6(Lab *lab, SingeError *error) {
@@ -398,9 +428,14 @@ SingeResult paper_fig6(Lab *lab, SingeError *error) {
     SingeResult result = burn_to(lab, &grid, mass, march_loss, &sim, &surface, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
-        March march = {.count = 0};
-        for (uint32_t c = 0; c < view.cell_count; c++) march_cell(&march, &view, mass, c, cell);
-        march_report(lab, &surface, &march, cell);
+        March march = {.count = 0}, fresh = {.count = 0};
+        float ones[ROW * ROW];
+        for (int v = 0; v < ROW * ROW; v++) ones[v] = 1;
+        for (uint32_t c = 0; c < view.cell_count; c++) {
+            march_cell(&march, &view, mass, c, cell);
+            march_cell(&fresh, &view, ones, c, cell);
+        }
+        march_report(lab, &surface, &march, &fresh, cell);
     }
     singe_surface_free(&surface);
     singe_sim_destroy(sim);

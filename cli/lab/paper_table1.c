@@ -11,7 +11,8 @@ enum { STEPS = 5 };
 static const double table1[STEPS][2] = {
     {0.4306, 0.4401}, {0.5527, 0.4954}, {0.5767, 0.5038}, {0.5804, 0.5050}, {0.5810, 0.5052}};
 
-static SingeResult table1_network(SingeNetwork **network, SingeError *error) {
+/// `swapped`: blue before green.
+static SingeResult table1_network(bool swapped, SingeNetwork **network, SingeError *error) {
     SingeNetworkDef def = singe_default_network();
     def.particle_count = 3;
     def.positions = (const double[]){-1, 0, 0, 0, 0, 0, 1, 0, 0};
@@ -20,7 +21,7 @@ static SingeResult table1_network(SingeNetwork **network, SingeError *error) {
     def.ends = (const uint32_t[]){0, 1, 1, 2};
     def.lengths = (const double[]){1.65, 0.55};
     def.set_count = 2;
-    def.sets = (const uint32_t[]){0, 1};
+    def.sets = swapped ? (const uint32_t[]){1, 0} : (const uint32_t[]){0, 1};
     def.regularisation = 0;
     return singe_network_create(&def, network, error);
 }
@@ -41,23 +42,36 @@ static void table1_draw(FILE *file, double x) {
     fprintf(file, "</svg>\n");
 }
 
-SingeResult paper_table1(Lab *lab, SingeError *error) {
+/// Five projection steps; the positions after each set in *ours, and their largest difference from the paper's.
+static SingeResult table1_run(bool swapped, double ours[2][STEPS + 1], double *end, double *worst, SingeError *error) {
     SingeNetwork *network;
-    SingeResult result = table1_network(&network, error);
+    SingeResult result = table1_network(swapped, &network, error);
     if (result) return result;
     const double *x = singe_network_positions(network) + 3;
-    double worst = 0, ours[2][STEPS + 1] = {{0}}, paper[2][STEPS + 1] = {{0}};
+    *worst = 0;
     for (int step = 0; step < STEPS && !result; step++)
         for (uint32_t set = 0; set < 2 && !result; set++) {
             result = singe_network_project(network, set, NULL);
-            ours[set][step + 1] = floor(1e4 * x[0] + 1e-9) / 1e4, paper[set][step + 1] = table1[step][set];
-            worst = fmax(worst, fabs(ours[set][step + 1] - table1[step][set]));
+            ours[set][step + 1] = floor(1e4 * x[0] + 1e-9) / 1e4;
+            *worst = fmax(*worst, fabs(ours[set][step + 1] - table1[step][set]));
         }
+    *end = x[0];
+    singe_network_destroy(network);
+    return result;
+}
+
+SingeResult paper_table1(Lab *lab, SingeError *error) {
+    double worst, other, end, ours[2][STEPS + 1] = {{0}}, unused[2][STEPS + 1], paper[2][STEPS + 1] = {{0}};
+    SingeResult result = table1_run(true, unused, &end, &other, error);
+    if (!result) result = table1_run(false, ours, &end, &worst, error);
+    if (result) return result;
+    for (int step = 0; step < STEPS; step++)
+        for (int set = 0; set < 2; set++) paper[set][step + 1] = table1[step][set];
     report_heads(lab->report, "step|S_G here|S_G paper|S_B here|S_B paper");
     for (int step = 0; step <= STEPS; step++)
         report_row(lab->report, "%d|%.4f|%.4f|%.4f|%.4f", step, ours[0][step], paper[0][step], ours[1][step],
                    paper[1][step]);
-    table1_draw(report_drawing(lab->report), x[0]);
+    table1_draw(report_drawing(lab->report), end);
     Plot plot = {.title = "Position of the free particle", .x_label = "projection step", .y_label = "x"};
     plot_add(&plot, (PlotLine){"after green", "#2ca02c", NULL, ours[0], STEPS + 1, false, false});
     plot_add(&plot, (PlotLine){"after blue", "#1f77b4", NULL, ours[1], STEPS + 1, false, false});
@@ -67,7 +81,7 @@ SingeResult paper_table1(Lab *lab, SingeError *error) {
     report_text(lab->report,
                 "The paper's digits are cut, not rounded, and come out when the system takes the two fixed points for "
                 "free and they are put back after each projection.");
-    singe_network_destroy(network);
-    report_measure(lab->report, "largest_difference", "largest difference of the ten positions", worst, 0, 5e-5);
+    report_bar(lab->report, &(ReportBar){"largest_difference", "largest difference of the ten positions", worst, 0,
+                                         5e-5, other, "blue projected before green"});
     return result;
 }

@@ -23,6 +23,12 @@ static const char *const block_ends[] = {
     [BLOCK_NONE] = "", [BLOCK_TABLE] = "</table></div>\n", [BLOCK_PICTURES] = "</div>\n",
     [BLOCK_MEASURES] = "</table></div>\n"};
 
+typedef struct Taken {
+    char *item, *name;
+    double value;
+    bool holds;
+} Taken;
+
 struct Report {
     char *folder;
     Draft page, index, csv, json, body; ///< `body` is of the item in hand
@@ -30,6 +36,7 @@ struct Report {
     char *name, *heading; ///< of the item in hand, NULL before the first
     int pictures;         ///< of the item
     int items, measures, failed, item_measures, item_failed;
+    Taken *taken;         ///< [measures]
     SingeResult result;   ///< of the first picture that could not be written
     SingeError error;
 };
@@ -72,7 +79,7 @@ Report *report_open(const char *folder, const char *title, const char *lead, Sin
             "<meta name=\"viewport\" content=\"width=device-width\">\n<style>%s</style></head>\n<body>\n<h1>%s</h1>\n"
             "<p>%s</p>\n<div class=\"wide\"><table><tr><th>item</th><th>measures</th><th>verdict</th></tr>\n",
             title, style, title, lead);
-    fprintf(report->csv.file, "item,measure,value,low,high,verdict,what\n");
+    fprintf(report->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what\n");
     fprintf(report->json.file, "{\"title\": ");
     text_json_string(report->json.file, title);
     fprintf(report->json.file, ",\n \"measures\": [");
@@ -202,40 +209,87 @@ static void print_bar(FILE *file, double low, double high, const char *least, co
     else fprintf(file, most, high);
 }
 
-static void measure_json(Report *report, const char *name, const char *what, double value, double low, double high,
-                         bool holds) {
+static void measure_json(Report *report, const ReportBar *bar, bool holds) {
     FILE *file = report->json.file;
     fprintf(file, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
-            report->name, name);
-    text_json_number(file, value);
+            report->name, bar->name);
+    text_json_number(file, bar->value);
     fprintf(file, ", \"low\": ");
-    text_json_number(file, low);
+    text_json_number(file, bar->low);
     fprintf(file, ", \"high\": ");
-    text_json_number(file, high);
+    text_json_number(file, bar->high);
     fprintf(file, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
-    text_json_string(file, what);
+    text_json_string(file, bar->what);
+    if (bar->bad_what) {
+        fprintf(file, ", \"bad\": ");
+        text_json_number(file, bar->bad);
+        fprintf(file, ", \"bad_what\": ");
+        text_json_string(file, bar->bad_what);
+    }
     fputc('}', file);
 }
 
-void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
-    const bool holds = value >= low && value <= high;
-    const char *verdict = holds ? "holds" : "FAILS";
+static void measure_csv(Report *report, const ReportBar *bar, bool holds) {
+    FILE *file = report->csv.file;
+    fprintf(file, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
+            holds ? "holds" : "fails", bar->what);
+    if (bar->bad_what) fprintf(file, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
+    else fprintf(file, ",\n");
+}
+
+static void keep(Report *report, const ReportBar *bar, bool holds) {
+    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
+    if (larger) {
+        report->taken = larger;
+        larger[report->measures] =
+            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
+        report->measures++;
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
+    }
+    report->item_measures++;
+    if (!holds) report->failed++, report->item_failed++;
+}
+
+static bool within(double value, double low, double high) { return value >= low && value <= high; }
+
+void report_bar(Report *report, const ReportBar *bar) {
+    const bool blind = bar->bad_what && within(bar->bad, bar->low, bar->high);
+    const bool holds = within(bar->value, bar->low, bar->high) && !blind;
+    const char *verdict = blind ? "BAR TELLS NOTHING" : holds ? "holds" : "FAILS";
     if (report->block != BLOCK_MEASURES)
-        fputs("<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th></tr>\n",
+        fputs("<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>a case that fails "
+              "it</th></tr>\n",
               body(report, BLOCK_MEASURES));
     FILE *file = body(report, BLOCK_MEASURES);
-    fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", what, value);
-    print_bar(file, low, high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
-    fprintf(file, "</td><td class=\"%s\">%s</td></tr>\n", holds ? "good" : "bad", holds ? "holds" : "fails");
-    printf("  %-26s %11.4g  ", name, value);
-    print_bar(stdout, low, high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
-    printf("  %s\n", verdict);
+    fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", bar->what, bar->value);
+    print_bar(file, bar->low, bar->high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
+    fprintf(file, "</td><td class=\"%s\">%s</td><td>", holds ? "good" : "bad", holds ? "holds" : "fails");
+    if (bar->bad_what) fprintf(file, "%.4g: %s", bar->bad, bar->bad_what);
+    fprintf(file, "</td></tr>\n");
+    printf("  %-26s %11.4g  ", bar->name, bar->value);
+    print_bar(stdout, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
+    printf("  %s", verdict);
+    if (bar->bad_what) printf("; not %.4g (%s)", bar->bad, bar->bad_what);
+    printf("\n");
     fflush(stdout);
-    fprintf(report->csv.file, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\"\n", report->name, name, value, low, high,
-            holds ? "holds" : "fails", what);
-    measure_json(report, name, what, value, low, high, holds);
-    report->measures++, report->item_measures++;
-    if (!holds) report->failed++, report->item_failed++;
+    measure_csv(report, bar, holds);
+    measure_json(report, bar, holds);
+    keep(report, bar, holds);
+}
+
+void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
+    report_bar(report, &(ReportBar){name, what, value, low, high, 0, NULL});
+}
+
+ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value) {
+    for (int i = 0; i < report->measures; i++) {
+        const Taken *taken = &report->taken[i];
+        if (strcmp(taken->item, item) || strcmp(taken->name, name)) continue;
+        *value = taken->value;
+        return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
+    }
+    return REPORT_UNKNOWN;
 }
 
 static SingeResult write_draft(const Report *report, const char *name, Draft *draft, const Draft *more,
@@ -266,6 +320,8 @@ SingeResult report_close(Report *report, int *failed, SingeError *error) {
     if (!result) result = write_draft(report, "measures.json", &report->json, NULL, error);
     draft_free(&report->page), draft_free(&report->index), draft_free(&report->csv), draft_free(&report->json);
     draft_free(&report->body);
+    for (int i = 0; i < report->measures; i++) free(report->taken[i].item), free(report->taken[i].name);
+    free(report->taken);
     free(report->folder), free(report->name), free(report->heading);
     free(report);
     return result;

@@ -39,6 +39,20 @@ FILE *report_drawing(Report *report);
 /// Holds a number against a bar: low <= value <= high, either infinite where there is none. NaN does not hold.
 void report_measure(Report *report, const char *name, const char *what, double value, double low, double high);
 
+/// The same, with a case that must not hold: where `bad` passes the bar too, the bar tells nothing, and the measure
+/// fails. `bad_what` says what was measured for it.
+typedef struct ReportBar {
+    const char *name, *what;
+    double value, low, high, bad;
+    const char *bad_what;
+} ReportBar;
+void report_bar(Report *report, const ReportBar *bar);
+
+typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_FAILS } ReportVerdict;
+
+/// Whether a measure of an item holds, and its value; REPORT_UNKNOWN where it has not been taken.
+ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
+
 /// Where the report is.
 const char *report_folder(const Report *report);
 

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import re
 import unittest
@@ -25,6 +26,10 @@ class Paper(Case):
         self.assertEqual([m["holds"] for m in data["measures"]], [r["verdict"] == "holds" for r in rows])
         self.assertEqual(sum(not m["holds"] for m in data["measures"]), failed)
         self.assertEqual(list(dict.fromkeys(r["item"] for r in rows)), items)
+        for m in data["measures"]:  # every bar has a case that it does not let pass
+            low, high = (math.inf * sign if m[key] is None else m[key] for key, sign in (("low", -1), ("high", 1)))
+            self.assertIn("bad_what", m, m["measure"])
+            self.assertFalse(low <= (math.nan if m["bad"] is None else m["bad"]) <= high, m)
         self.assertEqual(re.findall(r'<h2 id="([^"]*)"', page), items)
         for name in re.findall(r'src="([^"]*)"', page):
             self.assertTrue(os.path.exists(self.path(folder, name)), name)

@@ -2,6 +2,7 @@
 // its two states.
 #include <math.h>
 #include <setjmp.h>
+#include <stdbool.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -36,29 +37,54 @@ static SingeSim *sheet(PaperState state, int cells, int steps) {
     return sim;
 }
 
-/// The sum of all colours' errors never rises: Fig 8, on the states that `singe paper fig8` draws.
-static void test_sum_never_rises(void **unused) {
+/// Sums of all colours' errors before and after each of `steps` projection steps.
+static void sums(SingeSim *sim, PaperState state, int steps, double *sum) {
+    SingeNetwork *network;
+    SingeError error;
+    double errors[SINGE_COLOUR_COUNT];
+    assert_int_equal(paper_network(sim, state, false, 1e-4, &network, &error), SINGE_OK);
+    for (int step = 0; step <= steps; step++) {
+        for (uint32_t set = 0; set < SINGE_COLOUR_COUNT && step; set++)
+            assert_int_equal(singe_network_project(network, set, NULL), SINGE_OK);
+        sum[step] = paper_errors(network, SINGE_COLOUR_COUNT, errors);
+    }
+    singe_network_destroy(network);
+}
+
+/// Fig 8 in the states that `singe paper fig8` draws: the sum falls in each of 20 steps.
+static void test_sum_falls_where_drawn(void **unused) {
     (void)unused;
     const int steps[] = {[PAPER_SWING] = 200, [PAPER_SHRINK] = 50};
     for (int state = 0; state < PAPER_STATE_COUNT; state++) {
         SingeSim *sim = sheet((PaperState)state, 20, steps[state]);
-        SingeNetwork *network;
-        SingeError error;
-        double errors[SINGE_COLOUR_COUNT];
-        assert_int_equal(paper_network(sim, (PaperState)state, false, 1e-4, &network, &error), SINGE_OK);
-        double before = paper_errors(network, SINGE_COLOUR_COUNT, errors), first = before;
-        for (int step = 0; step < 20; step++) {
-            for (uint32_t set = 0; set < SINGE_COLOUR_COUNT; set++)
-                assert_int_equal(singe_network_project(network, set, NULL), SINGE_OK);
-            double now = paper_errors(network, SINGE_COLOUR_COUNT, errors);
-            assert_true(now <= before);
-            before = now;
-        }
-        print_message("%s: %.3g to %.3g m\n", paper_state_names[state], first, before);
-        assert_true(before < 0.7 * first);
-        singe_network_destroy(network);
+        double sum[21];
+        sums(sim, (PaperState)state, 20, sum);
+        for (int step = 0; step < 20; step++) assert_true(sum[step + 1] <= sum[step]);
+        print_message("%s: %.3g to %.3g m\n", paper_state_names[state], sum[0], sum[20]);
+        assert_true(sum[20] < 0.7 * sum[0]);
         singe_sim_destroy(sim);
     }
+}
+
+/// But not in all states, as the paper has it: in some of a swing it rises in one of 7 steps, and in nearly all it is
+/// lower after them.
+static void test_sum_rises_in_some_states(void **unused) {
+    (void)unused;
+    enum { STATES = 120, STEPS = 7 };
+    SingeSim *sim = sheet(PAPER_SWING, 20, 0);
+    int rises = 0, lower = 0;
+    for (int state = 0; state < STATES; state++) {
+        double sum[STEPS + 1];
+        bool rose = false;
+        sums(sim, PAPER_SWING, STEPS, sum);
+        for (int step = 0; step < STEPS; step++) rose |= sum[step + 1] > sum[step];
+        rises += rose, lower += sum[STEPS] < sum[0];
+        assert_int_equal(singe_sim_step(sim), SINGE_OK);
+    }
+    print_message("of %d states it rises in %d, and is lower after %d steps in %d\n", STATES, rises, STEPS, lower);
+    assert_true(rises >= 5);
+    assert_true(lower >= 108 && lower > STATES - rises);
+    singe_sim_destroy(sim);
 }
 
 static size_t rank(SingeNetwork *network, uint32_t set, size_t columns) {
@@ -89,35 +115,46 @@ static void test_ranks(void **unused) {
     singe_sim_destroy(sim);
 }
 
-/// And so they diverge where the colours, one after another, converge.
+/// Error after 7 projection steps over that before; infinite where the solver broke down.
+static double left_after(SingeSim *sim, bool one, double floor) {
+    SingeNetwork *network;
+    SingeError error;
+    const uint32_t sets = one ? 1 : SINGE_COLOUR_COUNT;
+    double errors[SINGE_COLOUR_COUNT], before, after;
+    SingeResult result = paper_network(sim, PAPER_SWING, one, floor, &network, &error);
+    assert_int_equal(result, SINGE_OK);
+    before = paper_errors(network, sets, errors);
+    for (int step = 0; step < 7; step++)
+        for (uint32_t set = 0; set < sets && !result; set++) result = singe_network_project(network, set, NULL);
+    after = paper_errors(network, sets, errors);
+    singe_network_destroy(network);
+    return result ? (double)INFINITY : after / before;
+}
+
+/// With the same floor on the diagonal on both sides: without one all springs at once diverge where the colours in turn
+/// converge; with one both converge, so that it is the rank that is at fault.
 static void test_all_at_once_diverges(void **unused) {
     (void)unused;
     SingeSim *sim = sheet(PAPER_SWING, 8, 200);
-    for (int one = 0; one < 2; one++) {
-        SingeNetwork *network;
-        SingeError error;
-        uint32_t sets = one ? 1 : SINGE_COLOUR_COUNT;
-        double errors[SINGE_COLOUR_COUNT], before, after;
-        SingeResult result = paper_network(sim, PAPER_SWING, one, one ? 0 : 1e-4, &network, &error);
-        assert_int_equal(result, SINGE_OK);
-        before = paper_errors(network, sets, errors);
-        for (int step = 0; step < 7; step++)
-            for (uint32_t set = 0; set < sets && !result; set++) result = singe_network_project(network, set, NULL);
-        after = paper_errors(network, sets, errors);
-        print_message("%s: %.2e to %.2e m%s\n", one ? "all at once" : "in turn", before, after,
-                      result ? ", broken down" : "");
-        if (one) assert_true(result == SINGE_ERROR_DIVERGED || !(after < 2 * before));
-        else assert_true(result == SINGE_OK && after < before);
-        singe_network_destroy(network);
-    }
+    const double floors[] = {0, 1e-4};
+    double left[2][2];
+    for (int f = 0; f < 2; f++)
+        for (int one = 0; one < 2; one++) {
+            left[f][one] = left_after(sim, one, floors[f]);
+            print_message("floor %g, %s: %.3g of the error is left\n", floors[f], one ? "all at once" : "in turn",
+                          left[f][one]);
+        }
+    assert_true(left[0][1] > 2);
+    assert_true(left[0][0] < 0.95);
+    assert_true(left[1][0] < 0.95);
+    assert_true(left[1][1] < 0.5);
     singe_sim_destroy(sim);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_singular_values),
-        cmocka_unit_test(test_sum_never_rises),
-        cmocka_unit_test(test_ranks),
+        cmocka_unit_test(test_singular_values),          cmocka_unit_test(test_sum_falls_where_drawn),
+        cmocka_unit_test(test_sum_rises_in_some_states), cmocka_unit_test(test_ranks),
         cmocka_unit_test(test_all_at_once_diverges),
     };
     return cmocka_run_group_tests_name("paper parts", tests, NULL, NULL);
