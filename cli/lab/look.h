@@ -16,6 +16,7 @@ typedef struct Look {
     double hottest;                 ///< K
     double left;                    ///< share of the cells, at the last
     double step_ms;                 ///< of all stages, the mean since the start
+    double dynamics, heat;          ///< shares of it
     int pieces;                     ///< of a twentieth of the sheet and more, at the last
     double border;                  ///< border at rest over the root of the area, at the last
 } Look;

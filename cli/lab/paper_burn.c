@@ -5,45 +5,11 @@
 
 #include "cli/lab/look.h"
 #include "cli/lab/paper.h"
+#include "cli/lab/texture.h"
 
 static const char *const small_grid = "sheets.0.grid.cells=[30, 42]";
 
 // ---- Fig 1, 12: hot from the start, a texture for the rate
-
-/// The texture as it lies on the sheet, into the report.
-static void show_texture(Lab *lab, const SingePicture *picture) {
-    uint8_t *rgb = malloc((size_t)picture->width * (size_t)picture->height * 3);
-    for (int i = 0; rgb && i < picture->width * picture->height; i++)
-        for (int k = 0; k < 3; k++) rgb[3 * i + k] = (uint8_t)lrintf(255 * fminf(1, fmaxf(0, picture->values[i])));
-    if (rgb) report_picture(lab->report, "the texture", picture->width, picture->height, rgb);
-    free(rgb);
-}
-
-static double picture_mean(const SingePicture *picture) {
-    const int count = picture->width * picture->height;
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += (double)picture->values[i];
-    return sum / count;
-}
-
-static double picture_at(const SingePicture *picture, const float uv[2]) {
-    int x = (int)(uv[0] * (float)picture->width), y = (int)((1 - uv[1]) * (float)picture->height);
-    x = x < 0 ? 0 : x >= picture->width ? picture->width - 1 : x;
-    y = y < 0 ? 0 : y >= picture->height ? picture->height - 1 : y;
-    return (double)picture->values[y * picture->width + x];
-}
-
-/// Correlation of the texture, or of its mirror image, with the mass that is lost.
-static double rate_correlation(const SingeView *view, const SingePicture *picture, bool mirrored) {
-    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-    for (uint32_t v = 0; v < view->vertex_count; v++) {
-        if (view->source_vertex[v] < 0) continue; // in reserve for tears
-        const float uv[2] = {mirrored ? 1 - view->uv[v][0] : view->uv[v][0], view->uv[v][1]};
-        double a = picture_at(picture, uv), b = 1 - (double)view->mass[v];
-        n++, x += a, y += b, xx += a * a, yy += b * b, xy += a * b;
-    }
-    return (n * xy - x * y) / sqrt((n * xx - x * x) * (n * yy - y * y));
-}
 
 /// Degrees from cell to cell where nothing of both cells' mass is below a bar: what has hardly burnt bends, too.
 static double bend_of_unburnt(const SingeView *view, float bar) {
@@ -74,14 +40,14 @@ static SingeResult fig1_run(Lab *lab, bool plain, Fig1 *fig, SingeError *error) 
                           plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
     SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
     const SingePicture *picture = &play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)];
-    if (!result && !plain) report_pictures(lab->report, 4), show_texture(lab, picture);
+    if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
     for (int i = 0; i < FIG1_SHOTS && !result; i++) {
         result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
         if (result) break;
         SingeView view = singe_sim_view(play.sim);
         if (i == 0) {
-            fig->correlation = rate_correlation(&view, picture, false);
-            fig->mirrored = rate_correlation(&view, picture, true);
+            fig->correlation = -texture_correlation(&view, picture, false, view.mass);
+            fig->mirrored = -texture_correlation(&view, picture, true, view.mass);
             fig->gone = 1 - shape_left(&view);
         }
         fig->inner = fmax(fig->inner, bend_of_unburnt(&view, 0.7f));
@@ -144,7 +110,7 @@ static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_
                           NULL};
     SingeResult result = play_open(&play, lab, "fig4.yaml", sets, error);
     if (!result && i == FIG4_MEAN - 1)
-        *rate = 1e-3 + 19e-3 * picture_mean(&play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)]);
+        *rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)]);
     for (int k = 0; k < ROWS && !result; k++) {
         result = play_until(&play, times[k], error);
         if (!result && i < COLUMNS) result = play_draw(&play, &rgb[k], size, error);

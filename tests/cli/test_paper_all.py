@@ -1,17 +1,47 @@
-"""All of the paper's experiments at their quick sizes: every measure holds."""
+"""All of the paper's experiments at their quick sizes: every measure holds, figures can be looked at, and what the page
+says of the paper's statements is what docs/paper.md says."""
 
+import csv
+import glob
+import json
+import os
+import struct
 import unittest
 
+from test_docs import ROOT
 from test_paper import Paper
 
-ITEMS = ("fig1 fig2 fig3 fig4 fig5 fig6 fig7ab fig7cd fig10 weights fig8 fig11 mass-loss rival table1 all-at-once "
-         "table2 adaptive readings").split()
+ITEMS = ("fig1 fig2 fig3 fig4 fig5 fig6 fig7ab fig7cd fig10 weights fig8 fig11 whole heat alpha mass-loss rival "
+         "table1 all-at-once table2 crossing adaptive readings statements").split()
 
 
 class All(Paper):
     def test_all(self):
-        self.singe("paper", "all", "--quick", "-o", self.path("page"), timeout=900)
+        self.singe("paper", "all", "--quick", "-o", self.path("page"), timeout=1800)
         self.check_page("page", ITEMS)
+        self.check_sizes("page")
+        self.check_statements("page")
+
+    def check_sizes(self, folder):
+        for path in glob.glob(self.path(folder, "*.png")):
+            with open(path, "rb") as file:
+                width, height = struct.unpack(">II", file.read(24)[16:])
+            self.assertTrue((width >= 320 and height >= 240) or "-01.png" in path, path)  # first ones may be textures
+
+    def check_statements(self, folder):
+        """Each has a measure on the page, and the same words in the documentation."""
+        with open(self.path(folder, "measures.json")) as file:
+            measures = {(m["item"], m["measure"]) for m in json.load(file)["measures"]}
+        with open(self.path(folder, "statements.csv"), newline="") as file:
+            statements = list(csv.DictReader(file))
+        with open(os.path.join(ROOT, "docs", "paper.md")) as file:
+            rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in file if line[0] == "|"]
+        for s in statements:
+            if not s["item"].startswith("validate "):
+                self.assertIn((s["item"], s["measure"]), measures)
+            measure = f"`{s['item']}`: {s['measure']}"
+            self.assertIn([s["section"], s["statement"], s["verdict"], measure, s["found"]], rows)
+        self.assertEqual(len(rows), len(statements) + 2)
 
 
 def load_tests(loader, tests, pattern):
