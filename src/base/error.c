@@ -12,7 +12,7 @@ SingeResult error_set(SingeError *error, SingeResult code, const char *stage, in
     snprintf(error->stage, sizeof error->stage, "%s", stage);
     va_list arguments;
     va_start(arguments, format);
-    text_format(error->message, sizeof error->message, format, arguments);
+    text_print(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
     return code;
 }

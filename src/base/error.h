@@ -4,7 +4,7 @@
 
 #include "singe/base.h"
 
-/// Fills *error (may be NULL) and returns `code`. The format is text_format's (base/text.h).
+/// Fills *error (may be NULL) and returns `code`. The format is text_print's (base/text.h).
 SingeResult error_set(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...)
     SINGE_PRINTF(5, 6);
 

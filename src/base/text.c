@@ -73,7 +73,7 @@ static bool text_convert(Text *text, const char *spec, va_list *arguments) {
     }
 }
 
-void text_format(char *out, size_t size, const char *format, va_list arguments) {
+void text_print(char *out, size_t size, const char *format, va_list arguments) {
     Text text = {.out = out, .size = size};
     va_list list;
     va_copy(list, arguments); // an array in some ABIs: only a copy has an address to hand on

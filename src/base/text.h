@@ -8,6 +8,6 @@
 /// As vsnprintf, without its result: at most `size` bytes with the closing zero, size > 0. Knows %d, %u, %x with the
 /// lengths l, ll and z, %s, %e, %f, %g and %%, with flags, widths and precisions in digits. Where it meets another
 /// conversion it ends the text.
-void text_format(char *out, size_t size, const char *format, va_list arguments);
+void text_print(char *out, size_t size, const char *format, va_list arguments);
 
 #endif

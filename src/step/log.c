@@ -9,7 +9,7 @@ static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format
     char line[256];
     va_list list;
     va_start(list, format);
-    text_format(line, sizeof line, format, list);
+    text_print(line, sizeof line, format, list);
     va_end(list);
     log->write(log->context, level, line);
 }

@@ -13,7 +13,7 @@ static void print(char *out, size_t size, const char *format, ...) SINGE_PRINTF(
 static void print(char *out, size_t size, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    text_format(out, size, format, list);
+    text_print(out, size, format, list);
     va_end(list);
 }
 
@@ -59,7 +59,7 @@ static void ends_where_it_knows_no_more(void **state) {
         const char *volatile format = formats[i]; // not for the compiler to check
         va_list none;
         memset(&none, 0, sizeof none);
-        text_format(text, sizeof text, format, none);
+        text_print(text, sizeof text, format, none);
         assert_string_equal(text, "one ");
     }
 }
