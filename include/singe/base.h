@@ -16,9 +16,9 @@
 #include <stdint.h>
 
 #define SINGE_VERSION_MAJOR 0
-#define SINGE_VERSION_MINOR 1
+#define SINGE_VERSION_MINOR 2
 #define SINGE_VERSION_PATCH 0
-#define SINGE_VERSION "0.1.0"
+#define SINGE_VERSION "0.2.0"
 
 #if defined(SINGE_SHARED) && defined(_WIN32)
 #if defined(SINGE_BUILD)

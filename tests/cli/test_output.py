@@ -5,7 +5,7 @@ import os
 import shutil
 import unittest
 
-from support import COLUMNS, HAS_FFMPEG, HAS_PREVIEW, Case
+from support import COLUMNS, HAS_FFMPEG, HAS_PREVIEW, VERSION, Case
 
 
 class Output(Case):
@@ -63,7 +63,7 @@ class Output(Case):
         self.run_scene("o", "--set", "seed=7", "--threads", "2")
         record = self.record("o")
         self.assertEqual(record["program"], "singe")
-        self.assertEqual(record["version"], "0.1.0")
+        self.assertEqual(record["version"], VERSION)
         self.assertEqual(record["result"], "complete")
         self.assertIsNone(record["error"])
         self.assertEqual(record["seed"], 7)

@@ -8,13 +8,15 @@ import subprocess
 import time
 import unittest
 
-from support import HAS_PREVIEW, SANITIZED, SINGE, Case
+from support import HAS_PREVIEW, ROOT, SANITIZED, SINGE, VERSION, Case
 
 
 class Usage(Case):
     def test_help_and_version(self):
         self.assertIn("usage: singe COMMAND", self.singe("--help")[0])
-        self.assertEqual(self.singe("--version")[0], "singe 0.1.0\n")
+        self.assertEqual(self.singe("--version")[0], f"singe {VERSION}\n")
+        with open(os.path.join(ROOT, "CHANGELOG.md"), encoding="utf-8") as file:
+            self.assertEqual(re.search(r"^## ([0-9.]+)", file.read(), re.M).group(1), VERSION)
         for command, word in ("run", "--resume"), ("check", "--threads"), ("render", "--sheet"), ("paper", "table1"):
             out, _ = self.singe(command, "--help")
             self.assertIn(f"usage: singe {command}", out)

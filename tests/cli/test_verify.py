@@ -53,7 +53,7 @@ class Surface:
         assert len(self.triangles) == faces
 
     def write(self, path):
-        lines = ["ply", "format binary_little_endian 1.0", f"comment singe 0.1.0 time {self.time}",
+        lines = ["ply", "format binary_little_endian 1.0", f"comment singe 0.2.0 time {self.time}",
                  f"element vertex {len(self.vertices)}"]
         lines += [f"property {kind} {name}" for kind, name in self.columns]
         lines += [f"element face {len(self.triangles)}", "property list uchar int vertex_indices", "end_header", ""]

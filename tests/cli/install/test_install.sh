@@ -5,6 +5,7 @@ set -euo pipefail
 build=$1 consumer=$2 cc=$3
 shift 3
 flags=$*
+version=$(sed -n 's/^#define SINGE_VERSION "\(.*\)"/\1/p' "$consumer/../../../include/singe/base.h")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -16,7 +17,7 @@ cmake -S "$consumer" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE
 cmake --build "$work/build" >>"$work/log"
 library=$(dirname "$(find "$work/prefix" -name 'libsinge.*' | head -n 1)")
 export LD_LIBRARY_PATH=$library
-[ "$("$work/build/consumer")" = "0.1.0 5" ]
+[ "$("$work/build/consumer")" = "$version 5" ]
 
 # a client may use any name that does not begin with singe_
 if [ "$(uname)" = Linux ] && [ -f "$library/libsinge.a" ]; then
@@ -30,8 +31,8 @@ pc=$(dirname "$(find "$work/moved" -name singe.pc)")
 export PKG_CONFIG_PATH=$pc LD_LIBRARY_PATH=${library/prefix/moved}
 # shellcheck disable=SC2046,SC2086
 "$cc" $flags "$consumer/consumer.c" $(pkg-config --cflags --libs singe) -o "$work/by_pkg_config"
-[ "$("$work/by_pkg_config")" = "0.1.0 5" ]
-[ "$(pkg-config --modversion singe)" = 0.1.0 ]
+[ "$("$work/by_pkg_config")" = "$version 5" ]
+[ "$(pkg-config --modversion singe)" = "$version" ]
 
 if [ -x "$work/moved/bin/singe" ]; then "$work/moved/bin/singe" --version; fi
 echo "installed, found and linked by find_package and pkg-config"
