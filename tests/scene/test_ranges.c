@@ -120,7 +120,7 @@ static void try_number(const Walk *walk, const SchemaRow *row, const char *path,
     if (row->type == ROW_INDICES)
         snprintf(value, sizeof value, "[%s]", number);
     else if (row->type == ROW_INTS) // the maximum of both is more than all cells may be
-        snprintf(value, sizeof value, "[%s, 2]", number);
+        snprintf(value, sizeof value, "[%s, %.0f]", number, row->min > 2 ? row->min : 2);
     else if (row->length == 2)
         snprintf(value, sizeof value, "[%s, %s]", number, number);
     else if (row->length == 3)
