@@ -10,7 +10,7 @@ DEMO_DIR ?= out/letter
 
 # tests that measure, for a minute or more under a sanitizer, on code that others go through there
 MEASURING = bending|cli_paper|cli_materials|cli_bench|heat_front
-# check-examples has them, and isotropy: together they would take longer than all the rest
+# check-examples has them, isotropy and cli_paper_all: together they would take longer than all the rest
 LONG_EXAMPLES = HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall
 
 # tests of what stands outside those folders, or of how fast it is
@@ -68,11 +68,11 @@ check:
 	ctest --preset tsan -j2 -L '^threads$$'
 	ctest --preset asan -j2 -E '^($(MEASURING))$$'
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
-	ctest --preset release -j2 -E '^(isotropy|example_($(LONG_EXAMPLES)))$$'
+	ctest --preset release -j2 -E '^(isotropy|cli_paper_all|example_($(LONG_EXAMPLES)))$$'
 
-# every example, run whole and verified, and the mesh effect: 27 minutes
+# every example, run whole and verified, the mesh effect, and all of the paper: 35 minutes
 check-examples: build
-	ctest --preset release -j2 -R '^(isotropy|example_)'
+	ctest --preset release -j2 -R '^(isotropy|cli_paper_all|example_)'
 
 # real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table
 gate: build
