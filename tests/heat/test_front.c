@@ -72,7 +72,11 @@ static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
         if (same.speed < sheets[k].slowest || same.speed > sheets[k].fastest) fail_msg("%.2f mm/s", same.speed * 1e3);
     }
     SingeMaterialDef stated = singe_default_material(); // at any grammage alike: losses alone are less
-    stated.grammage = singe_param(0.160f), stated.reference_grammage = 0;
+    stated.grammage = singe_param(0.020f), stated.reference_grammage = 0; // which the bar of 2 K does not let pass
+    StripResult unscaled = burn_strip(0.001f, 0.0005f, &stated);
+    print_message("20 g/m2, rates not scaled: hottest %.0f C\n", unscaled.hottest - 273.15);
+    assert_true(fabs(unscaled.hottest - office.hottest) > 2);
+    stated.grammage = singe_param(0.160f);
     assert_true(burn_strip(0.001f, 0.002f, &stated).speed > office.speed);
 }
 

@@ -196,7 +196,7 @@ static void test_grounds(void **state) {
 static void test_char_leaf(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    float mass[4], charred[4], ash[4], green[3], red[3];
+    float mass[4], charred[4], ash[4], green[3], red[4];
     Quad q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
@@ -212,17 +212,19 @@ static void test_char_leaf(void **state) {
     print_message("one reaction %.0f, leaf %.0f, ash %.0f\n", (double)green[0], (double)green[1], (double)green[2]);
     assert_true(green[1] < 60 && green[2] > green[1] + 30 && green[0] > green[1]);
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0;
-    for (int k = 0; k < 3; k++) { // idle, with fuel, glowing
+    for (int k = 0; k < 4; k++) { // idle, with fuel, glowing, the line between leaf and ash
         for (int i = 0; i < 4; i++) {
-            charred[i] = 0.25f, ash[i] = 0, mass[i] = k == 1 ? 0.4f : 0.25f;
+            bool gone = k == 3 && (i == 1 || i == 2);
+            charred[i] = gone ? 0 : 0.25f, ash[i] = gone ? 0.12f : 0;
+            mass[i] = k == 1 ? 0.4f : charred[i] + ash[i];
             q.burn[i] = (1 - mass[i]) / 0.88f, q.temperature[i] = 1100, q.rate[i] = k > 0;
         }
         draw(&def, &q.surface, 1, rgb);
         red[k] = mean(rgb, 0) - mean(rgb, 2);
     }
-    print_message("red of a hot leaf that is idle %.1f, has fuel %.1f, glows %.1f\n", (double)red[0], (double)red[1],
-                  (double)red[2]);
-    assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f);
+    print_message("red of a hot leaf that is idle %.1f, has fuel %.1f, glows %.1f; of a line %.1f\n", (double)red[0],
+                  (double)red[1], (double)red[2], (double)red[3]);
+    assert_true(red[2] > red[0] + 1.5f && red[2] > red[1] + 1.5f && red[3] > red[0] + 1.5f);
 }
 
 int main(void) {
