@@ -12,7 +12,7 @@ enum { FACE_SIZE = 1 + 3 * 4 };
 
 static const char *const names[CACHE_COLUMNS] = {
     "x", "y", "z", "nx", "ny", "nz", "s", "t", "vx", "vy", "vz", "rest_x", "rest_y", "rest_z", "temperature",
-    "temperature_peak", "mass", "burn_rate", "char_fraction", "ash_fraction", "char", "time_ignited", "piece_id",
+    "temperature_peak", "mass", "burn_rate", "char_fraction", "ash_fraction", "burnt", "time_ignited", "piece_id",
     "vertex_id", "sheet"};
 
 const char *cache_column_name(int column) { return names[column]; }
@@ -26,6 +26,12 @@ float cache_value(const CacheFrame *frame, int column, uint32_t vertex) {
     return value;
 }
 
+/// `burnt` was `char` up to version 0.2.
+static bool is_named(const PlyProperty *property, const char *name) {
+    return text_word_is(property->name, property->name_end, name) ||
+           (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
+}
+
 /// Where the promised properties are in a vertex.
 static SingeResult place_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
     for (size_t i = 0; i < vertices->property_count; i++) {
@@ -33,7 +39,7 @@ static SingeResult place_columns(const Ply *ply, const PlyElement *vertices, Cac
         if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
         for (int c = 0; c < CACHE_COLUMNS; c++) {
             const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
-            if (property->type != type || !text_word_is(property->name, property->name_end, names[c])) continue;
+            if (property->type != type || !is_named(property, names[c])) continue;
             frame->there[c] = true, frame->place[c] = frame->row;
         }
         frame->row += ply_type_size(property->type);

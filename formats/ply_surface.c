@@ -41,7 +41,7 @@ static const Column columns[] = {
     COLUMN("burn_rate", burn_rate, 1, 0),
     COLUMN("char_fraction", char_fraction, 1, 0),
     COLUMN("ash_fraction", ash_fraction, 1, 0),
-    COLUMN("char", burn, 1, 0),
+    COLUMN("burnt", burn, 1, 0),
     COLUMN("time_ignited", time_ignited, 1, 0),
     INTEGER("piece_id", piece),
     INTEGER("vertex_id", source_vertex),
@@ -115,12 +115,18 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
 
 // ---- reading
 
+// The name that `burnt` had up to version 0.2: it is reserved in shading languages.
+static bool is_column(const PlyProperty *property, const char *name) {
+    return text_word_is(property->name, property->name_end, name) ||
+           (strcmp(name, "burnt") == 0 && text_word_is(property->name, property->name_end, "char"));
+}
+
 static bool surface_has_columns(const Ply *ply, const PlyElement *vertices) {
     if (vertices->property_count != COLUMNS) return false;
     for (size_t i = 0; i < COLUMNS; i++) {
         const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
         if (property->is_list || property->type != (columns[i].integer ? PLY_INT32 : PLY_FLOAT32) ||
-            !text_word_is(property->name, property->name_end, columns[i].name))
+            !is_column(property, columns[i].name))
             return false;
     }
     return true;

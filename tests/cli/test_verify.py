@@ -13,7 +13,7 @@ from fractions import Fraction
 from support import Case
 
 FLOATS = ("x y z nx ny nz s t vx vy vz rest_x rest_y rest_z temperature temperature_peak mass burn_rate "
-          "char_fraction ash_fraction char time_ignited").split()
+          "char_fraction ash_fraction burnt time_ignited").split()
 INTEGERS = "piece_id vertex_id sheet".split()
 KINDS = ("crossings", "inverted_cells", "stretched_edges", "non_manifold_edges", "winding", "degenerate_triangles",
          "duplicate_triangles", "not_finite", "missing", "index", "stats")

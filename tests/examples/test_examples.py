@@ -101,7 +101,7 @@ class Example(Case):
 
     def ash_left(self):
         """Vertices of the last frame that have burnt to ash and are still there."""
-        return sum(vertex["char"] > 0.95 for vertex in self.vertices(len(self.rows)))
+        return sum(vertex["burnt"] > 0.95 for vertex in self.vertices(len(self.rows)))
 
     def look(self, frames, burnt=1.0, unburnt=5.0):
         """What pictures are judged by, over some frames: an ember line of less than 3 mm, creases that do not follow
@@ -306,7 +306,7 @@ class Stack(Example):
         """Mean char of what is left of each sheet in the last frame; a sheet that is gone counts as burnt."""
         char = [[] for _ in range(5)]
         for vertex in self.vertices(len(self.rows)):
-            char[int(vertex["sheet"])].append(vertex["char"])
+            char[int(vertex["sheet"])].append(vertex["burnt"])
         return [statistics.mean(values) if values else 1.0 for values in char]
 
     def lit(self):
@@ -395,11 +395,11 @@ class HotIron(Example):
         self.say["beside"] = f"{warmest:.0f} C at most"
         self.say["heat"] = f"{self.rows[lifted - 1]['heat_in']:.0f} J"
         last_under, last_beside = self.parts(len(self.rows))
-        burnt = sum(v["char"] for v in last_under) / len(last_under)
+        burnt = sum(v["burnt"] for v in last_under) / len(last_under)
         self.say["char at last"] = f"{burnt:.2f}"
         self.told()
         self.assertTrue(290 < heated < 335 and warmest < 80)
-        self.assertEqual(max(v["char"] for v in beside + last_beside), 0)
+        self.assertEqual(max(v["burnt"] for v in beside + last_beside), 0)
         self.assertGreater(burnt, 0.5)
         # what it stands on for two seconds does not burn before it is lifted
         self.assertLess(self.rows[lifted - 1]["burnt_fraction"], 0.01)
@@ -435,7 +435,7 @@ class Shirt(Example):
         lit = int(self.fps)  # the last frame before
         below = min(vertex["z"] for vertex in self.vertices(lit))
         burning = len(self.rows) // 2
-        burnt = [vertex["rest_z"] for vertex in self.vertices(burning) if vertex["char"] > 0.5]
+        burnt = [vertex["rest_z"] for vertex in self.vertices(burning) if vertex["burnt"] > 0.5]
         self.say["hem"] = f"{below:.2f} m"
         self.say["fire"] = f"up to {max(burnt):.2f} m in frame {burning}"
         self.say["burnt"] = f"{self.rows[-1]['burnt_fraction']:.2f}"
@@ -457,7 +457,7 @@ class BurningTorus(Example):
         """Pieces that have a tenth and more of what has hardly charred."""
         count = {}
         for vertex in self.vertices(frame):
-            if vertex["char"] < 0.5:
+            if vertex["burnt"] < 0.5:
                 count[vertex["piece_id"]] = count.get(vertex["piece_id"], 0) + 1
         return sum(number >= 0.1 * sum(count.values()) for number in count.values())
 

@@ -109,7 +109,7 @@ static void header_is_as_documented(void **state) {
         "property float s\nproperty float t\nproperty float vx\nproperty float vy\nproperty float vz\n"
         "property float rest_x\nproperty float rest_y\nproperty float rest_z\nproperty float temperature\n"
         "property float temperature_peak\nproperty float mass\n"
-        "property float burn_rate\nproperty float char_fraction\nproperty float ash_fraction\nproperty float char\n"
+        "property float burn_rate\nproperty float char_fraction\nproperty float ash_fraction\nproperty float burnt\n"
         "property float time_ignited\nproperty int piece_id\n"
         "property int vertex_id\nproperty int sheet\nelement face 3\nproperty list uchar int vertex_indices\n"
         "end_header\n";
@@ -122,6 +122,29 @@ static void header_is_as_documented(void **state) {
     assert_int_equal(p[0] | p[1] << 8 | p[2] << 16 | (uint32_t)p[3] << 24, bits);
     static const uint8_t face[] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
     assert_memory_equal(p + VERTICES * 25 * 4, face, sizeof face);
+    bytes_free(&bytes);
+}
+
+static void the_old_name_of_burnt_is_read(void **state) {
+    (void)state;
+    Sample sample;
+    make_sample(&sample);
+    Bytes bytes = written(&sample.surface, 0.5);
+    const char name[] = "float burnt\n", old[] = "float char\n", none[] = "float coal\n";
+    char *at = strstr((char *)bytes.data, name);
+    assert_non_null(at);
+    const size_t before = (size_t)((uint8_t *)at - bytes.data), after = bytes.size - before - strlen(name);
+    memcpy(at, old, strlen(old));
+    memmove(at + strlen(old), at + strlen(name), after);
+    SingeSurface read;
+    SingeError error;
+    assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
+                     SINGE_OK);
+    assert_memory_equal(read.burn, sample.surface.burn, sizeof sample.burn);
+    singe_surface_free(&read);
+    memcpy(at, none, strlen(none));
+    assert_int_equal(ply_read_surface("a.ply", bytes.data, bytes.size - 1, (SingeAllocator){0}, &read, NULL, &error),
+                     SINGE_ERROR_FORMAT);
     bytes_free(&bytes);
 }
 
@@ -224,6 +247,7 @@ int main(void) {
     snprintf(path, sizeof path, "%s/a.0001.ply", folder);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip_is_bitwise),     cmocka_unit_test(header_is_as_documented),
+        cmocka_unit_test(the_old_name_of_burnt_is_read),
         cmocka_unit_test(nothing_left_is_a_surface_too), cmocka_unit_test(damage_is_noticed),
         cmocka_unit_test(refuses_to_write_nonsense), cmocka_unit_test(allocation_failure_is_clean),
     };
