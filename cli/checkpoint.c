@@ -98,6 +98,7 @@ static bool hash_scene(const Scene *scene, uint64_t *hash) {
 SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash, SingeError *error) {
     Scene bare = *scene; // a longer run or other looks may go on from the same checkpoint
     bare.frames = 1;
+    bare.output = (SceneOutput){0};
     bool good = hash_scene(&bare, &hash->looks);
     bare.preview = (ScenePreview){0};
     if (good && hash_scene(&bare, &hash->result)) {

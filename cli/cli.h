@@ -13,6 +13,7 @@ typedef enum ExitCode {
 int command_run(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_render(int argc, char **argv);
+int command_convert(int argc, char **argv);
 int command_measure(int argc, char **argv);
 int command_verify(int argc, char **argv);
 int command_bench(int argc, char **argv);

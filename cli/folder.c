@@ -74,19 +74,26 @@ SingeResult folder_make(const char *path, SingeError *error) {
     return result;
 }
 
-/// The folders of frames, and how their files end.
-enum { INNER_PLY, INNER_FRAMES, INNER_GAS, INNER_EXR, INNER_COUNT };
-static const struct { const char *name, *ending; } inner[INNER_COUNT] = {
-    [INNER_PLY] = {"ply", ".ply"}, [INNER_FRAMES] = {"frames", ".png"}, [INNER_GAS] = {"gas", ".vdb"},
-    [INNER_EXR] = {"exr", ".exr"}};
+/// The folders of frames: those of formats first.
+enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_EXR, INNER_COUNT };
+
+/// A folder's name, and how its files end.
+typedef struct Inner { const char *name, *ending; } Inner;
+
+static Inner inner(int which) {
+    static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"exr", ".exr"}};
+    if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
+    return (Inner){output_formats[which].name, output_formats[which].ending};
+}
 
 static bool is_asked(FolderParts parts, int which) {
-    const bool asked[INNER_COUNT] = {true, parts.pictures, parts.gas, parts.exr};
-    return asked[which];
+    const bool others[] = {parts.pictures, parts.gas, parts.exr};
+    if (which >= OUTPUT_COUNT) return others[which - OUTPUT_COUNT];
+    return which == OUTPUT_ply || output_has(parts.outputs, which);
 }
 
 static char *frame_path(const Folder *folder, int which, int frame) {
-    return text_format("%s/%s/%s.%04d%s", folder->path, inner[which].name, folder->name, frame, inner[which].ending);
+    return text_format("%s/%s/%s.%04d%s", folder->path, inner(which).name, folder->name, frame, inner(which).ending);
 }
 
 SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error) {
@@ -94,7 +101,7 @@ SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *e
     for (int i = 0; i < INNER_COUNT && !result; i++) {
         if (!is_asked(parts, i)) continue;
         struct stat info;
-        char *path = text_format("%s/%s", folder->path, inner[i].name);
+        char *path = text_format("%s/%s", folder->path, inner(i).name);
         if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) result = folder_fail(path, "write", ELOOP, error);
         if (!result) result = make_one(path, error);
         if (!result && access(path, W_OK) != 0) result = folder_fail(path, "write", errno, error);
@@ -103,10 +110,15 @@ SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *e
     return result;
 }
 
-char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, INNER_PLY, frame); }
+char *folder_ply(const Folder *folder, int frame) { return frame_path(folder, OUTPUT_ply, frame); }
 char *folder_png(const Folder *folder, int frame) { return frame_path(folder, INNER_FRAMES, frame); }
 char *folder_vdb(const Folder *folder, int frame) { return frame_path(folder, INNER_GAS, frame); }
 char *folder_exr(const Folder *folder, int frame) { return frame_path(folder, INNER_EXR, frame); }
+char *folder_output(const Folder *folder, int format, int frame) { return frame_path(folder, format, frame); }
+
+char *folder_root(const Folder *folder, int format) {
+    return text_format("%s/%s%s", folder->path, folder->name, output_formats[format].root_ending);
+}
 
 /// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
 static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
@@ -168,12 +180,12 @@ static struct dirent *next_entry(DIR *dir, const char *path, SingeResult *result
 
 /// Removes frames, where `frames` is set, or else what a killed run left half written.
 static SingeResult clean_frames(const Folder *folder, int which, bool frames, int *removed, SingeError *error) {
-    char *path = text_format("%s/%s", folder->path, inner[which].name);
+    char *path = text_format("%s/%s", folder->path, inner(which).name);
     SingeResult result;
     DIR *dir = open_own(path, &result, error);
     for (struct dirent *entry; dir && !result && (entry = next_entry(dir, path, &result, error));) {
         const char *rest;
-        int frame = frame_of(folder, entry->d_name, inner[which].ending, &rest);
+        int frame = frame_of(folder, entry->d_name, inner(which).ending, &rest);
         if (!frame || !(frames ? *rest == 0 : is_temporary(rest))) continue;
         result = remove_at(dir, path, entry->d_name, removed, error);
     }
@@ -182,13 +194,26 @@ static SingeResult clean_frames(const Folder *folder, int which, bool frames, in
     return result;
 }
 
+/// Whether a file's name is that of a root which is half written.
+static bool is_half_root(const Folder *folder, const char *file) {
+    size_t length = strlen(folder->name);
+    if (strncmp(file, folder->name, length) != 0) return false;
+    for (int i = 0; i < OUTPUT_COUNT; i++) {
+        const char *ending = output_formats[i].root_ending;
+        if (ending && strncmp(file + length, ending, strlen(ending)) == 0 &&
+            is_temporary(file + length + strlen(ending)))
+            return true;
+    }
+    return false;
+}
+
 /// The half-written ones of the files that exist once.
 static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
     static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png", "preview.mp4", "preview.gif"};
     DIR *dir = opendir(folder->path);
     SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
-        bool ours = false;
+        bool ours = is_half_root(folder, entry->d_name);
         for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
             size_t length = strlen(names[i]);
             ours = ours || (strncmp(entry->d_name, names[i], length) == 0 && is_temporary(entry->d_name + length));
@@ -219,10 +244,16 @@ SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error)
 SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {
     SingeResult result = remove_file(folder->video, removed, error);
     if (!result) result = remove_file(folder->gif, removed, error);
+    for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
+        if (!output_formats[i].root_ending) continue;
+        char *root = folder_root(folder, i);
+        result = remove_file(root, removed, error);
+        free(root);
+    }
     for (int i = 0; i < INNER_COUNT && !result; i++) {
         result = clean_frames(folder, i, true, removed, error);
         if (result || is_asked(parts, i)) continue;
-        char *path = text_format("%s/%s", folder->path, inner[i].name);
+        char *path = text_format("%s/%s", folder->path, inner(i).name);
         rmdir(path); // fails, and may, where something else is in it
         free(path);
     }

@@ -1,5 +1,6 @@
 // Where a run's files are: DIR/ply/NAME.0001.ply, DIR/gas/NAME.0001.vdb, DIR/frames/NAME.0001.png,
-// DIR/exr/NAME.0001.exr and those that exist once.
+// DIR/exr/NAME.0001.exr, those of the formats of formats/output.h (DIR/vtp/NAME.0001.vtp, DIR/NAME.pvd) and those that
+// exist once.
 #ifndef CLI_FOLDER_H
 #define CLI_FOLDER_H
 
@@ -7,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "cli/console.h"
+#include "formats/output.h"
 #include "singe/base.h"
 
 typedef struct Folder {
@@ -28,11 +30,14 @@ void folder_free(Folder *folder);
 /// Makes a folder and those above it. `path` is not empty.
 SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
-/// What a run writes besides the surface: a folder of its own each.
-typedef struct FolderParts { bool pictures, gas, exr; } FolderParts;
+/// What a run writes besides the cache: a folder of its own each.
+typedef struct FolderParts {
+    bool pictures, gas, exr;
+    OutputSet outputs;
+} FolderParts;
 
-/// Makes ply/ and, as `parts` ask, frames/, gas/ and exr/ in the folder, which must be there. A link in the place of
-/// one of them is refused: what it points at is not ours.
+/// Makes ply/ and, as `parts` ask, frames/, gas/, exr/ and those of formats in the folder, which must be there. A link
+/// in the place of one of them is refused: what it points at is not ours.
 SINGE_NODISCARD SingeResult folder_create(const Folder *folder, FolderParts parts, SingeError *error);
 
 /// Paths of a frame, from malloc.
@@ -40,13 +45,16 @@ char *folder_ply(const Folder *folder, int frame);
 char *folder_png(const Folder *folder, int frame);
 char *folder_vdb(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
+char *folder_output(const Folder *folder, int format, int frame);
+/// Path of a format's root, from malloc.
+char *folder_root(const Folder *folder, int format);
 
 /// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
 /// Removes what else an earlier run of the same name left (its frames, video, GIF), and nothing that is not named as
 /// such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
-/// empty: frames/, gas/ and exr/.
+/// empty.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 
 /// Removes what a killed run left half written under temporary names.

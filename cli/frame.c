@@ -37,7 +37,7 @@ static SingeResult read_gas(const Folder *folder, int number, Gas *gas, SingeErr
     return result;
 }
 
-SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeError *error) {
+SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, SingeError *error) {
     Bytes bytes = {0};
     *frame = (Frame){0};
     char *path = folder_ply(folder, number);
@@ -47,6 +47,11 @@ SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeErro
                                   error);
     bytes_free(&bytes);
     free(path);
+    return result;
+}
+
+SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeError *error) {
+    SingeResult result = frame_read_surface(folder, number, frame, error);
     return result ? result : read_gas(folder, number, &frame->gas, error);
 }
 

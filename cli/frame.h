@@ -20,6 +20,9 @@ SINGE_NODISCARD SingeResult frame_take_surface(SingeSim *sim, Frame *frame, Sing
 /// Its gas. Where a simulation has gas every frame has, however still the air.
 SINGE_NODISCARD SingeResult frame_take_gas(SingeSim *sim, Frame *frame, SingeError *error);
 
+/// Reads the surface of a frame, without its gas. Free it, after failure too.
+SINGE_NODISCARD SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, SingeError *error);
+
 /// Reads the files of a frame. Free it, after failure too.
 SINGE_NODISCARD SingeResult frame_read(const Folder *folder, int number, Frame *frame, SingeError *error);
 

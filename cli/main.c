@@ -15,6 +15,7 @@ static const struct {
     {"run", command_run, "burns a scene: cache, pictures, video, numbers"},
     {"check", command_check, "says whether a scene is good, what it consists of, what it costs"},
     {"render", command_render, "draws a cache's pictures and video again"},
+    {"convert", command_convert, "writes a cache in another format, such as USD"},
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
@@ -36,7 +37,7 @@ static void help(void) {
 int main(int argc, char **argv) {
     if (streams_open()) return EXIT_FAILED;
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render, measure, verify, bench, paper or validate\n"
+        fputs("singe: error: needs a command: run, check, render, convert, measure, verify, bench, paper or validate\n"
               "see: singe --help\n", stderr);
         return EXIT_INPUT;
     }

@@ -104,7 +104,8 @@ static SingeResult run_all(Run *run, SingeError *error) {
     bool whole;
     SingeResult result = SINGE_OK;
     if (run->begun) result = record_write(&run->record, run->folder.record, &run->job, error);
-    if (!result) result = run_draw_missing(run, &whole, error);
+    if (!result) result = run_convert_missing(run, &whole, error);
+    if (!result && whole) result = run_draw_missing(run, &whole, error);
     if (!run->pictures) lock_release(&run->pictures_lock);
     if (result || whole) return result ? result : run_frames(run, error);
     run->record.result = "interrupted";
@@ -130,6 +131,10 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
     record->video = video == VIDEO_MADE;
     run->totals->wall_seconds = run->wall_before + console_clock() - run->started;
+    if (run->begun && record->frames_done > 0 && outputs_write_roots(&run->outputs, record->frames_done, &write_error)) {
+        console_result(run->console, &write_error);
+        return EXIT_FAILED;
+    }
     // an earlier run of which nothing has been replaced keeps its record
     bool ours = run->begun || access(run->folder.record, F_OK) != 0;
     if (ours && record_write(record, run->folder.record, &run->job, &write_error)) {
@@ -200,6 +205,7 @@ int command_run(int argc, char **argv) {
         if (!code) code = run_scene(&run, &options);
         stats_close(&run.stats);
         frame_free(&run.frame);
+        outputs_close(&run.outputs);
         pictures_close(run.pictures);
         singe_sim_destroy(run.sim);
         lock_release(&run.pictures_lock);

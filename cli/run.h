@@ -8,6 +8,7 @@
 #include "cli/frame.h"
 #include "cli/job.h"
 #include "cli/lock.h"
+#include "cli/outputs.h"
 #include "cli/pictures.h"
 #include "cli/record.h"
 #include "cli/stats.h"
@@ -24,7 +25,7 @@ typedef struct FrameFile {
     char *path;
     char *draft; ///< where it is written until it takes its place; NULL: at once
 } FrameFile;
-enum { FRAME_FILES_MOST = 4 };
+enum { FRAME_FILES_MOST = 3 + OUTPUT_COUNT };
 
 /// A run in progress.
 typedef struct Run {
@@ -36,6 +37,7 @@ typedef struct Run {
     Pictures *pictures; ///< NULL without a preview
     bool layers;        ///< written as EXR, too
     Frame frame;
+    Outputs outputs;
     FrameFile files[FRAME_FILES_MOST];
     int file_count;
     StatsFile stats;
@@ -64,6 +66,9 @@ SINGE_NODISCARD SingeResult run_take_over(Run *run, SingeError *error);
 
 /// Draws pictures that frames of before lack. False in *whole when Ctrl-C came in between.
 SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error);
+
+/// Writes the frames of before in formats that they are not there in, as the cache has them. False in *whole as above.
+SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
 
 /// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.
 SINGE_NODISCARD SingeResult run_advance(Run *run, SingeError *error);

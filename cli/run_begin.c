@@ -16,7 +16,8 @@ static ExitCode fail(Run *run, const SingeError *error, ExitCode code) {
 
 FolderParts run_parts(const Run *run) {
     bool gas = singe_sim_gas(run->sim).size[0] > 0;
-    return (FolderParts){.pictures = run->pictures != NULL, .gas = gas, .exr = run->layers};
+    return (FolderParts){.pictures = run->pictures != NULL, .gas = gas, .exr = run->layers,
+                         .outputs = run->job.scene->output.formats};
 }
 
 // ---- the folder
@@ -121,6 +122,19 @@ SingeResult run_draw_missing(Run *run, bool *whole, SingeError *error) {
     return result;
 }
 
+SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    const int last = run->record.resumed_from;
+    *whole = true;
+    for (int frame = 1; frame <= last && !result && *whole; frame++) {
+        const OutputSet missing = outputs_missing(&run->outputs, frame);
+        if (!missing) continue;
+        result = outputs_convert(&run->outputs, frame, missing, error);
+        *whole = !interrupt_asked();
+    }
+    return result;
+}
+
 // ---- from the start
 
 /// run.json of this run, in the place of an earlier run's, which can no longer be gone on with.
@@ -190,5 +204,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
         console_note(run->console, "no checkpoint in %s: starting from the beginning", run->folder.path);
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
     if ((code = hold_folder(run))) return code;
+    if (outputs_open(&run->outputs, &run->job, &run->folder, run->job.scene->output.formats, run_parts(run).gas, &error))
+        return fail(run, &error, EXIT_FAILED);
     return open_outputs(run);
 }

@@ -1,6 +1,6 @@
-// A frame of a run. Its order is PLY, VDB, PNG, line of stats.csv, checkpoint: whatever a checkpoint stands for is on
-// the disk. The first one of a run from the start is written under temporary names, so that an earlier run stays until
-// it is whole.
+// A frame of a run. Its order is PLY, other formats, VDB, PNG, line of stats.csv, roots and checkpoint: whatever a
+// checkpoint stands for is on the disk. The first one of a run from the start is written under temporary names, so that
+// an earlier run stays until it is whole.
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -86,10 +86,16 @@ static void files_end(Run *run) {
     run->file_count = 0;
 }
 
+/// The frame in all formats, the cache first.
 static SingeResult write_surface(Run *run, int frame, SingeError *error) {
-    const char *name;
-    SingeResult result = file_begin(run, folder_ply(&run->folder, frame), &name, error);
-    return result ? result : ply_write_surface(name, &run->frame.surface, run->frame.time, error);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
+        const char *name;
+        if (!output_has(run->outputs.formats, i)) continue;
+        result = file_begin(run, folder_output(&run->folder, i, frame), &name, error);
+        if (!result) result = outputs_write(&run->outputs, i, name, &run->frame, frame, error);
+    }
+    return result;
 }
 
 static SingeResult write_gas(Run *run, int frame, SingeError *error) {
@@ -161,6 +167,7 @@ SingeResult run_write_checkpoint(Run *run, Progress progress, bool must, SingeEr
     read_timers(run, &cost);
     run->totals->wall_seconds = run->wall_before + begun - run->started;
     SingeResult result = stats_sync(&run->stats, error);
+    if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
         result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, progress, run->hash, run->totals,
                                   error);

@@ -42,6 +42,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->sim.contact.enabled = true;
     scene->tearing = true;
     default_preview(&scene->preview);
+    scene->output.formats = 1u << OUTPUT_ply;
     return true;
 }
 

@@ -107,6 +107,7 @@ static void put_type(FILE *file, const SchemaRow *row) {
         [ROW_UINT32] = "whole number", [ROW_UINT64] = "whole number",
         [ROW_TEXT] = "text",           [ROW_NAME] = "name",
         [ROW_FILE] = "file",           [ROW_BASE] = "material or file", [ROW_ORDER] = "4 colours",
+        [ROW_FORMATS] = "list of formats",
         [ROW_POINTS] = "points, m",    [ROW_INDICES] = "whole numbers",
     };
     const char *unit = quantity_unit(row->dimension);

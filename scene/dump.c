@@ -81,6 +81,18 @@ static void put_order(FILE *file, const SingeColour *order) {
     fputc(']', file);
 }
 
+static void put_formats(FILE *file, OutputSet set) {
+    bool first = true;
+    fputc('[', file);
+    for (int i = 0; i < OUTPUT_COUNT; i++) {
+        if (!output_has(set, i))
+            continue;
+        fprintf(file, "%s\"%s\"", first ? "" : ", ", output_formats[i].name);
+        first = false;
+    }
+    fputc(']', file);
+}
+
 static void put_points(FILE *file, const ScenePoint *points, uint32_t count) {
     fputc('[', file);
     for (uint32_t i = 0; i < count; i++) {
@@ -114,6 +126,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
         break;
     }
     case ROW_ORDER: put_order(file, field); break;
+    case ROW_FORMATS: put_formats(file, *(const OutputSet *)field); break;
     case ROW_PARAM: put_param(file, row, field, at(object, row->extra)); break;
     case ROW_POINTS: put_points(file, items_at(object, row), count_at(object, row)); break;
     case ROW_INDICES: {

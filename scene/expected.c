@@ -121,6 +121,15 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_BASE: add_base(buffer, size); break;
     case ROW_ENUM: add_names(buffer, size, row->names); break;
     case ROW_ORDER: add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
+    case ROW_FORMATS:
+        add(buffer, size, "a list of ");
+        for (int i = 0; i < OUTPUT_COUNT; i++) {
+            if (i)
+                add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
+            add(buffer, size, output_formats[i].name);
+        }
+        add(buffer, size, ", each at most once");
+        break;
     case ROW_MAP:
         add(buffer, size, "a map (key: value)");
         for (int i = 0; row->sub && row->sub->choice && i < row->sub->row_count; i++)

@@ -233,6 +233,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     }
     case ROW_BASE: read_base(reader, row, node, field); break;
     case ROW_ORDER: value_order(reader, row, node, field); break;
+    case ROW_FORMATS: value_formats(reader, row, node, field); break;
     case ROW_PARAM: read_param(reader, row, node, field, at(object, row->extra)); break;
     case ROW_MAP: read_submap(reader, row, node, object); break;
     case ROW_LIST: read_list(reader, row, node, object); break;

@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "formats/formats.h"
+#include "formats/output.h"
 #include "mesh/mesh.h"
 #include "preview/preview.h"
 #include "singe/singe.h"
@@ -173,6 +174,11 @@ typedef struct ScenePreview {
     float shutter; ///< share of a frame's time
 } ScenePreview;
 
+/// What a run writes for other programs.
+typedef struct SceneOutput {
+    OutputSet formats;
+} SceneOutput;
+
 typedef struct Scene {
     char *name;   ///< of the outputs; the scene file's name without its ending by default
     int frames;   ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
@@ -186,6 +192,7 @@ typedef struct Scene {
     SceneCollider *colliders;
     ScenePin *pins;
     ScenePreview preview;
+    SceneOutput output;
     struct SceneText *text;   ///< the source, for messages after parsing
     struct SceneArena *arena; ///< owns all of the above
 } Scene;
@@ -282,6 +289,9 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
 /// Writes the visible colliders (planes are not shapes; see the ground) and hot balls at a time, at most
 /// `max`, and returns how many the scene has then. shapes may be NULL when max is 0. They point into the assets.
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max);
+
+/// The shape at a slot, which are the scene's colliders, then its sources. False where nothing is drawn then.
+bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape);
 
 /// Seconds from one frame to the next, and the simulation's step.
 static inline double scene_frame_time(const Scene *scene) { return 1.0 / (double)scene->fps; }

@@ -95,6 +95,15 @@ static const Schema schema_contact = {
     .doc = "Sheets do not pass through themselves nor each other. `contact: no` is "
            "the paper, where they do. Colliders have a friction of their own."};
 
+static const SchemaRow output_rows[] = {
+    {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
+     .doc = "of the frames, each in a folder of its own ([formats.md](formats.md)); `ply` is the cache, which is always "
+            "written"},
+};
+static const Schema schema_output = {
+    .title = "the output", .size = sizeof(SceneOutput), ROWS(output_rows),
+    .doc = "What a run writes for other programs. `singe convert` makes the same from a cache."};
+
 static const SchemaRow scene_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(Scene, name),
      .doc = "of the outputs; the scene file's name without its ending by default"},
@@ -138,6 +147,7 @@ static const SchemaRow scene_rows[] = {
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
+    {"output", ROW_MAP, DIM_NONE, AT(Scene, output), .sub = &schema_output, .doc = "what is written of them"},
 };
 const Schema schema_scene = {
     .title = "the scene", .size = sizeof(Scene), ROWS(scene_rows), .defaults = default_scene, .finish = finish_scene,

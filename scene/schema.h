@@ -20,6 +20,7 @@ typedef enum RowType {
     ROW_FILE,     ///< SceneFile
     ROW_ENUM,     ///< an enum, by `names`
     ROW_ORDER,    ///< SingeColour[4], each once
+    ROW_FORMATS,  ///< OutputSet: formats of formats/output.h, each once; the cache is always one
     ROW_BASE,     ///< the SceneMaterial at `offset`: a material's name or file, which it begins as
     ROW_PARAM,    ///< SingeParam, with its SceneFile at `extra`
     ROW_MAP,      ///< a map by `sub`; `extra`, when not 0, is the bool that says it is given

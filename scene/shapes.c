@@ -97,20 +97,21 @@ static bool collider_shape(const Scene *scene, const SceneAssets *assets, uint32
     return true;
 }
 
+bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape) {
+    if (slot < scene->collider_count)
+        return collider_shape(scene, assets, slot, time, shape);
+    return source_shape(&scene->sources[slot - scene->collider_count], time, shape);
+}
+
 uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time, PreviewShape *shapes, uint32_t max) {
     uint32_t count = 0;
     PreviewShape shape;
-    for (uint32_t i = 0; i < scene->collider_count; i++)
-        if (collider_shape(scene, assets, i, time, &shape)) {
-            if (count < max)
-                shapes[count] = shape;
-            count++;
-        }
-    for (uint32_t i = 0; i < scene->source_count; i++)
-        if (source_shape(&scene->sources[i], time, &shape)) {
-            if (count < max)
-                shapes[count] = shape;
-            count++;
-        }
+    for (uint32_t i = 0; i < scene->collider_count + scene->source_count; i++) {
+        if (!scene_shape(scene, assets, i, time, &shape))
+            continue;
+        if (count < max)
+            shapes[count] = shape;
+        count++;
+    }
     return count;
 }

@@ -195,6 +195,28 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
     }
 }
 
+void value_formats(Reader *reader, const SchemaRow *row, const Node *node, OutputSet *field) {
+    if (node->kind != NODE_LIST) {
+        value_wrong(reader, node, row);
+        return;
+    }
+    const char *names[OUTPUT_COUNT + 1] = {NULL};
+    for (int i = 0; i < OUTPUT_COUNT; i++)
+        names[i] = output_formats[i].name;
+    OutputSet set = 0;
+    for (const Node *child = node->first; child; child = child->next) {
+        int format = 0;
+        if (!value_word(reader, row, child, names, &format))
+            return;
+        if (output_has(set, format)) {
+            message_add(reader->messages, reader->text, child->place, "'%s' is there twice", names[format]);
+            return;
+        }
+        set |= 1u << format;
+    }
+    *field = set | 1u << OUTPUT_ply;
+}
+
 bool value_is_text(const Node *node) {
     char seen[NODE_WORDS];
     return node->kind == NODE_VALUE && strcmp(node_describe(node, seen, sizeof seen), "nothing") != 0 && node->text[0];

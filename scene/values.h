@@ -17,6 +17,7 @@ void value_bool(Reader *reader, const SchemaRow *row, const Node *node, bool *fi
 /// The index of the node's word in `names`.
 bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const char *const *names, int *result);
 void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeColour *field);
+void value_formats(Reader *reader, const SchemaRow *row, const Node *node, OutputSet *field);
 bool value_is_text(const Node *node);
 /// Whether a name may be part of files' names: the rule of ROW_NAME.
 bool value_names_files(const char *text);

@@ -168,6 +168,7 @@ static void put_value(Draw *draw, const Schema *schema, const SchemaRow *row, vo
     case ROW_INDICES: printf("[%d, %d]", pick(draw, 2), 2 + pick(draw, 2)); break;
     case ROW_ENUM: put_names(draw, row); break;
     case ROW_ORDER: put_order(draw); break;
+    case ROW_FORMATS: printf("[%s]", output_formats[pick(draw, OUTPUT_COUNT)].name); break;
     case ROW_BASE: put_base(draw); break;
     case ROW_PARAM: put_param(draw, schema, row, object); break;
     case ROW_LIST: put_list(draw, row, object); break;

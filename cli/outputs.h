@@ -1,0 +1,36 @@
+// The formats that a run or a conversion writes besides pictures and gas: frames, and the roots that name them.
+#ifndef CLI_OUTPUTS_H
+#define CLI_OUTPUTS_H
+
+#include "cli/folder.h"
+#include "cli/frame.h"
+#include "cli/job.h"
+
+typedef struct Outputs {
+    const Job *job;
+    const Folder *folder;
+    OutputSet formats;
+    OutputScene scene;   ///< of frames
+    OutputSheet *sheets;
+    char **pictures;     ///< [sheet_count] paths from the folder, or NULL
+} Outputs;
+
+/// The job and the folder must outlive it, and the folder must be there. `gas`: the frames have some.
+SINGE_NODISCARD SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder, OutputSet formats,
+                                         bool gas, SingeError *error);
+void outputs_close(Outputs *outputs);
+
+/// Writes a frame in a format.
+SINGE_NODISCARD SingeResult outputs_write(const Outputs *outputs, int format, const char *path, const Frame *frame,
+                                          int number, SingeError *error);
+
+/// The formats in which a frame is not there.
+OutputSet outputs_missing(const Outputs *outputs, int number);
+
+/// Writes a frame of the cache in those formats.
+SINGE_NODISCARD SingeResult outputs_convert(const Outputs *outputs, int number, OutputSet formats, SingeError *error);
+
+/// Writes the roots of all its formats, for frames from 1.
+SINGE_NODISCARD SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *error);
+
+#endif

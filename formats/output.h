@@ -1,0 +1,91 @@
+// What a run leaves for other programs: formats of frames, each a file of its own and one row here. A format writes a
+// file a frame and, where it has one, a root: a file that names all of them. Writers are pure: the same frame and scene
+// give the same bytes, whether a simulation or the cache is where they come from.
+#ifndef FORMATS_OUTPUT_H
+#define FORMATS_OUTPUT_H
+
+#include "formats.h"
+
+/// A frame as writers get it.
+typedef struct OutputFrame {
+    const SingeSurface *surface;
+    double time; ///< s
+    int number;  ///< from 1
+} OutputFrame;
+
+/// What is drawn of a sheet besides its surface.
+typedef struct OutputSheet {
+    const char *name;    ///< as in the scene
+    const char *picture; ///< path of its picture, from the root file if it is relative; NULL: none
+    const Image *image;  ///< the picture; NULL: none
+    float colour[3];     ///< linear, multiplies the picture
+} OutputSheet;
+
+/// Where a shape is in a frame.
+typedef struct OutputPose {
+    float position[3], rotation[4]; ///< m; quaternion x, y, z, w
+    bool visible;
+} OutputPose;
+
+/// A rigid thing: a collider or a hot ball.
+typedef struct OutputShape {
+    SingeColliderKind kind; ///< no plane
+    float radius, half_size[3], height; ///< m, as SingeColliderDef has them
+    float colour[3];        ///< linear
+    float temperature;      ///< K
+    uint32_t vertex_count, triangle_count; ///< of a mesh or a heightfield, in its own frame
+    const float *vertices;  ///< [3 * vertex_count] m
+    const uint32_t *triangles; ///< [3 * triangle_count]
+    const OutputPose *poses; ///< [OutputScene.frames]
+} OutputShape;
+
+/// What does not change from frame to frame. A writer of frames looks at `name`, `fps` and the sheets only.
+typedef struct OutputScene {
+    const char *name;   ///< of the files
+    float fps;
+    int frames;         ///< that are written, from 1
+    bool gas;           ///< gas/NAME.0001.vdb are there
+    uint32_t sheet_count, shape_count;
+    const OutputSheet *sheets;
+    const OutputShape *shapes;
+    float eye[3], target[3], up[3]; ///< m, of the camera
+    float fov, aspect;  ///< radians, vertical; width over height
+    float aperture, focus; ///< m: of the lens, and the distance that is sharp; 0: all is
+    float light_direction[3], light_angle, light_colour[3]; ///< towards it; radians, radius; linear
+    float sky[3];       ///< linear
+    float ground_height, ground_colour[3]; ///< m, -INFINITY for none; linear
+} OutputScene;
+
+SINGE_NODISCARD SingeResult ply_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                            SingeError *error);
+SINGE_NODISCARD SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                            SingeError *error);
+SINGE_NODISCARD SingeResult pvd_write_root(const char *path, const OutputScene *scene, SingeError *error);
+
+typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                     SingeError *error);
+typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, SingeError *error);
+
+/// ROW(name, ending of frames, writer, ending of the root or NULL, its writer or NULL): frames lie in name/, the root
+/// beside that folder. The first is the cache, which every run writes and from which the others can be made.
+#define OUTPUT_FORMATS(ROW)                                   \
+    ROW(ply, ".ply", ply_write_frame, NULL, NULL)             \
+    ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root)
+
+#define OUTPUT_ENUMERATOR(name, ...) OUTPUT_##name,
+enum { OUTPUT_FORMATS(OUTPUT_ENUMERATOR) OUTPUT_COUNT };
+
+typedef struct OutputFormat {
+    const char *name, *ending;
+    OutputWriteFrame *write_frame;
+    const char *root_ending; ///< NULL: it has no root
+    OutputWriteRoot *write_root;
+} OutputFormat;
+
+extern const OutputFormat output_formats[OUTPUT_COUNT];
+
+/// A set of formats, a bit each.
+typedef uint32_t OutputSet;
+static inline bool output_has(OutputSet set, int format) { return set >> format & 1; }
+
+#endif
