@@ -1,6 +1,6 @@
 #include "bench/burning.h"
 
-#include "bench/sheet.h"
+#include "bench/hung_sheet.h"
 
 #define TRY(call)                      \
     do {                               \

@@ -2,7 +2,7 @@
 #ifndef BENCH_TRAJECTORY_H
 #define BENCH_TRAJECTORY_H
 
-#include "bench/sheet.h"
+#include "bench/hung_sheet.h"
 #include "bench/strain.h"
 
 /// Seconds at which the height of the centre of mass is noted: frames 8, 12 and 16.

@@ -2,7 +2,7 @@
 //
 // A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its middle; its layers shrink by equation 6
 // near its full strength, differently, and char stays in spots. r is the bend of creases along the sheet's axes over
-// that along its diagonals (cli/wrinkles.h), summed over MOMENTS of the second half of the burn. With O what the
+// that along its diagonals (analysis/wrinkles.h), summed over MOMENTS of the second half of the burn. With O what the
 // outline and the fibres do to it, and M what the mesh does, r_0 = O M on the grid and r_45 = O/M on the turned one:
 //
 //   mesh effect M = sqrt(r_0/r_45),   1 where folds know nothing of the mesh
@@ -12,8 +12,8 @@
 
 #include <math.h>
 
-#include "cli/turned_grid.h"
-#include "cli/wrinkles.h"
+#include "analysis/turned_grid.h"
+#include "analysis/wrinkles.h"
 
 enum { MOMENTS = 6 };
 

@@ -7,7 +7,7 @@
 #include "bench/strip.h"
 #include "cli/args.h"
 #include "cli/bench_materials.h"
-#include "cli/frame.h"
+#include "cli/frame_files.h"
 #include "cli/job.h"
 #include "formats/printable.h"
 

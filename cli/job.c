@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "cli/machine.h"
+#include "cli/machine_memory.h"
 #include "cli/text.h"
 
 void set_add(SetList *sets, const char *text) {

@@ -17,13 +17,13 @@
 #include "cli/cli.h"
 #include "cli/console.h"
 #include "cli/folder.h"
-#include "cli/folds.h"
+#include "analysis/folds.h"
 #include "cli/job.h"
 #include "cli/pictures.h"
-#include "cli/rim.h"
+#include "analysis/rim.h"
 #include "cli/streams.h"
 #include "cli/text.h"
-#include "cli/wrinkles.h"
+#include "analysis/wrinkles.h"
 #include "formats/formats.h"
 
 enum { OPT_FRAMES, OPT_CSV, OPT_COUNT };

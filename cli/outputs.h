@@ -3,7 +3,7 @@
 #define CLI_OUTPUTS_H
 
 #include "cli/folder.h"
-#include "cli/frame.h"
+#include "cli/frame_files.h"
 #include "cli/job.h"
 
 typedef struct Outputs {

@@ -9,7 +9,7 @@
 #include "cli/args.h"
 #include "cli/contact_sheet.h"
 #include "cli/folder.h"
-#include "cli/frame.h"
+#include "cli/frame_files.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
 #include "cli/lock.h"

@@ -5,13 +5,13 @@
 
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
-#include "cli/frame.h"
+#include "cli/frame_files.h"
 #include "cli/job.h"
 #include "cli/lock.h"
 #include "cli/outputs.h"
 #include "cli/pictures.h"
 #include "cli/record.h"
-#include "cli/stats.h"
+#include "cli/stats_file.h"
 
 typedef struct RunOptions {
     const char *scene, *output;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/initial.h"
+#include "analysis/initial.h"
 #include "cli/interrupt.h"
 #include "cli/run.h"
 

@@ -9,7 +9,7 @@
 #include "cli/job.h"
 #include "formats/formats.h"
 #include "formats/number.h"
-#include "formats/text.h"
+#include "formats/lines.h"
 
 enum { FRAME, TIME, TRIANGLES, INVERTED, COLUMNS };
 static const char *const names[COLUMNS] = {"frame", "time", "triangles", "inverted_cells"};

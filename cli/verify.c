@@ -8,7 +8,7 @@
 
 #include "cli/args.h"
 #include "cli/cli.h"
-#include "cli/findings.h"
+#include "analysis/findings.h"
 #include "cli/folder.h"
 #include "cli/interrupt.h"
 #include "cli/job.h"
@@ -78,6 +78,11 @@ static void check_stats(const StatsTable *stats, int frame, const CacheFrame *ca
     if (row->inverted_cells == 0) return;
     findings_add(findings, FAULT_INVERTED, "%.0f inverted cells, by stats.csv", row->inverted_cells);
     findings->count[FAULT_INVERTED] += (uint64_t)row->inverted_cells - 1;
+}
+
+static void verify_report(void *context, bool fault, const char *message) {
+    if (fault) console_error(context, "%s", message);
+    else console_warn(context, "%s", message);
 }
 
 static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError *error) {
@@ -285,7 +290,7 @@ int command_verify(int argc, char **argv) {
         if (!good) return EXIT_INPUT;
     }
     interrupt_watch();
-    verify.findings = (Findings){.console = &verify.console, .stretch = verify.stretch};
+    verify.findings = (Findings){.report = verify_report, .context = &verify.console, .stretch = verify.stretch};
     ExitCode code = find_folder(&verify, path);
     if (!code) code = folder_span(&verify.folder, &verify.console, &verify.first, &verify.last);
     if (!code) code = stats_table_read(&verify.stats, verify.folder.stats, &verify.console);

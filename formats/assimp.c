@@ -2,11 +2,11 @@
 // hostile files, so it runs in a child process, which puts polygons as mesh_answer.h has them. Nothing is triangulated,
 // smoothed or joined there: mesh_make does that by position. All meshes of all nodes are taken with their transforms,
 // in the order of a walk over the nodes.
-#include "assimp_files.h"
-#include "isolate.h"
-#include "mesh.h"
-#include "mesh_answer.h"
-#include "support.h"
+#include "formats/assimp_files.h"
+#include "formats/isolate.h"
+#include "formats/mesh_reader.h"
+#include "formats/mesh_answer.h"
+#include "formats/store.h"
 
 #include <assimp/cimport.h>
 #include <assimp/scene.h>

@@ -1,7 +1,7 @@
-#include "assimp_files.h"
+#include "formats/assimp_files.h"
 
-#include "beside.h"
-#include "support.h"
+#include "formats/beside.h"
+#include "formats/store.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 
 #include <assimp/cfileio.h>
 
-#include "formats.h"
+#include "formats/formats.h"
 
 typedef struct Source {
     const char *name; ///< of the file to read; what it names beside itself is looked for from its folder

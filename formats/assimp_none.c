@@ -1,6 +1,6 @@
 // FBX and the like in a build without assimp: nothing is read.
-#include "formats.h"
-#include "support.h"
+#include "formats/formats.h"
+#include "formats/store.h"
 
 #include <string.h>
 

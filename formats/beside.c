@@ -2,7 +2,7 @@
 #define _XOPEN_SOURCE 700 // realpath
 #endif
 
-#include "beside.h"
+#include "formats/beside.h"
 
 #include <stddef.h>
 #include <stdlib.h>

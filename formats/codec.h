@@ -2,7 +2,7 @@
 #ifndef FORMATS_CODEC_H
 #define FORMATS_CODEC_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 enum { IMAGE_SIDE_LIMIT = 16384 };
 

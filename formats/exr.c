@@ -1,6 +1,6 @@
 // EXR by OpenEXRCore: one part of scan lines, ZIP-packed, whole in memory before it goes to the file.
-#include "codec.h"
-#include "support.h"
+#include "formats/codec.h"
+#include "formats/store.h"
 
 #include <openexr.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // EXR in a build without OpenEXR: nothing is written.
-#include "formats.h"
-#include "support.h"
+#include "formats/formats.h"
+#include "formats/store.h"
 
 bool exr_available(void) { return false; }
 

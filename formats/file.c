@@ -4,8 +4,8 @@
 #define _XOPEN_SOURCE 700
 #endif
 
-#include "formats.h"
-#include "support.h"
+#include "formats/formats.h"
+#include "formats/store.h"
 
 #include <errno.h>
 #include <fcntl.h>

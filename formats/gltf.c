@@ -1,10 +1,10 @@
 // glTF 2.0 and GLB: what is where in the file. Every place and count is checked here, once: of buffers, views of them,
 // and accessors, which are arrays in a view.
-#include "gltf.h"
+#include "formats/gltf.h"
 
-#include "beside.h"
-#include "mesh.h"
-#include "support.h"
+#include "formats/beside.h"
+#include "formats/mesh_reader.h"
+#include "formats/store.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef FORMATS_GLTF_H
 #define FORMATS_GLTF_H
 
-#include "json.h"
+#include "formats/json.h"
 
 typedef struct GltfAccessor GltfAccessor;
 struct GltfAccessor {

@@ -1,8 +1,8 @@
 // Polygons of a glTF's scene: a walk over its nodes, in whose order the vertices of their meshes' primitives follow
 // each other.
-#include "gltf.h"
-#include "mesh.h"
-#include "support.h"
+#include "formats/gltf.h"
+#include "formats/mesh_reader.h"
+#include "formats/store.h"
 
 #include <math.h>
 #include <string.h>

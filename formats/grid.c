@@ -7,8 +7,8 @@
 //
 // with mean 0 and mean square 1.
 
-#include "mesh.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/store.h"
 
 #include <math.h>
 #include <string.h>

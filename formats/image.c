@@ -1,5 +1,5 @@
-#include "codec.h"
-#include "support.h"
+#include "formats/codec.h"
+#include "formats/store.h"
 
 #include <string.h>
 

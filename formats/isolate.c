@@ -8,8 +8,8 @@
 #define _DEFAULT_SOURCE
 #endif
 
-#include "isolate.h"
-#include "support.h"
+#include "formats/isolate.h"
+#include "formats/store.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 #ifndef FORMATS_ISOLATE_H
 #define FORMATS_ISOLATE_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 typedef struct IsolateLimits {
     size_t memory;  ///< bytes that the function may take, and that its answer may have; at least 1 MiB

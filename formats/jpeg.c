@@ -1,7 +1,7 @@
 // JPEG by libjpeg. Like libpng it reports errors by a jump. libjpeg has no allocator hook: its own working memory
 // comes from libc, the picture and its row from the hook.
-#include "codec.h"
-#include "support.h"
+#include "formats/codec.h"
+#include "formats/store.h"
 
 #include <setjmp.h>
 #include <stdio.h> // jpeglib.h needs FILE

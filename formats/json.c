@@ -1,7 +1,7 @@
-#include "json.h"
+#include "formats/json.h"
 
-#include "number.h"
-#include "support.h"
+#include "formats/number.h"
+#include "formats/store.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef FORMATS_JSON_H
 #define FORMATS_JSON_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 typedef enum JsonKind { JSON_OBJECT, JSON_ARRAY, JSON_STRING, JSON_PLAIN } JsonKind; ///< plain: numbers, true, null
 

@@ -1,7 +1,7 @@
-#include "mesh_answer.h"
+#include "formats/mesh_answer.h"
 
-#include "mesh.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/store.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #ifndef FORMATS_MESH_ANSWER_H
 #define FORMATS_MESH_ANSWER_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 typedef struct MeshCounts {
     uint64_t vertices, faces, corners;

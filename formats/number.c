@@ -6,7 +6,7 @@
 // division of big integers. The fast path computes M 10^e in double precision (M of up to 19 digits,
 // |e| <= 22, relative error below 2^-51) and takes it wherever that error cannot change the rounding to
 // a float.
-#include "number.h"
+#include "formats/number.h"
 
 #include <math.h>
 #include <stdbool.h>

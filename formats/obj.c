@@ -1,8 +1,8 @@
 // Wavefront OBJ: v, vt and f; everything about looks and grouping is passed over.
-#include "mesh.h"
-#include "number.h"
-#include "support.h"
-#include "text.h"
+#include "formats/mesh_reader.h"
+#include "formats/number.h"
+#include "formats/store.h"
+#include "formats/lines.h"
 
 #include <string.h>
 

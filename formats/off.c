@@ -1,8 +1,8 @@
 // OFF: counts, a line of text for each vertex, then one for each face. Behind what is needed a line may have colours,
 // normals or texture coordinates, which are passed over.
-#include "mesh.h"
-#include "scan.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/scan.h"
+#include "formats/store.h"
 
 /// The header word may say what vertices have beside their positions: "OFF", "COFF", "STCNOFF".
 static SingeResult off_header(Scan *scan) {

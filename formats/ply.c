@@ -1,10 +1,10 @@
 // PLY meshes: ascii and binary of both byte orders. Elements other than "vertex" and "face", lists of a vertex and
 // whatever else a face has are passed over.
-#include "ply.h"
+#include "formats/ply.h"
 
-#include "mesh.h"
-#include "number.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/number.h"
+#include "formats/store.h"
 
 #include <math.h>
 

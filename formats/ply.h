@@ -2,8 +2,8 @@
 #ifndef FORMATS_PLY_H
 #define FORMATS_PLY_H
 
-#include "formats.h"
-#include "text.h"
+#include "formats/formats.h"
+#include "formats/lines.h"
 
 typedef enum PlyFormat { PLY_ASCII = 0, PLY_LITTLE, PLY_BIG } PlyFormat;
 

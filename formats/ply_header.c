@@ -1,8 +1,8 @@
-#include "ply.h"
+#include "formats/ply.h"
 
-#include "mesh.h"
-#include "number.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/number.h"
+#include "formats/store.h"
 
 #include <stdarg.h>
 #include <stdio.h>

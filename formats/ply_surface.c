@@ -1,8 +1,8 @@
 // The cache: a surface as a binary little-endian PLY file, one table for the writer and the reader.
-#include "mesh.h"
-#include "number.h"
-#include "ply.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/number.h"
+#include "formats/ply.h"
+#include "formats/store.h"
 
 #include <math.h>
 #include <stddef.h>

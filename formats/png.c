@@ -1,6 +1,6 @@
 // PNG by libpng. libpng reports errors by a jump: whatever must survive it lives in a struct, not in locals.
-#include "codec.h"
-#include "support.h"
+#include "formats/codec.h"
+#include "formats/store.h"
 
 #include <png.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 // The mesh formats, by the ending of the name. A new format is a file of its own and a line here.
-#include "mesh.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/store.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
-#include "scan.h"
+#include "formats/scan.h"
 
-#include "number.h"
-#include "support.h"
+#include "formats/number.h"
+#include "formats/store.h"
 
 #include <stdarg.h>
 #include <stdio.h>

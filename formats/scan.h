@@ -2,8 +2,8 @@
 #ifndef FORMATS_SCAN_H
 #define FORMATS_SCAN_H
 
-#include "formats.h"
-#include "text.h"
+#include "formats/formats.h"
+#include "formats/lines.h"
 
 /// A place in a text file, with what is needed to complain about it.
 typedef struct Scan {

@@ -3,7 +3,7 @@
 #define FORMATS_SINK_H
 
 #include "formats.h"
-#include "support.h"
+#include "formats/store.h"
 
 typedef struct Sink {
     uint8_t *bytes;

@@ -1,8 +1,8 @@
 // STL: triangles, each with its own three vertices, in text or in bytes. Their normals, names and the two bytes behind
 // each binary triangle are passed over.
-#include "mesh.h"
-#include "scan.h"
-#include "support.h"
+#include "formats/mesh_reader.h"
+#include "formats/scan.h"
+#include "formats/store.h"
 
 #include <math.h>
 

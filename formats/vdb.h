@@ -14,7 +14,7 @@
 #ifndef FORMATS_VDB_H
 #define FORMATS_VDB_H
 
-#include "gas.h"
+#include "formats/gas_grid.h"
 
 #define VDB_MAGIC 0x56444220u
 enum {

@@ -1,7 +1,7 @@
 // The OpenVDB files of vdb_write.c, and no others, back as a gas. Nothing in the bytes is believed before it is
 // checked; places in the tree outside of the gas are refused.
-#include "support.h"
-#include "vdb.h"
+#include "formats/store.h"
+#include "formats/vdb.h"
 
 #include <string.h>
 

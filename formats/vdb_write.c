@@ -1,7 +1,7 @@
 // A gas as an OpenVDB file (formats/vdb.h): one leaf for every block of cells that holds something, all of whose
 // cells are active.
-#include "support.h"
-#include "vdb.h"
+#include "formats/store.h"
+#include "formats/vdb.h"
 
 #include <stdio.h>
 #include <string.h>

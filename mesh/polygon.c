@@ -82,7 +82,7 @@ static bool is_star(double (*at)[2], uint32_t n) {
     return rounds == 1;
 }
 
-/// The quad at a corner of a ring that is split (split.c).
+/// The quad at a corner of a ring that is split (to_quads.c).
 static void corner_quad(double (*at)[2], uint32_t n, uint32_t i, const double middle[2], double quad[4][2]) {
     for (int k = 0; k < 2; k++) {
         quad[0][k] = at[i][k], quad[2][k] = middle[k];

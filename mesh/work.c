@@ -1,7 +1,7 @@
 // Memory, faces and edges of a mesh while it is repaired.
 #include "mesh/work.h"
 
-#include "formats/support.h"
+#include "formats/store.h"
 
 #include <math.h>
 #include <stdlib.h>

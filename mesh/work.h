@@ -132,7 +132,7 @@ uint32_t places_slot(const Places *places, const int64_t box[3]);
 
 /// Joins vertices on open edges that are as near as work->weld (weld.c).
 void mesh_weld(Work *work);
-/// Makes one of the ends of very short sides; work->smallest is a share of the median side (shrink.c).
+/// Makes one of the ends of very short sides; work->smallest is a share of the median side (collapse.c).
 SingeResult mesh_shrink(Work *work);
 /// Leaves out what has no area and what is there twice; faces that touch themselves, or that are not seen from their
 /// middle, fall apart (clean.c).
@@ -150,14 +150,14 @@ void mesh_join_sides(Work *work);
 void mesh_part_sides(Work *work);
 /// Cuts polygons into triangles and joins these to quads (pair.c, match.c). False when some triangle stays alone.
 bool mesh_pair(Work *work);
-/// Every face of n corners into n quads (split.c).
+/// Every face of n corners into n quads (to_quads.c).
 void mesh_split(Work *work);
 
 /// Share of sides between consecutive numbers from which on a mesh keeps its order.
 #define MESH_IN_ORDER 0.25
 /// Cells below which a mesh keeps its order.
 #define MESH_ORDER_LEAST 256
-/// Numbers vertices and quads row by row, unless they are (order.c).
+/// Numbers vertices and quads row by row, unless they are (renumber.c).
 void mesh_order(Work *work);
 
 /// Pairs of a graph's nodes: a largest set of edges that share no node, grown from `mate` (match.c). Node v's edges are

@@ -166,7 +166,7 @@ SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, c
     SINGE_PRINTF(4, 5);
 void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_size, size_t new_size);
 
-// camera.c
+// lens.c
 Camera camera_make(const PreviewDef *def);
 /// A ray through a point of the lens, `disc` within the unit circle.
 void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 *origin, V3 *direction);
@@ -190,7 +190,7 @@ void texture_free(const Preview *preview, Texture *texture);
 /// Linear colour; `texels` is a sample's width in texels of level 0.
 V3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
 
-// surface.c
+// mesh_in.c
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
 void tracer_free(Preview *preview);
 

@@ -2,7 +2,7 @@
 // as the fire leaves it and pales within some ten seconds, in patches; veins and the rims of holes are palest. Print
 // stays on it as a change of tone.
 
-#include "preview/paper.h"
+#include "preview/shade_paper.h"
 
 float ash_amount(const Bent *bent) {
     return stepf(0.78f, 0.94f, bent->burn + 0.06f * bent->coarse) * (1 - 0.75f * stepf(760, 1000, bent->temperature));

@@ -7,7 +7,7 @@
 // again for a moment when the time since it caught fire passes a delay that noise gives to it, so that the lines of one
 // delay wander over the ash as time goes by.
 
-#include "preview/paper.h"
+#include "preview/shade_paper.h"
 
 static float seconds(const Preview *preview) { return (float)fmod(preview->time, 4096.0); }
 

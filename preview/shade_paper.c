@@ -12,7 +12,7 @@
 // that browned stays brown: white - yellow - tan - brown by ln(P' - 293 K), which runs evenly over the distance to
 // the front; char by b' > 0.1, ash by b' > 0.8 once it has cooled (shade_ash.c), ember at b' = 0.74 (shade_ember.c).
 
-#include "preview/paper.h"
+#include "preview/shade_paper.h"
 
 /// Linear colours that multiply the paper's, by how far it is scorched in [0, 1].
 static V3 scorch_colour(float s) {

@@ -1,20 +1,26 @@
 #!/bin/bash
 # Data flows one way (docs/architecture.md): checks every #include against the arrows.
 #
-#   src/base      base
-#   src/shell     base, shell
-#   src/world     base, shell, world
-#   src/<stage>   base, shell, world and its own folder: heat, burn, ablate, dynamics, tear and gas never meet
-#   src/contact   base, shell; dynamics includes it too
-#   src/step      everything in src
-#   formats       formats
-#   mesh          mesh, formats
-#   preview       preview, formats
-#   scene         scene, formats, mesh/mesh.h, preview/preview.h
-#   bench         bench, mesh/mesh.h
-#   cli           cli, bench, scene, formats, mesh/mesh.h, preview/preview.h
+#   common          common
+#   src/shell       common
+#   src/world       common, shell
+#   src/<stage>     common, shell, world: heat, burn, ablate, dynamics, tear and gas never meet
+#   src/surface     common, shell, ablate
+#   src/collision   common, shell
+#   src/reference   common
+#   src/dynamics    also collision and reference
+#   src/sim         everything in src
+#   formats         formats
+#   mesh            formats
+#   preview         formats, common/float3.h
+#   scene           formats, mesh/mesh.h, preview/preview.h
+#   analysis        formats
+#   bench           mesh/mesh.h
+#   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h
+#   experiments     cli, and what it may include
 #
-# and the public headers for all. Only src and tests see src. include/singe sees itself alone.
+# and everyone the own folder and the public headers. Only src and tests see src. include/singe sees itself alone. No
+# header includes itself, directly or through others.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/.." && pwd)}
 cd "$root"
@@ -33,31 +39,49 @@ check() {
         fi
     done < <(grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$folder" --include='*.[ch]' || true)
     # the library's own parts are never reached by angle brackets either
-    if grep -rnHE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(base|shell|world|contact|heat|burn|ablate|dynamics|tear|gas|step)/' \
-        "$folder" --include='*.[ch]'; then bad=1; fi
+    if grep -rnHE "^[[:space:]]*#[[:space:]]*include[[:space:]]*<(common|$rooms)/" "$folder" --include='*.[ch]'; then bad=1; fi
 }
 
-check include 'singe/.*'
-check src/base 'singe/.*|base/.*'
-check src/shell 'singe/.*|base/.*|shell/.*'
-check src/world 'singe/.*|base/.*|shell/.*|world/.*'
-check src/contact 'singe/.*|base/.*|shell/.*|contact/.*'
+rooms='shell|world|heat|burn|ablate|tear|gas|surface|collision|reference|dynamics|sim'
+public='singe/.*'
+check include "$public"
+check common "$public|common/.*"
+check src/shell "$public|(common|shell)/.*"
+check src/world "$public|(common|shell|world)/.*"
 for stage in heat burn ablate tear gas; do
-    check src/$stage "singe/.*|base/.*|shell/.*|world/.*|$stage/.*"
+    check src/$stage "$public|(common|shell|world|$stage)/.*"
 done
-check src/dynamics 'singe/.*|(base|shell|world|contact|dynamics)/.*'
-check src/step 'singe/.*|(base|shell|world|contact|heat|burn|ablate|dynamics|tear|gas|step)/.*'
-check formats 'singe/.*|formats/.*'
-check mesh 'singe/.*|formats/.*|mesh/.*'
-check preview 'singe/.*|formats/.*|preview/.*'
-check scene 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*'
-check cli 'singe/.*|formats/.*|mesh/mesh\.h|preview/preview\.h|scene/.*|bench/.*|cli/.*'
-check bench 'singe/.*|mesh/mesh\.h|bench/.*'
-check examples 'singe/.*'
+check src/surface "$public|(common|shell|ablate|surface)/.*"
+check src/collision "$public|(common|shell|collision)/.*"
+check src/reference "$public|(common|reference)/.*"
+check src/dynamics "$public|(common|shell|world|collision|reference|dynamics)/.*"
+check src/sim "$public|(common|$rooms)/.*"
+outside="formats/.*|mesh/mesh\.h|preview/preview\.h"
+check formats "$public|formats/.*"
+check mesh "$public|(formats|mesh)/.*"
+check preview "$public|(formats|preview)/.*|common/float3\.h"
+check scene "$public|$outside|scene/.*"
+check analysis "$public|(formats|analysis)/.*"
+check bench "$public|mesh/mesh\.h|bench/.*"
+check cli "$public|$outside|(scene|analysis|bench|cli)/.*"
+check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"
+check examples "$public"
 
 # libsinge needs libc, libm and threads only
-if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|openexr|xxhash)' src include; then
+library=()
+for folder in src common include; do [ -d $folder ] && library+=($folder); done
+if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|openexr|xxhash)' "${library[@]}"; then
     echo "libsinge must not need other libraries"
+    bad=1
+fi
+
+# no circles: tsort names those that there are
+circles=$(find "${library[@]}" formats mesh scene preview analysis bench cli experiments -name '*.h' 2>/dev/null |
+    xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' |
+    sed -E 's,^(include|src)/,,; s,^([^:]*)/([^/:]*):[^"]*"([^"/]*)".*,\1/\2 \1/\3,; s,:[^"]*"([^"]*)".*, \1,' |
+    tsort 2>&1 >/dev/null || true)
+if [ -n "$circles" ]; then
+    echo "headers include each other: $circles"
     bad=1
 fi
 [ $bad -eq 0 ] && echo "includes follow the arrows"

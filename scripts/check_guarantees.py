@@ -3,7 +3,7 @@
 
 usage: check_guarantees.py ROOT BUILD FILE...
 
-A promise is an item of a list. It ends with its tests in brackets: [step_threads: any_number_of_threads;
+A promise is an item of a list. It ends with its tests in brackets: [sim_threads: any_number_of_threads;
 cli_resume: kill_and_resume]. Before the colon stands a test of ctest, or a make target of the Makefile, behind it the
 case in that test's sources: a C function, or a Python method with "test_" before it. A promise that no test can show
 ends with [not tested: REASON]; what is only described has no place in a list.

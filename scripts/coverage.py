@@ -16,7 +16,7 @@ import re
 import subprocess
 import sys
 
-FOLDERS = ("src", "formats", "scene", "mesh")
+FOLDERS = ("common", "src", "formats", "scene", "mesh")
 LINES, BRANCHES = 95.0, 85.0  # %, the bars
 
 

@@ -5,6 +5,6 @@
 #include "singe/base.h"
 #include "singe/types.h"
 #include "singe/sim.h"
-#include "singe/network.h"
+#include "singe/research.h"
 
 #endif

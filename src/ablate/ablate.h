@@ -2,7 +2,7 @@
 #ifndef ABLATE_ABLATE_H
 #define ABLATE_ABLATE_H
 
-#include "base/pool.h"
+#include "common/pool.h"
 #include "shell/shell.h"
 
 /// Scratch of the stage, built once.

@@ -2,7 +2,7 @@
 #ifndef BURN_BURN_H
 #define BURN_BURN_H
 
-#include "base/pool.h"
+#include "common/pool.h"
 #include "burn/volume.h"
 
 /// One step of length h: masses, times and target lengths. `thickening` holds F for every sheet; rates

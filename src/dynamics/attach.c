@@ -17,7 +17,7 @@
 // mesh may stretch by its compliance has no attachments.
 #include "dynamics/attach.h"
 
-#include "base/vec.h"
+#include "common/float3.h"
 
 /// Vertices that any kernel takes in whole blocks of lanes.
 enum { ATTACH_BLOCK = 16 };

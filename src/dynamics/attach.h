@@ -2,8 +2,8 @@
 #ifndef DYNAMICS_ATTACH_H
 #define DYNAMICS_ATTACH_H
 
-#include "base/bytes.h"
-#include "base/pool.h"
+#include "common/stream.h"
+#include "common/pool.h"
 #include "dynamics/geodesic.h"
 
 /// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps;

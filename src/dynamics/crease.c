@@ -52,8 +52,8 @@
 //
 // Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
 // and no more than that share of a bend comes to stay.
-#include "base/quad.h"
-#include "dynamics/plan.h"
+#include "common/float4.h"
+#include "dynamics/dynamics_plan.h"
 
 /// s, how long a bend must last.
 static const float CREASE_TIME = 0.02f;

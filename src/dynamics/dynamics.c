@@ -2,10 +2,10 @@
 //
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
-#include "base/clock.h"
-#include "dynamics/firmness.h"
-#include "dynamics/paper.h"
-#include "dynamics/plan.h"
+#include "common/clock.h"
+#include "dynamics/stiffness.h"
+#include "dynamics/paper_solver.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <string.h>
 

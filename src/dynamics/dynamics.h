@@ -2,9 +2,9 @@
 #ifndef DYNAMICS_DYNAMICS_H
 #define DYNAMICS_DYNAMICS_H
 
-#include "base/bytes.h"
-#include "base/pool.h"
-#include "contact/touch.h"
+#include "common/stream.h"
+#include "common/pool.h"
+#include "collision/collision.h"
 #include "shell/shell.h"
 #include "world/collider.h"
 #include "world/pin.h"

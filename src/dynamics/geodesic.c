@@ -12,7 +12,7 @@
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
 #include "dynamics/geodesic.h"
 
-#include "base/vec.h"
+#include "common/float3.h"
 
 #include <math.h>
 

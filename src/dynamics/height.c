@@ -11,8 +11,8 @@
 // centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
 // share no corner; family follows family. Where all centres of a block of cells are
 // twice as high as they must be, they are left alone for some substeps.
-#include "base/quad.h"
-#include "dynamics/plan.h"
+#include "common/float4.h"
+#include "dynamics/dynamics_plan.h"
 
 /// Substeps to wait, and cells that wait together.
 enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };

@@ -15,8 +15,8 @@
 //
 // Where a spring has burnt, what hangs on its cell may pull it open: held there, it would stretch what is whole beside
 // it.
-#include "base/quad.h"
-#include "dynamics/plan.h"
+#include "common/float4.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 

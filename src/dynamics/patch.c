@@ -8,9 +8,9 @@
 // The force f of a spring, from which line forces come, by the sums of mu = lambda/|d| over the projections of a step:
 //
 //   pull = f/|d| l/L = (sum mu) l/(L substeps h^2)    [N/m], target length l, length at rest L
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 
-#include "base/quad.h"
+#include "common/float4.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,8 +12,8 @@
 // it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
 // second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched. Where the nodes
 // are not in line or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
-#include "base/quad.h"
-#include "dynamics/plan.h"
+#include "common/float4.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 

@@ -5,7 +5,7 @@
 // E fuel J/m3, tau the time in which air and fuel mix, L_f = 1 - Ta/T_f of the hottest flame. L never passes L_f. So
 // fuel that comes in hot gas burns further up, where it has met cooler air: flames stand above what feeds them. Smoke
 // grows by what burns, and thins in the time it takes to be spread finer than the grid.
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
 static const float FLAME_TIME = 0.01f, SMOKE_TIME = 4;
 static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton

@@ -6,9 +6,9 @@
 // buoyancy, that makes flames lick and plumes sway:
 //
 //   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
-#include "base/random.h"
+#include "common/random.h"
 
 static const float FORCE_UNREST = 0.6f, FORCE_SIZE = 0.02f, FORCE_TIME = 0.08f; ///< -, m, s
 static const float FORCE_LIGHT = 0.02f;                                         ///< L from which there is any

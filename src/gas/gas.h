@@ -2,8 +2,8 @@
 #ifndef GAS_GAS_H
 #define GAS_GAS_H
 
-#include "base/bytes.h"
-#include "base/pool.h"
+#include "common/stream.h"
+#include "common/pool.h"
 #include "shell/shell.h"
 #include "singe/sim.h"
 #include "world/collider.h"

@@ -4,7 +4,7 @@
 // rhs half the sum of what its cells lack (a face is four times as large and twice as far). What it finds is added to
 // each of its cells. Smoothing is by Gauss and Seidel, red cells and black cells by turns: cells of a colour do not
 // see each other.
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
 #include <string.h>
 

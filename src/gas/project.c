@@ -11,7 +11,7 @@
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // it loses little to the averaging (as FLIP does for particles), and takes a small part of the faces' own mean, for
 // what is too short to be seen by faces at all.
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef GAS_SWEEP_H
 #define GAS_SWEEP_H
 
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
 enum { SWEEP_RUN = 128 }; ///< cells in a row at a time
 

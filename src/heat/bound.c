@@ -12,8 +12,8 @@
 // umbrella, which does not keep heat, it is counted as made.
 #include <math.h>
 
-#include "base/random.h"
-#include "heat/plan.h"
+#include "common/random.h"
+#include "heat/heat_plan.h"
 
 static double bound_within(const HeatPass *pass, double T) {
     return T > (double)pass->least ? fmin(T, (double)pass->most) : (double)pass->least;

@@ -24,8 +24,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/random.h"
-#include "heat/plan.h"
+#include "common/random.h"
+#include "heat/heat_plan.h"
 
 enum { CONDUCT_ITERATIONS = 200 };
 

@@ -21,7 +21,7 @@
 // capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
 #include <math.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
 static const float HEAT_COLDEST = 1; // K, to which a flux below 0 can cool

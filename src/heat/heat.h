@@ -2,7 +2,7 @@
 #ifndef HEAT_HEAT_H
 #define HEAT_HEAT_H
 
-#include "base/pool.h"
+#include "common/pool.h"
 #include "shell/shell.h"
 #include "world/collider.h"
 

@@ -2,7 +2,7 @@
 // entry loses its value when its spring does, and nothing of the springs need be kept.
 #include <string.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 /// Counts the entries of every row in `length`, or fills them in where `fill` is set: where tears have given a vertex
 /// more springs than its row has room for, the last ones conduct nothing.

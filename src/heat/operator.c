@@ -35,7 +35,7 @@
 //   area: corners hold yellow springs too. See heat_conduct for what the ledger makes of that.
 #include <math.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 static double operator_triangle(Vec a, Vec b, Vec c, Vec normal) {
     return vec_dot(vec_cross(vec_sub(b, a), vec_sub(c, a)), normal);

@@ -1,7 +1,7 @@
 // Groups at rest. Where a group of particles and all that it conducts with are at the ambient temperature and nothing
 // heats them, every term of eq 1 to 3 is zero to the bit: what conducts there need not be computed. In the k-th
 // iteration of the conjugate gradients heat reaches groups k links farther, and they wake one ring after another.
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 #include <string.h>
 

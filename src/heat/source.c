@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 // --- making one ---------------------------------------------------------------------------------------
 

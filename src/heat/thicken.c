@@ -20,7 +20,7 @@
 // One F holds for a whole sheet; parameters that vary over it come in by their means.
 #include <math.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 static const float THICKEN_CELLS = 0.75f;
 

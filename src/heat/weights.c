@@ -34,7 +34,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 enum { SIDES = 4, SPRINGS = 6, ITERATIONS = 50, STEEPEST = 5 };
 

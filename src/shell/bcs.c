@@ -12,7 +12,7 @@
 #include "shell/fibre.h"
 #include "shell/half_edge.h"
 #include "shell/matter.h"
-#include "shell/measure.h"
+#include "shell/rest_lengths.h"
 #include "shell/split.h"
 #include "shell/strand.h"
 

@@ -2,7 +2,7 @@
 #ifndef SHELL_CROSS_H
 #define SHELL_CROSS_H
 
-#include "base/quad.h"
+#include "common/float4.h"
 #include "shell/shell.h"
 
 /// Whether segment p-q passes through triangle a, b, c. The fourth numbers must be 0.

@@ -2,8 +2,8 @@
 #ifndef SHELL_FAMILY_H
 #define SHELL_FAMILY_H
 
-#include "base/error.h"
-#include "base/memory.h"
+#include "common/error.h"
+#include "common/memory.h"
 
 /// Items and the nodes they touch: item i touches nodes[first[i]] up to nodes[first[i + 1]], each once.
 typedef struct ItemNodes {

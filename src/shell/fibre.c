@@ -7,7 +7,7 @@
 // two cells has the mean of both.
 #include "shell/fibre.h"
 
-#include "base/vec.h"
+#include "common/float3.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef SHELL_FIELD_H
 #define SHELL_FIELD_H
 
-#include "base/memory.h"
+#include "common/memory.h"
 
 /// How many particles in a row field_run gives.
 enum { FIELD_RUN = 256 };

@@ -6,7 +6,7 @@
 // mean of the corners.
 #include "shell/sheet.h"
 
-#include "base/random.h"
+#include "common/random.h"
 #include "shell/matter.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // A sheet's Def: read whatever its version, checked, copied.
 #include "shell/sheet.h"
 
-#include "shell/measure.h"
+#include "shell/rest_lengths.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #ifndef SHELL_SHELL_H
 #define SHELL_SHELL_H
 
-#include "base/error.h"
+#include "common/error.h"
 #include "shell/field.h"
 #include "singe/sim.h"
 
@@ -201,7 +201,7 @@ typedef struct BurnState {
 } BurnState;
 
 typedef struct AblateState {
-    uint8_t *particle_flags; ///< SINGE_ALIVE; SINGE_PINNED repeats dynamics.pinned for views (step/objects.c sets both)
+    uint8_t *particle_flags; ///< SINGE_ALIVE; SINGE_PINNED repeats dynamics.pinned for views (sim/objects.c sets both)
     uint8_t *cell_flags;      ///< SINGE_ALIVE while any of its triangles is
     uint8_t *spring_flags[SINGE_COLOUR_COUNT];
     uint16_t *degree;         ///< [particles] springs alive at the particle

@@ -1,7 +1,7 @@
 #include "shell/split.h"
 
 #include "shell/matter.h"
-#include "shell/measure.h"
+#include "shell/rest_lengths.h"
 
 #include <string.h>
 

@@ -17,7 +17,7 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
 // averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by
 // s^2/4 (variance, an axis) at a time, and so does the mean over the cells at a vertex.
-#include "tear/plan.h"
+#include "tear/tear_plan.h"
 
 #include <math.h>
 #include <string.h>

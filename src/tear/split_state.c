@@ -1,11 +1,11 @@
 // What a split does to the State: the new particle is what the old one was, and the lips of the tear part a little.
 #include "shell/cross.h"
-#include "tear/plan.h"
+#include "tear/tear_plan.h"
 
 #include <string.h>
 
 /// How far each lip moves towards the middle of its own cells, of the way there: lips are never in one place, so that
-/// contact can tell their sides from the start. It is less than contact keeps free (contact/touch_plan.h), for it does
+/// contact can tell their sides from the start. It is less than contact keeps free (collision/collision_plan.h), for it does
 /// not look at what moves here.
 static const float LIP_GAP = 0.002f;
 

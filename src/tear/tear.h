@@ -6,7 +6,7 @@
 #ifndef TEAR_TEAR_H
 #define TEAR_TEAR_H
 
-#include "base/pool.h"
+#include "common/pool.h"
 #include "shell/shell.h"
 
 /// Scratch of the stage, built once.

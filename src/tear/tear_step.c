@@ -25,8 +25,8 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
 // it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
 // strengths are then lowered, all by one factor, so that the least is half of this.
-#include "base/random.h"
-#include "tear/plan.h"
+#include "common/random.h"
+#include "tear/tear_plan.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,9 +2,9 @@
 #ifndef WORLD_HEIGHT_SOLID_H
 #define WORLD_HEIGHT_SOLID_H
 
-#include "base/error.h"
-#include "base/memory.h"
-#include "base/vec.h"
+#include "common/error.h"
+#include "common/memory.h"
+#include "common/float3.h"
 
 typedef struct HeightSolid {
     uint32_t columns, rows;

@@ -2,10 +2,10 @@
 #ifndef WORLD_MESH_SOLID_H
 #define WORLD_MESH_SOLID_H
 
-#include "base/error.h"
-#include "base/memory.h"
-#include "base/quad.h"
-#include "base/vec.h"
+#include "common/error.h"
+#include "common/memory.h"
+#include "common/float4.h"
+#include "common/float3.h"
 
 /// Triangles at a leaf of the tree, and children of a node.
 enum { SOLID_WIDE = 4 };

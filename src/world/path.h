@@ -2,9 +2,9 @@
 #ifndef WORLD_PATH_H
 #define WORLD_PATH_H
 
-#include "base/error.h"
-#include "base/memory.h"
-#include "base/vec.h"
+#include "common/error.h"
+#include "common/memory.h"
+#include "common/float3.h"
 #include "singe/types.h"
 
 typedef struct Path {

@@ -3,7 +3,7 @@
 #ifndef WORLD_TRIANGLE_H
 #define WORLD_TRIANGLE_H
 
-#include "base/vec.h"
+#include "common/float3.h"
 
 /// Corners are 0 to 2, edges lie opposite to none: edge k runs from corner k to the next.
 typedef enum TriangleFeature {

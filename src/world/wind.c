@@ -1,7 +1,7 @@
 // Wind = mean + gust, each component of the gust a smooth noise over space and time.
 #include "world/wind.h"
 
-#include "base/random.h"
+#include "common/random.h"
 
 SingeResult wind_check(const SingeWindDef *def, SingeError *error) {
     const char *what = NULL;

@@ -2,8 +2,8 @@
 #ifndef WORLD_WIND_H
 #define WORLD_WIND_H
 
-#include "base/error.h"
-#include "base/vec.h"
+#include "common/error.h"
+#include "common/float3.h"
 #include "singe/types.h"
 
 SingeResult wind_check(const SingeWindDef *def, SingeError *error);

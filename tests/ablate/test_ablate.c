@@ -1,5 +1,5 @@
 // Removal by colour, ledgers, pieces and holes.
-#include "ablate/burning_sheet.h"
+#include "burning_sheet.h"
 
 #include "ablate/ablate.h"
 #include "burn/burn.h"

@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-LINE_STRENGTH = 1  # N/m, bench/tear.c
+LINE_STRENGTH = 1  # N/m, bench/measure_tear.c
 
 
 class Tear(unittest.TestCase):

@@ -1,13 +1,13 @@
 // Long-range attachments: what they hold, what they leave alone, and when they let go.
-#include "sheets.h"
+#include "sample_sheets.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/random.h"
-#include "dynamics/plan.h"
-#include "step/scenes.h"
+#include "common/random.h"
+#include "dynamics/dynamics_plan.h"
+#include "sim/scenes.h"
 
 enum { SIDE = 20, ROW = SIDE + 1 };
 static const float cell = 0.01f;

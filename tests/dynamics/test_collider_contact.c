@@ -1,8 +1,8 @@
 // Contact of sheets with colliders: nothing thin is passed, friction holds and gives way where it should, and what has
 // come to rest lies on meshes and heights without sinking in.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 #include "world/solids.h"
 
 #include <math.h>

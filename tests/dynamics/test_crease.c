@@ -1,5 +1,5 @@
 // Plastic creases: what a fold is, what of it stays, and what does not.
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 #include "support/support.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // The limit of curvature: what is bent too sharply, and what is not touched.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // Geodesic distances against those that are known: straight lines, unrolled surfaces, ways round a corner.
-#include "sheets.h"
+#include "sample_sheets.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // Internal friction, the order of the layers, and the weights of springs.
-#include "sheets.h"
+#include "sample_sheets.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 
 static const float pi = 3.14159265f;
 

@@ -1,8 +1,8 @@
 // The motion of whole sheets: fall, drag, free flight, friction, moving colliders, pins, threads.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "base/random.h"
-#include "dynamics/plan.h"
+#include "common/random.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 #include <setjmp.h>

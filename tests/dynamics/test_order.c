@@ -1,7 +1,7 @@
 // Layers stay in order: after every step each centre is in front of its cell's corners.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "dynamics/plan.h"
+#include "dynamics/dynamics_plan.h"
 #include "support/support.h"
 
 #include <math.h>

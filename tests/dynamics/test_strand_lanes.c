@@ -1,8 +1,8 @@
 // All kernels give the same bytes on meshes of every kind, and the layout that they share is dense.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "base/random.h"
-#include "dynamics/plan.h"
+#include "common/random.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 // A strand's Newton step against a dense solve of eq 16 and 19 in double precision, chains and rings.
-#include "sheets.h"
+#include "sample_sheets.h"
 
-#include "base/random.h"
-#include "dynamics/plan.h"
+#include "common/random.h"
+#include "dynamics/dynamics_plan.h"
 
 #include <math.h>
 #include <setjmp.h>

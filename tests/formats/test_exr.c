@@ -1,5 +1,5 @@
 // EXR written here, read back by OpenEXR itself.
-#include "support.h"
+#include "format_test.h"
 
 #include <math.h>
 #include <openexr.h>

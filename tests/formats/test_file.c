@@ -1,4 +1,4 @@
-#include "support.h"
+#include "format_test.h"
 
 #include <dirent.h>
 #include <signal.h>

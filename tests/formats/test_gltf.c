@@ -1,5 +1,5 @@
 // glTF: kinds of numbers and primitives, transforms, and what is refused. What lies beside it is in cli_meshes.
-#include "support.h"
+#include "format_test.h"
 
 #include <math.h>
 

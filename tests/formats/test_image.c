@@ -1,4 +1,4 @@
-#include "support.h"
+#include "format_test.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

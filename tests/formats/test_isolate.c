@@ -1,6 +1,6 @@
 // A function in a child: its answer, its errors, its crashes, and what it may take of memory and time.
 #include "formats/isolate.h"
-#include "support.h"
+#include "format_test.h"
 
 #include <errno.h>
 #include <pthread.h>

@@ -1,6 +1,6 @@
 // What a reader in a child process answers is checked as a file is.
 #include "formats/mesh_answer.h"
-#include "support.h"
+#include "format_test.h"
 
 #include <math.h>
 

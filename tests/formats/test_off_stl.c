@@ -1,5 +1,5 @@
 // OFF and STL: what is read, and what is refused with its line or byte.
-#include "support.h"
+#include "format_test.h"
 
 #include <math.h>
 

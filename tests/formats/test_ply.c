@@ -1,4 +1,4 @@
-#include "support.h"
+#include "format_test.h"
 
 #include <math.h>
 

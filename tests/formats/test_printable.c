@@ -1,5 +1,5 @@
 // Foreign text in messages: what is escaped, what is cut, and where.
-#include "support.h"
+#include "format_test.h"
 
 #include "formats/printable.h"
 

@@ -2,7 +2,7 @@
 // itself.
 
 #include "gas_sample.h"
-#include "support.h"
+#include "format_test.h"
 
 #include <unistd.h>
 

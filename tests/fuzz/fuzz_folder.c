@@ -6,7 +6,7 @@
 #include "cli/stats_table.h"
 #include "cli/text.h"
 #include "scene/scene.h"
-#include "tests/fuzz/input.h"
+#include "input.h"
 
 static void demand_inside(const uint8_t *data, size_t size, const char *value, size_t value_size) {
     const char *begin = (const char *)data;

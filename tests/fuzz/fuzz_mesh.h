@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "mesh/mesh.h"
-#include "tests/fuzz/input.h"
+#include "input.h"
 
 static inline void demand_mesh(const Polygons *mesh) {
     demand(mesh->vertex_count > 0 && mesh->face_count > 0 && mesh->positions && mesh->corners && mesh->first);

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/bytes.h"
-#include "tests/fuzz/input.h"
-#include "tests/step/scenes.h"
+#include "common/stream.h"
+#include "input.h"
+#include "sim/scenes.h"
 
 enum { SNAPSHOTS = 4, MESHED = 3, HEADER = 56, SIZE_AT = 16, CHECKSUM_AT = 24, CHANGES = 24, STEPS = 2 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "mesh/mesh.h"
-#include "tests/fuzz/input.h"
+#include "input.h"
 
 enum { SHEETS = 16, SIDE = 6, VERTICES = 64, FACES = 24, STEPS = 3 };
 

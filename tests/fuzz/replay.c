@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/fuzz/input.h"
+#include "input.h"
 
 static int give(const char *folder, const char *name) {
     char path[4096];

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gas/plan.h"
+#include "gas/gas_plan.h"
 
 /// A level sheet of 8 x 8 cells of 5 mm with gas above it, in steps of 1/72 s.
 typedef struct Air {

@@ -1,9 +1,9 @@
-#include "heat/rig.h"
+#include "rig.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/random.h"
+#include "common/random.h"
 
 RigDef rig_default(int nx, int ny, float dx, float dy) {
     RigDef def = {.nx = nx, .ny = ny, .dx = dx, .dy = dy, .material = singe_default_material()};

@@ -1,5 +1,5 @@
 // The diffusion operators against solutions of the heat equation.
-#include "heat/rig.h"
+#include "rig.h"
 
 #include <math.h>
 #include <string.h>

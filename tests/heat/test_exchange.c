@@ -1,5 +1,5 @@
 // What particles exchange with the air, and the failures of the step.
-#include "heat/rig.h"
+#include "rig.h"
 #include "support/support.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // The burning front on strips: its speed must not depend on the cells, thanks to the thickening.
-#include "heat/rig.h"
+#include "rig.h"
 
 #include <math.h>
 

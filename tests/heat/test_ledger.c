@@ -1,6 +1,6 @@
 // The ledger of heat: stored = in + combustion - lost, each counted by its own formula; and the same bits from any
 // number of threads.
-#include "heat/rig.h"
+#include "rig.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,9 +4,9 @@
 // share are two springs, as are the green ones between their centres:
 //
 //   cells a x b y and a y b z
-#include "heat/rig.h"
+#include "rig.h"
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 /// Values of row's entries in a column that are not 0, up to two.
 static int entries(const HeatMatrix *matrix, uint32_t row, uint32_t column, float found[2]) {

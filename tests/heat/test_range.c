@@ -1,8 +1,8 @@
 // The maximum principle: conduction never leaves the range of the temperatures that it starts from, on any mesh and
 // whatever has been removed.
-#include "heat/rig.h"
+#include "rig.h"
 
-#include "heat/plan.h"
+#include "heat/heat_plan.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // Every kind of heat source, by its formula.
-#include "heat/rig.h"
+#include "rig.h"
 
 #include <math.h>
 #include <stdlib.h>

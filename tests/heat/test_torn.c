@@ -1,8 +1,8 @@
 // A heat matrix that follows tears row by row is the one that is built anew, to the bit.
-#include "heat/rig.h"
+#include "rig.h"
 
-#include "heat/plan.h"
-#include "tear/plan.h"
+#include "heat/heat_plan.h"
+#include "tear/tear_plan.h"
 
 #include <string.h>
 

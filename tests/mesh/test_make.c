@@ -1,5 +1,5 @@
 // Quads out of triangles and polygons; what vertices keep; files of other formats.
-#include "meshes.h"
+#include "sample_meshes.h"
 
 static Text text;
 

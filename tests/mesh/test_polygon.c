@@ -1,5 +1,5 @@
 // Polygons of every shape become quads that cover exactly their area, or are refused with their line.
-#include "meshes.h"
+#include "sample_meshes.h"
 
 static Text text;
 

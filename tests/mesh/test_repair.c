@@ -1,5 +1,5 @@
 // What is welded, repaired, shrunk or refused.
-#include "meshes.h"
+#include "sample_meshes.h"
 
 static Text text;
 

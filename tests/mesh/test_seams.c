@@ -1,5 +1,5 @@
 // Seams of the uv in the drawn surface: pictures break there, the surface does not.
-#include "meshes.h"
+#include "sample_meshes.h"
 
 #include "singe/singe.h"
 

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "meshes.h"
+#include "sample_shells.h"
 #include "shell/sheet.h"
 
 /// A unit square of n x n cells with uv = (x, y).

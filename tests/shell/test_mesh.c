@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "meshes.h"
+#include "sample_shells.h"
 
 /// Makes the source and the shell; checks code and element of the failure, the sheet's name in the
 /// message, and that nothing is left allocated.

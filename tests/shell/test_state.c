@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "meshes.h"
+#include "sample_shells.h"
 
 /// A grid with one vertex that no cell uses, moving and with a temperature of its own.
 static Shell start_shell(Memory *memory) {

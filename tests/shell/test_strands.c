@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "meshes.h"
+#include "sample_shells.h"
 
 /// What a shell must have, by colour in the order red, green, blue, yellow; 0 families is any number.
 typedef struct Expected {

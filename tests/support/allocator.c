@@ -1,4 +1,4 @@
-#include "support/support.h"
+#include "support.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "support/support.h"
+#include "support.h"
 
 #include <locale.h>
 #include <stdbool.h>

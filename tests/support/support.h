@@ -12,7 +12,7 @@
 
 #include "singe/singe.h"
 
-// ---- meshes (mesh.c)
+// ---- meshes (make_mesh.c)
 
 /// A quad mesh whose arrays come from malloc. uv runs over [0, 1] squared.
 typedef struct TestMesh {
@@ -39,7 +39,7 @@ void test_mesh_move(TestMesh *mesh, float x, float y, float z);
 void test_mesh_raise(TestMesh *mesh);
 void test_mesh_free(TestMesh *mesh);
 
-// ---- simulations (sim.c)
+// ---- simulations (make_sim.c)
 
 /// Fails the test with the simulation's error unless the call succeeded.
 #define test_ok(sim, call) test_ok_at((sim), (call), #call, __FILE__, __LINE__)

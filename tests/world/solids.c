@@ -1,4 +1,4 @@
-#include "world/solids.h"
+#include "solids.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 // refused, and what a distance costs.
 #include "support/support.h"
 #include "world/collider.h"
-#include "world/solids.h"
+#include "solids.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,0 +1,31 @@
+// The triangles that cross others in the first frame of a cache: what begins so has no side to be kept on.
+#ifndef ANALYSIS_INITIAL_H
+#define ANALYSIS_INITIAL_H
+
+#include "analysis/cache.h"
+#include "analysis/crossings.h"
+#include "singe/sim.h"
+
+typedef struct InitialPlace {
+    float at[3];   ///< m, the triangle's middle at rest
+    float reach;   ///< m
+    int32_t sheet;
+} InitialPlace;
+
+typedef struct Initial {
+    InitialPlace *places; ///< in ascending order of x
+    size_t count;
+    float reach;          ///< m, the largest
+} Initial;
+
+/// Takes the triangles of pairs that cross. False when out of memory. Free it, after failure too.
+bool initial_take(Initial *initial, const CacheFrame *frame, const uint32_t (*pairs)[2], size_t count);
+void initial_free(Initial *initial);
+
+/// Counts the pairs of triangles of a surface that cross, and says where the first is. False when out of memory.
+bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]);
+
+/// Whether both triangles are of places that crossed something at the start.
+bool initial_has(const Initial *initial, const CacheFrame *frame, uint32_t a, uint32_t b);
+
+#endif

@@ -1,0 +1,19 @@
+// Meshes for what must not depend on how a mesh lies: squares and discs cut from a grid that is turned.
+#ifndef ANALYSIS_TURNED_GRID_H
+#define ANALYSIS_TURNED_GRID_H
+
+#include "formats/formats.h"
+
+typedef struct TurnedGrid {
+    double size;   ///< m, side of the square or diameter of the disc, centred at the origin in the x-y plane
+    int cells;     ///< along size
+    bool disc;
+    double angle;  ///< rad, of the grid's lines against x; the outline stays
+    GridWear wear; ///< of the grid before it is cut
+} TurnedGrid;
+
+/// The cells whose middle lies within the outline. Their vertices beyond it move onto it: a side that cuts across cells
+/// has teeth of half a cell at most. uv goes from (0,0) at (-x,-y) to (1,1), as the outline lies, whatever the angle.
+SINGE_NODISCARD SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error);
+
+#endif

@@ -1,0 +1,104 @@
+// The stage dynamics and its projection alone, by size: time, arithmetic and traffic against the machine's peaks.
+#include <math.h>
+#include <stdlib.h>
+
+#include "bench/bench.h"
+#include "bench/peaks.h"
+#include "bench/hung_sheet.h"
+#include "bench/strain.h"
+#include "bench/timing.h"
+
+
+
+enum {
+    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_LEAST, PROJECTION_MEDIAN, PROJECTION_LEAST, SWEEPS, NS, GFLOPS,
+    GFLOPS_SHARE, GB, GB_SHARE, MEMORY, BLUE, ALL, COLUMNS
+};
+
+static const BenchColumn columns[COLUMNS] = {
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},
+    [SOLVER] = {"solver", NULL, 11, NULL},
+    [THREADS] = {"threads", "%.0f", 7, NULL},
+    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
+    [STEP_LEAST] = {"least_ms", "%.4g", 8, NULL},
+    [PROJECTION_MEDIAN] = {"projection_ms", "%.4g", 13, NULL},
+    [PROJECTION_LEAST] = {"least_proj_ms", "%.4g", 13, NULL},
+    [SWEEPS] = {"sweeps", "%.0f", 6, NULL},
+    [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
+    [GFLOPS] = {"gflops", "%.2f", 7, NULL},
+    [GFLOPS_SHARE] = {"of_peak_pct", "%.1f", 11, NULL},
+    [GB] = {"gb_s", "%.2f", 7, NULL},
+    [GB_SHARE] = {"of_stream_pct", "%.1f", 13, NULL},
+    [MEMORY] = {"bytes_spring", "%.1f", 12, NULL},
+    [BLUE] = {"blue_pct", "%.3g", 20, "max/p99/mean"},
+    [ALL] = {"all_pct", "%.3g", 20, "max/p99/mean"},
+};
+
+static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Peaks *peaks, const SingeSim *sim,
+                           const Timing *timing) {
+    Strain *strain = malloc(2 * sizeof *strain);
+    if (!strain) return SINGE_ERROR_MEMORY;
+    SingeView view = singe_sim_view(sim);
+    strain_clear(&strain[0]), strain_clear(&strain[1]);
+    strain_add(&strain[0], &view, SINGE_BLUE);
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_add(&strain[1], &view, (SingeColour)colour);
+
+    const SingeTimers *t = &timing->total;
+    double springs = timing_springs(sim), seconds = t->projection_seconds;
+    double sweeps = (double)t->springs_projected / springs;
+    if (sweeps == 0) sweeps = (double)timing->steps * setup->solver.substeps * setup->solver.projections; // not counted
+    double working_set = t->projection_bytes / sweeps; // of one sweep over all springs
+    double gflops = 1e-9 * t->projection_flops / seconds, gb_s = 1e-9 * t->projection_bytes / seconds;
+    if (t->projection_flops == 0) gflops = NAN;
+    if (t->projection_bytes == 0) gb_s = NAN;
+    BenchValue row[COLUMNS] = {
+        [SPRINGS] = bench_number(springs),
+        [SOLVER] = bench_text(options_solver_name(setup->solver.method)),
+        [THREADS] = bench_number(setup->threads),
+        [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
+        [STEP_LEAST] = bench_number(timing_least(timing, SINGE_STAGE_DYNAMICS)),
+        [PROJECTION_MEDIAN] = bench_number(timing_median(timing, TIMED_PROJECTION)),
+        [PROJECTION_LEAST] = bench_number(timing_least(timing, TIMED_PROJECTION)),
+        [SWEEPS] = bench_number(sweeps / timing->steps),
+        [NS] = bench_number(1e9 * seconds / (sweeps * springs)),
+        [GFLOPS] = bench_number(gflops),
+        [GFLOPS_SHARE] = bench_number(100 * gflops / peaks->gflops),
+        [GB] = bench_number(gb_s),
+        [GB_SHARE] = bench_number(100 * gb_s / peaks_stream(peaks, working_set / setup->threads)),
+        [MEMORY] = bench_number((double)singe_sim_census(sim).memory / springs),
+        [BLUE] = strain_percent(&strain[0]),
+        [ALL] = strain_percent(&strain[1]),
+    };
+    bool added = table_add(table, row);
+    free(strain);
+    return added ? SINGE_OK : SINGE_ERROR_MEMORY;
+}
+
+static SingeResult measure(const BenchOptions *options, BenchSetup *setup, double springs, const Peaks *peaks,
+                           BenchTable *table, SingeError *error) {
+    SingeSim *sim;
+    Timing timing = {0};
+    setup->cells = options_cells(springs);
+    if (sheet_build(setup, &sim, error)) return error->code;
+    springs = timing_springs(sim);
+    int steps = options->steps ? options->steps : timing_steps(springs, 5, 200);
+    SingeResult result = timing_measure(&timing, sim, NULL, timing_steps(springs, 5, 240), steps);
+    if (result) *error = *singe_sim_error(sim);
+    else result = add_row(table, setup, peaks, sim, &timing);
+    timing_free(&timing);
+    singe_sim_destroy(sim);
+    return result;
+}
+
+SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, SingeError *error) {
+    BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
+    BenchSetup setup = sheet_setup(options, options->state, 20);
+    Peaks peaks;
+    *table = table_begin("dynamics", columns, COLUMNS, table->text);
+    if (!peaks_measure(&peaks, options->threads, options->quick ? 0.1 : 1)) return SINGE_ERROR_MEMORY;
+    peaks_tell(&peaks, table);
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < springs.count && !result; i++)
+        result = measure(options, &setup, springs.values[i], &peaks, table, error);
+    return result;
+}

@@ -1,0 +1,13 @@
+// printf whose decimal point is a point: the C library's follows the locale, which is the host's.
+#ifndef COMMON_FORMAT_H
+#define COMMON_FORMAT_H
+
+#include <stdarg.h>
+#include <stddef.h>
+
+/// As vsnprintf, without its result: at most `size` bytes with the closing zero, size > 0. Knows %d, %u, %x with the
+/// lengths l, ll and z, %s, %e, %f, %g and %%, with flags, widths and precisions in digits. Where it meets another
+/// conversion it ends the text.
+void text_print(char *out, size_t size, const char *format, va_list arguments);
+
+#endif

@@ -1,0 +1,27 @@
+// Work shared among threads: fixed blocks, so that results do not depend on the number of threads.
+#ifndef COMMON_POOL_H
+#define COMMON_POOL_H
+
+#include "common/memory.h"
+
+typedef struct Pool Pool;
+
+/// Items in one block of a reduction. Part of the numerics: sums are taken block by block.
+enum { POOL_BLOCK = 1024 };
+
+/// A pool of `thread_count` threads (the caller is one of them), or one that hands its work to
+/// `tasks` when that is set.
+SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **pool);
+void pool_destroy(Memory *memory, Pool *pool);
+
+/// Calls run(context, begin, end) over [0, count) in ranges of at least `grain` items, and returns when
+/// all are done. Items must be independent. A NULL pool runs everything here.
+void pool_for(Pool *pool, int count, int grain, SingeTaskFn *run, void *context);
+
+/// Sum over [0, count): sum(context, begin, end) is called for fixed blocks of POOL_BLOCK items and the
+/// blocks are added in order. `partial` holds pool_blocks(count) doubles.
+typedef double PoolSumFn(void *context, int begin, int end);
+double pool_sum(Pool *pool, int count, PoolSumFn *sum, void *context, double *partial);
+static inline int pool_blocks(int count) { return count / POOL_BLOCK + (count % POOL_BLOCK > 0); }
+
+#endif

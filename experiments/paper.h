@@ -1,0 +1,11 @@
+// `singe paper`: a function per experiment.
+#ifndef EXPERIMENTS_PAPER_H
+#define EXPERIMENTS_PAPER_H
+
+#include "experiments/page.h"
+
+LabFn paper_fig1, paper_fig2, paper_fig3, paper_fig4, paper_fig5, paper_fig6, paper_fig7ab, paper_fig7cd, paper_fig8,
+    paper_fig10, paper_fig11, paper_table1, paper_table2, paper_all_at_once, paper_mass_loss, paper_weights,
+    paper_rival, paper_readings, paper_adaptive, paper_whole, paper_heat, paper_alpha, paper_crossing, paper_statements;
+
+#endif

@@ -1,0 +1,30 @@
+// Lines over an axis, as SVG.
+#ifndef EXPERIMENTS_PLOT_H
+#define EXPERIMENTS_PLOT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "singe/base.h"
+
+typedef struct PlotLine {
+    const char *name, *colour;  ///< of SVG
+    const double *x, *y;        ///< [count]; x NULL: 0, 1, 2, ...; values that an axis cannot show are left out
+    int count;
+    bool dots, dashed;          ///< marks at the values alone; a broken line
+} PlotLine;
+
+enum { PLOT_LINES_MAX = 12 };
+
+typedef struct Plot {
+    const char *title, *x_label, *y_label;
+    bool log_x, log_y;
+    int line_count;
+    PlotLine lines[PLOT_LINES_MAX];
+} Plot;
+
+void plot_add(Plot *plot, PlotLine line);
+void plot_draw(const Plot *plot, FILE *file);
+SINGE_NODISCARD SingeResult plot_write(const Plot *plot, const char *path, SingeError *error);
+
+#endif

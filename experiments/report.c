@@ -1,0 +1,328 @@
+#include "experiments/report.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/folder.h"
+#include "cli/text.h"
+#include "formats/formats.h"
+
+/// A text that grows.
+typedef struct Draft {
+    FILE *file;
+    char *text;
+    size_t size;
+} Draft;
+
+/// What the end of the body must close.
+typedef enum Block { BLOCK_NONE, BLOCK_TABLE, BLOCK_PICTURES, BLOCK_MEASURES } Block;
+static const char *const block_ends[] = {
+    [BLOCK_NONE] = "", [BLOCK_TABLE] = "</table></div>\n", [BLOCK_PICTURES] = "</div>\n",
+    [BLOCK_MEASURES] = "</table></div>\n"};
+
+typedef struct Taken {
+    char *item, *name;
+    double value;
+    bool holds;
+} Taken;
+
+struct Report {
+    char *folder;
+    Draft page, index, csv, json, body; ///< `body` is of the item in hand
+    Block block;
+    char *name, *heading; ///< of the item in hand, NULL before the first
+    int pictures;         ///< of the item
+    int items, measures, failed, item_measures, item_failed;
+    Taken *taken;         ///< [measures]
+    SingeResult result;   ///< of the first picture that could not be written
+    SingeError error;
+};
+
+static const char style[] =
+    "body{font:15px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:1180px;margin:2em auto;padding:0 1em}"
+    "h1{font-size:1.7em;margin-bottom:.2em}h2{font-size:1.2em;margin:2.6em 0 .3em;border-top:1px solid #ddd;"
+    "padding-top:1em}table{border-collapse:collapse;margin:.6em 0;font-variant-numeric:tabular-nums}"
+    "td,th{padding:.15em .8em .15em 0;text-align:left;vertical-align:top;font-size:14px}th{color:#666;"
+    "font-weight:600;border-bottom:1px solid #ccc}.shows{color:#555}.wide{overflow-x:auto}"
+    ".pics{display:grid;gap:6px;margin:.8em 0}figure{margin:0}figure img{width:100%;display:block}"
+    "figcaption{font-size:12.5px;color:#555}.good{color:#187a3c}.bad{color:#b3261e}.tag{font-size:.75em;"
+    "font-weight:600;margin-left:.7em}code{font-size:12.5px;background:#f4f4f2;padding:.1em .3em}"
+    "svg{max-width:100%;height:auto}";
+
+static bool draft_open(Draft *draft) {
+    draft->file = open_memstream(&draft->text, &draft->size);
+    return draft->file != NULL;
+}
+
+static void draft_free(Draft *draft) {
+    if (draft->file) fclose(draft->file);
+    free(draft->text);
+    *draft = (Draft){0};
+}
+
+Report *report_open(const char *folder, const char *title, const char *lead, SingeError *error) {
+    if (folder_make(folder, error)) return NULL;
+    Report *report = calloc(1, sizeof *report);
+    if (!report || !draft_open(&report->page) || !draft_open(&report->index) || !draft_open(&report->csv) ||
+        !draft_open(&report->json)) {
+        *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+        if (report) draft_free(&report->page), draft_free(&report->index), draft_free(&report->csv);
+        free(report);
+        return NULL;
+    }
+    report->folder = text_format("%s", folder);
+    fprintf(report->index.file,
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>%s</title>\n"
+            "<meta name=\"viewport\" content=\"width=device-width\">\n<style>%s</style></head>\n<body>\n<h1>%s</h1>\n"
+            "<p>%s</p>\n<div class=\"wide\"><table><tr><th>item</th><th>measures</th><th>verdict</th></tr>\n",
+            title, style, title, lead);
+    fprintf(report->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what\n");
+    fprintf(report->json.file, "{\"title\": ");
+    text_json_string(report->json.file, title);
+    fprintf(report->json.file, ",\n \"measures\": [");
+    return report;
+}
+
+const char *report_folder(const Report *report) { return report->folder; }
+
+/// Goes on with blocks of one kind, or ends them.
+static FILE *body(Report *report, Block block) {
+    if (report->block != block) fputs(block_ends[report->block], report->body.file);
+    report->block = block;
+    return report->body.file;
+}
+
+static void finish_item(Report *report) {
+    if (!report->name) return;
+    body(report, BLOCK_NONE);
+    const char *class = report->item_failed ? "bad" : "good", *verdict = report->item_failed ? "fails" : "holds";
+    if (text_stream_end(report->body.file, &report->body.text)) {
+        fprintf(report->page.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
+                report->heading, class, verdict, report->body.text);
+        fprintf(report->index.file,
+                "<tr><td><a href=\"#%s\">%s</a></td><td>%d of %d</td><td class=\"%s\">%s</td></tr>\n", report->name,
+                report->heading, report->item_measures - report->item_failed, report->item_measures, class, verdict);
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
+    }
+    report->body.file = NULL;
+    draft_free(&report->body);
+    free(report->name), free(report->heading);
+    report->name = report->heading = NULL;
+}
+
+void report_item(Report *report, const char *name, const char *heading, const char *shows) {
+    finish_item(report);
+    report->name = text_format("%s", name), report->heading = text_format("%s", heading);
+    report->pictures = report->item_measures = report->item_failed = 0;
+    report->items++;
+    if (!draft_open(&report->body)) report->body.file = fopen("/dev/null", "w"), report->result = SINGE_ERROR_MEMORY;
+    printf("\n%s: %s\n", name, heading);
+    fprintf(report->body.file, "<p class=\"shows\"><b>The source:</b> %s</p>\n", shows);
+}
+
+void report_text(Report *report, const char *format, ...) {
+    FILE *file = body(report, BLOCK_NONE);
+    va_list list;
+    va_start(list, format);
+    fputs("<p>", file);
+    vfprintf(file, format, list);
+    fputs("</p>\n", file);
+    va_end(list);
+}
+
+/// The same row on standard output, in columns.
+static void echo(const char *text) {
+    printf(" ");
+    while (*text) {
+        int length = (int)strcspn(text, "|");
+        printf(" %*.*s", length > 11 ? length : 11, length, text);
+        text += length + (text[length] == '|');
+    }
+    printf("\n");
+    fflush(stdout);
+}
+
+/// Whether a cell of a table has no number, or a range of none: "nan", "+nan", "nan to nan".
+static bool is_nothing(const char *text, int length) {
+    text += strspn(text, "+-") < (size_t)length ? strspn(text, "+-") : 0;
+    return length >= 3 && strncmp(text, "nan", 3) == 0;
+}
+
+static void row(FILE *file, const char *text, const char *tag) {
+    echo(text);
+    fputs("<tr>", file);
+    for (;; text++) {
+        int length = (int)strcspn(text, "|");
+        if (is_nothing(text, length)) fprintf(file, "<%s>-</%s>", tag, tag);
+        else fprintf(file, "<%s>%.*s</%s>", tag, length, text, tag);
+        text += length;
+        if (!*text) break;
+    }
+    fputs("</tr>\n", file);
+}
+
+void report_heads(Report *report, const char *heads) {
+    body(report, BLOCK_NONE);
+    fputs("<div class=\"wide\"><table>\n", report->body.file);
+    row(body(report, BLOCK_TABLE), heads, "th");
+}
+
+void report_row(Report *report, const char *format, ...) {
+    char text[2000];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    row(body(report, BLOCK_TABLE), text, "td");
+}
+
+void report_pictures(Report *report, int columns) {
+    body(report, BLOCK_NONE);
+    fprintf(body(report, BLOCK_PICTURES), "<div class=\"pics\" style=\"grid-template-columns:repeat(%d,1fr)\">\n",
+            columns);
+}
+
+void report_picture(Report *report, const char *caption, int width, int height, const uint8_t *rgb) {
+    if (report->block != BLOCK_PICTURES) report_pictures(report, 4);
+    char *name = text_format("%s-%02d.png", report->name, ++report->pictures);
+    char *path = text_format("%s/%s", report->folder, name);
+    SingeError error;
+    SingeResult result = png_write(path, width, height, rgb, &error);
+    if (result && !report->result) report->result = result, report->error = error;
+    fprintf(report->body.file,
+            "<figure><img src=\"%s\" alt=\"%s\" width=\"%d\" "
+            "height=\"%d\"><figcaption>%s</figcaption></figure>\n", name,
+            caption, width, height, caption);
+    free(name), free(path);
+}
+
+void report_plot(Report *report, const Plot *plot) { plot_draw(plot, body(report, BLOCK_NONE)); }
+FILE *report_drawing(Report *report) { return body(report, BLOCK_NONE); }
+
+static void print_bar(FILE *file, double low, double high, const char *least, const char *most, const char *between) {
+    if (isfinite(low) && isfinite(high)) fprintf(file, between, low, high);
+    else if (isfinite(low)) fprintf(file, least, low);
+    else fprintf(file, most, high);
+}
+
+static void measure_json(Report *report, const ReportBar *bar, bool holds) {
+    FILE *file = report->json.file;
+    fprintf(file, "%s\n  {\"item\": \"%s\", \"measure\": \"%s\", \"value\": ", report->measures ? "," : "",
+            report->name, bar->name);
+    text_json_number(file, bar->value);
+    fprintf(file, ", \"low\": ");
+    text_json_number(file, bar->low);
+    fprintf(file, ", \"high\": ");
+    text_json_number(file, bar->high);
+    fprintf(file, ", \"holds\": %s, \"what\": ", holds ? "true" : "false");
+    text_json_string(file, bar->what);
+    if (bar->bad_what) {
+        fprintf(file, ", \"bad\": ");
+        text_json_number(file, bar->bad);
+        fprintf(file, ", \"bad_what\": ");
+        text_json_string(file, bar->bad_what);
+    }
+    fputc('}', file);
+}
+
+static void measure_csv(Report *report, const ReportBar *bar, bool holds) {
+    FILE *file = report->csv.file;
+    fprintf(file, "%s,%s,%.9g,%.9g,%.9g,%s,\"%s\",", report->name, bar->name, bar->value, bar->low, bar->high,
+            holds ? "holds" : "fails", bar->what);
+    if (bar->bad_what) fprintf(file, "%.9g,\"%s\"\n", bar->bad, bar->bad_what);
+    else fprintf(file, ",\n");
+}
+
+static void keep(Report *report, const ReportBar *bar, bool holds) {
+    Taken *larger = realloc(report->taken, ((size_t)report->measures + 1) * sizeof *larger);
+    if (larger) {
+        report->taken = larger;
+        larger[report->measures] =
+            (Taken){text_format("%s", report->name), text_format("%s", bar->name), bar->value, holds};
+        report->measures++;
+    } else {
+        report->result = SINGE_ERROR_MEMORY;
+    }
+    report->item_measures++;
+    if (!holds) report->failed++, report->item_failed++;
+}
+
+static bool within(double value, double low, double high) { return value >= low && value <= high; }
+
+void report_bar(Report *report, const ReportBar *bar) {
+    const bool blind = bar->bad_what && within(bar->bad, bar->low, bar->high);
+    const bool holds = within(bar->value, bar->low, bar->high) && !blind;
+    const char *verdict = blind ? "BAR TELLS NOTHING" : holds ? "holds" : "FAILS";
+    if (report->block != BLOCK_MEASURES)
+        fputs("<div class=\"wide\"><table><tr><th>measure</th><th>is</th><th>bar</th><th></th><th>a case that fails "
+              "it</th></tr>\n",
+              body(report, BLOCK_MEASURES));
+    FILE *file = body(report, BLOCK_MEASURES);
+    fprintf(file, "<tr><td>%s</td><td>%.4g</td><td>", bar->what, bar->value);
+    print_bar(file, bar->low, bar->high, "&ge; %.4g", "&le; %.4g", "%.4g to %.4g");
+    fprintf(file, "</td><td class=\"%s\">%s</td><td>", holds ? "good" : "bad", holds ? "holds" : "fails");
+    if (bar->bad_what) fprintf(file, "%.4g: %s", bar->bad, bar->bad_what);
+    fprintf(file, "</td></tr>\n");
+    printf("  %-26s %11.4g  ", bar->name, bar->value);
+    print_bar(stdout, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
+    printf("  %s", verdict);
+    if (bar->bad_what) printf("; not %.4g (%s)", bar->bad, bar->bad_what);
+    printf("\n");
+    fflush(stdout);
+    measure_csv(report, bar, holds);
+    measure_json(report, bar, holds);
+    keep(report, bar, holds);
+}
+
+void report_measure(Report *report, const char *name, const char *what, double value, double low, double high) {
+    report_bar(report, &(ReportBar){name, what, value, low, high, 0, NULL});
+}
+
+ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value) {
+    for (int i = 0; i < report->measures; i++) {
+        const Taken *taken = &report->taken[i];
+        if (strcmp(taken->item, item) || strcmp(taken->name, name)) continue;
+        *value = taken->value;
+        return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
+    }
+    return REPORT_UNKNOWN;
+}
+
+static SingeResult write_draft(const Report *report, const char *name, Draft *draft, const Draft *more,
+                               SingeError *error) {
+    char *path = text_format("%s/%s", report->folder, name);
+    if (more) fwrite(more->text, 1, more->size, draft->file);
+    const bool good = text_stream_end(draft->file, &draft->text);
+    draft->file = NULL;
+    SingeResult result = good ? file_write(path, draft->text, draft->size, error) : SINGE_ERROR_MEMORY;
+    if (!good) *error = (SingeError){.code = result, .element = -1};
+    free(path);
+    return result;
+}
+
+SingeResult report_close(Report *report, int *failed, SingeError *error) {
+    finish_item(report);
+    *failed = report->failed;
+    fprintf(report->page.file, "</body></html>\n");
+    fflush(report->page.file);
+    fprintf(report->index.file, "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
+            "measures.csv</a>, <a href=\"measures.json\">measures.json</a>.</p>\n",
+            report->measures - report->failed, report->measures);
+    fprintf(report->json.file, "\n ],\n \"failed\": %d}\n", report->failed);
+    SingeResult result = report->result;
+    if (result) *error = report->error, error->code = result;
+    if (!result) result = write_draft(report, "index.html", &report->index, &report->page, error);
+    if (!result) result = write_draft(report, "measures.csv", &report->csv, NULL, error);
+    if (!result) result = write_draft(report, "measures.json", &report->json, NULL, error);
+    draft_free(&report->page), draft_free(&report->index), draft_free(&report->csv), draft_free(&report->json);
+    draft_free(&report->body);
+    for (int i = 0; i < report->measures; i++) free(report->taken[i].item), free(report->taken[i].name);
+    free(report->taken);
+    free(report->folder), free(report->name), free(report->heading);
+    free(report);
+    return result;
+}

@@ -1,0 +1,62 @@
+// A page of experiments, as `singe paper` and `singe validate` write it: FOLDER/index.html, which needs nothing but the
+// pictures beside it, and its numbers as measures.csv and measures.json.
+//
+// A report is a list of items; an item is what a source shows, then tables, plots and pictures as they are added, and
+// measures. A measure is a number with the bar it is held against. Texts are HTML; captions and names plain.
+#ifndef EXPERIMENTS_REPORT_H
+#define EXPERIMENTS_REPORT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "experiments/plot.h"
+#include "singe/base.h"
+
+typedef struct Report Report;
+
+/// Makes the folder. NULL on failure, with *error filled.
+Report *report_open(const char *folder, const char *title, const char *lead, SingeError *error);
+
+/// Begins an item. `name` is that of its pictures and measures.
+void report_item(Report *report, const char *name, const char *heading, const char *shows);
+
+/// A paragraph.
+void report_text(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
+
+/// A table's headings and rows, their cells divided by '|'.
+void report_heads(Report *report, const char *heads);
+void report_row(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
+
+/// Pictures that follow each other stand side by side, `columns` in a row.
+void report_pictures(Report *report, int columns);
+void report_picture(Report *report, const char *caption, int width, int height, const uint8_t *rgb);
+
+void report_plot(Report *report, const Plot *plot);
+
+/// Where a drawing of one's own goes: SVG, whole elements with widths of their own.
+FILE *report_drawing(Report *report);
+
+/// Holds a number against a bar: low <= value <= high, either infinite where there is none. NaN does not hold.
+void report_measure(Report *report, const char *name, const char *what, double value, double low, double high);
+
+/// The same, with a case that must not hold: where `bad` passes the bar too, the bar tells nothing, and the measure
+/// fails. `bad_what` says what was measured for it.
+typedef struct ReportBar {
+    const char *name, *what;
+    double value, low, high, bad;
+    const char *bad_what;
+} ReportBar;
+void report_bar(Report *report, const ReportBar *bar);
+
+typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_FAILS } ReportVerdict;
+
+/// Whether a measure of an item holds, and its value; REPORT_UNKNOWN where it has not been taken.
+ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
+
+/// Where the report is.
+const char *report_folder(const Report *report);
+
+/// Writes the files and frees the report. *failed is the number of measures that do not hold.
+SINGE_NODISCARD SingeResult report_close(Report *report, int *failed, SingeError *error);
+
+#endif

@@ -1,0 +1,16 @@
+// Textures of the experiments: shown, and against what they did.
+#ifndef EXPERIMENTS_SHOW_TEXTURE_H
+#define EXPERIMENTS_SHOW_TEXTURE_H
+
+#include "experiments/lab.h"
+
+/// As it lies on the sheet, into the report.
+void texture_show(Lab *lab, const SingePicture *picture);
+
+/// The mean of its values.
+double texture_mean(const SingePicture *picture);
+
+/// Correlation of the texture, or of its mirror image, with a field of the vertices.
+double texture_correlation(const SingeView *view, const SingePicture *picture, bool mirrored, const float *field);
+
+#endif

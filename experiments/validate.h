@@ -1,0 +1,10 @@
+// `singe validate`: a function per check of the physics against sources outside the project.
+#ifndef EXPERIMENTS_VALIDATE_H
+#define EXPERIMENTS_VALIDATE_H
+
+#include "experiments/page.h"
+
+LabFn validate_heat, validate_umbrella, validate_front, validate_pmma, validate_disc, validate_beam, validate_kinetics,
+    validate_ledgers;
+
+#endif

@@ -1,0 +1,96 @@
+/// Singe: a free network of springs in double precision, for research into the constraint solver.
+///
+/// A network is particles, springs and sets of springs. Projecting a set is one Newton step of fast projection, eq 16
+/// to 19 of the paper: by the same code as SINGE_SOLVER_PAPER, on any network, one set after another as the caller
+/// likes. What one wants to know about a set's system can be read: errors, gradients, its matrix.
+///
+/// One thread at a time may call into one network; different networks are independent.
+#ifndef SINGE_RESEARCH_H
+#define SINGE_RESEARCH_H
+
+#include "singe/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct SingeNetwork SingeNetwork;
+
+/// A network. Everything is copied.
+typedef struct SingeNetworkDef {
+    size_t struct_size;
+    SingeAllocator allocator;
+    SingeTasks tasks;
+    int thread_count;             ///< 1 to 64; results do not depend on it
+    uint32_t particle_count;
+    const double *positions;      ///< [3 * particle_count] m
+    const double *inverse_masses; ///< [particle_count] 1/kg, >= 0, or NULL: 1 each
+    /// [particle_count] or NULL: none. What is held is in the system by its inverse mass, and put back afterwards; an
+    /// inverse mass of 0 is another thing: the system knows that it cannot move.
+    const uint8_t *held;
+    uint32_t spring_count;
+    const uint32_t *ends;         ///< [2 * spring_count] two different particles each
+    const double *lengths;        ///< [spring_count] m, targets, > 0
+    const double *weights;        ///< [spring_count] W of eq 19, 0 (not there) to 1, or NULL: 1 each
+    const double *compliances;    ///< [spring_count] m/N, >= 0, or NULL: 0 each
+    uint32_t set_count;           ///< at least 1
+    const uint32_t *sets;         ///< [spring_count] the set of each spring, or NULL: all are in set 0
+    /// C = |d|^2/l - l as eq 10 has it, without regularisation and compliance; else C = (|d|^2 - l^2)/(2 |d|)
+    bool literal;
+    double regularisation;        ///< added to the diagonal, relative to the mean of w_a and w_b, >= 0
+    double time_step;             ///< s, h in compliance/h^2, > 0
+    double tolerance;             ///< residual of the conjugate gradients, relative to the right-hand side, > 0 to 1
+    int iterations;               ///< of the conjugate gradients, at most; 1 to 1e6
+} SingeNetworkDef;
+
+SINGE_API void singe_init_network(SingeNetworkDef *def, size_t struct_size);
+
+/// Regularisation 1e-4, tolerance 1e-7, one set.
+static inline SingeNetworkDef singe_default_network(void) {
+    SingeNetworkDef def;
+    singe_init_network(&def, sizeof def);
+    return def;
+}
+
+/// Makes a network. On failure *network is NULL and *error (may be NULL) says why.
+SINGE_API SINGE_NODISCARD SingeResult singe_network_create(const SingeNetworkDef *def, SingeNetwork **network,
+                                                           SingeError *error);
+
+/// Frees a network; NULL is allowed.
+SINGE_API void singe_network_destroy(SingeNetwork *network);
+
+/// The positions, [3 * particle_count] m, to be read and written. The network owns them; valid until it is destroyed.
+SINGE_API double *singe_network_positions(SingeNetwork *network);
+
+/// Springs of a set; 0 where there is no such set. In what follows row i of a set is its i-th spring in the order of
+/// the Def.
+SINGE_API uint32_t singe_network_set_size(const SingeNetwork *network, uint32_t set);
+
+/// What a projection took.
+typedef struct SingeNetworkReport {
+    uint32_t iterations; ///< of the conjugate gradients
+    double residual;     ///< when they ended, relative to the right-hand side; 0 where that was 0
+} SingeNetworkReport;
+
+/// Projects one set: J M^-1 J^T lambda = W C, x -= M^-1 J^T lambda. Allocates nothing. *report may be NULL.
+/// SINGE_ERROR_ARGUMENT: there is no such set. SINGE_ERROR_DIVERGED: conjugate gradients met a system that is not
+/// positive definite, or numbers that are not finite; nothing was moved.
+SINGE_API SINGE_NODISCARD SingeResult singe_network_project(SingeNetwork *network, uint32_t set,
+                                                            SingeNetworkReport *report);
+
+/// C of every spring of a set at the present positions, in m, into [set size]. Returns their Euclidean norm. `errors`
+/// may be NULL.
+SINGE_API double singe_network_errors(const SingeNetwork *network, uint32_t set, double *errors);
+
+/// J M^-1/2 of a set at the present positions, into [set size][3 * particle_count]: its singular values squared are
+/// the eigenvalues of J M^-1 J^T, and its rank is that of the system.
+SINGE_API void singe_network_jacobian(SingeNetwork *network, uint32_t set, double *jacobian);
+
+/// The matrix of a set's system at the present positions, regularisation and compliance included, into
+/// [set size][set size], as the conjugate gradients have it. Springs of weight 0 have empty rows.
+SINGE_API void singe_network_matrix(SingeNetwork *network, uint32_t set, double *matrix);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,219 @@
+// Pairs of cells whose swept boxes meet.
+//
+// Swept boxes are sorted into the cubes of a hashed grid (Teschner et al., Optimized spatial hashing, 2003), whose
+// edge follows the boxes' mean extent, so the work is linear in the number of cells for any pile. A pair that shares
+// several cubes counts in the one where its common region begins: along each axis that cube is the first of one of the
+// two. Within a bucket a box is held against four others at once.
+#include "collision/broad_grid.h"
+
+#include <string.h>
+
+typedef struct Find {
+    TouchPlan *plan;
+    const Shell *shell;
+} Find;
+
+// ---- the grid
+
+/// The cubes' edge to begin with: twice the boxes' mean longest side. 0 where nothing is left.
+static float first_edge(const TouchPlan *plan) {
+    double sum = 0;
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (!plan->alive[c]) continue;
+        Quad size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
+        float longest = size[0] > size[1] ? size[0] : size[1];
+        sum += (double)(longest > size[2] ? longest : size[2]);
+        count++;
+    }
+    return count ? (float)(2 * sum / count) : 0;
+}
+
+static void put_entry(TouchPlan *plan, uint32_t cell, uint32_t key) {
+    const TouchBox *box = &plan->boxes[cell];
+    Quad low = box->swept_low, high = box->swept_high;
+    plan->entries[plan->bucket_first[touch_bucket(plan, key & TOUCH_KEY) + 1]++] = (TouchEntry){
+        .low = {low[0], low[1], low[2]}, .cell = cell, .high = {high[0], high[1], high[2]}, .key = key};
+}
+
+/// Calls for every cube of every swept box: counts the entries of buckets, or writes them.
+static uint64_t fill_grid(TouchPlan *plan, bool writing) {
+    float inverse = 1 / plan->edge;
+    uint64_t count = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++) {
+        if (!plan->alive[c]) continue;
+        const TouchBox *box = &plan->boxes[c];
+        Cube first = touch_cube(box->swept_low, inverse), last = touch_cube(box->swept_high, inverse), at = first;
+        count += touch_cubes(first, last, plan->sizes.entries);
+        if (count > plan->sizes.entries) return count;
+        for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+            for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+                for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                    uint32_t key = touch_key(at);
+                    if (writing) put_entry(plan, c, key | (quad_bits(at == first) & 7) << 29);
+                    else plan->bucket_first[touch_bucket(plan, key) + 2]++;
+                }
+    }
+    return count;
+}
+
+static void clear_buckets(TouchPlan *plan) {
+    memset(plan->bucket_first, 0, ((size_t)plan->bucket_count + 2) * sizeof *plan->bucket_first);
+}
+
+static void sort_into_grid(TouchPlan *plan) {
+    plan->entry_count = 0;
+    plan->edge = first_edge(plan);
+    clear_buckets(plan);
+    uint64_t count = 0;
+    for (; plan->edge > 0; plan->edge *= 1.3f) {
+        if (!(plan->edge < 1e30f)) plan->edge = 0; // a place is not finite: the step will tell
+        else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
+        clear_buckets(plan);
+    }
+    if (!(plan->edge > 0)) return;
+    for (uint32_t b = 0; b < plan->bucket_count; b++) plan->bucket_first[b + 2] += plan->bucket_first[b + 1];
+    fill_grid(plan, true);
+    plan->entry_count = (uint32_t)count;
+}
+
+// ---- pairs
+
+/// How far apart b's corners lie from a's slab; negative where they do not.
+static inline float slab_gap(const TouchSlab *a, const TouchSlab *b) {
+    Quad n = a->normal;
+    Quad along = (b->x - a->x[0]) * n[0] + (b->y - a->y[0]) * n[1] + (b->z - a->z[0]) * n[2];
+    Quad swapped = QUAD_SHUFFLE(along, along, 2, 3, 0, 1);
+    Quad low = quad_min(along, swapped), high = quad_max(along, swapped);
+    float least = low[0] < low[1] ? low[0] : low[1], most = high[0] > high[1] ? high[0] : high[1];
+    return least - a->high > a->low - most ? least - a->high : a->low - most;
+}
+
+bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *distance) {
+    const TouchBox *p = &plan->boxes[a], *q = &plan->boxes[b];
+    Quad way = q->way - p->way, zero = {0};
+    // b's box, on its way relative to a
+    Quad low = q->low + quad_min(way, zero), high = q->high + quad_max(way, zero);
+    if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
+    Quad apart = quad_max(quad_max(q->low - p->high, p->low - q->high), zero);
+    float boxes = quad_dot(apart, apart), far = plan->reach + sqrtf(quad_dot(way, way)) + p->way[3] + q->way[3];
+    if (boxes > far * far) return false;
+    const TouchSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
+    float one = slab_gap(s, t), two = slab_gap(t, s), slabs = one > two ? one : two;
+    if (slabs > far) return false;
+    boxes = sqrtf(boxes);
+    float least = (slabs > boxes ? slabs : boxes) - 4 * plan->noise;
+    *distance = least > 0 ? least : 0;
+    return true;
+}
+
+static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) {
+    QuadMask p, q;
+    memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
+    QuadMask same = (p == q) + (p == QUAD_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == QUAD_SHUFFLE(q, q, 2, 3, 0, 1)) +
+                    (p == QUAD_SHUFFLE(q, q, 3, 0, 1, 2));
+    return 0x4332322132212110u >> 4 * quad_bits(same < 0) & 7; // number of bits set; no two of a are one of b
+}
+
+uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
+    // across a tear or a hole two cells may share a corner and yet slide over each other
+    uint32_t shared = corners_shared(shell->cells[a], shell->cells[b]);
+    if (shared != 1) return shared ? a : SHELL_NONE;
+    for (int side = 0; side < 4; side++) {
+        uint32_t between = shell_neighbour(shell, a, side);
+        if (between != SHELL_NONE && plan->alive[between] &&
+            corners_shared(shell->cells[a], shell->cells[between]) > 1 &&
+            corners_shared(shell->cells[between], shell->cells[b]) > 1)
+            return between;
+    }
+    return SHELL_NONE;
+}
+
+static void list_pair(const Find *find, uint32_t a, uint32_t b, TouchWriter *writer) {
+    float distance;
+    if (!touch_is_listed(find->plan, a, b, &distance)) return;
+    TouchPair *pair = touch_list_add(writer);
+    if (!pair) return;
+    uint32_t bridge = touch_bridge(find->plan, find->shell, a, b);
+    *pair = (TouchPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
+}
+
+/// Entries of a bucket, a number after another.
+enum { TILE = 256 };
+typedef struct Tile {
+    float low[3][TILE], high[3][TILE];
+    int32_t key[TILE], firsts[TILE];
+    uint32_t count;
+} Tile;
+
+static void fill_tile(const TouchEntry *entries, uint32_t count, Tile *tile) {
+    tile->count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) tile->low[k][i] = entries[i].low[k], tile->high[k][i] = entries[i].high[k];
+        tile->key[i] = (int32_t)(entries[i].key & TOUCH_KEY);
+        tile->firsts[i] = (int32_t)(entries[i].key >> 29);
+    }
+    for (uint32_t i = count; i & 3; i++) tile->key[i] = -1;
+}
+
+/// Bit k is set where the tile's entry j + k is in the same cube, which is where the two boxes' common region begins.
+static inline unsigned meet_four(const Tile *tile, uint32_t j, const TouchEntry *entry) {
+    QuadMask meet = quad_load_ints(tile->key + j) == (int32_t)(entry->key & TOUCH_KEY);
+    meet &= (quad_load_ints(tile->firsts + j) | (int32_t)(entry->key >> 29)) == 7;
+    for (int k = 0; k < 3; k++)
+        meet &= (quad_load(tile->low[k] + j) <= quad_all(entry->high[k])) &
+                (quad_load(tile->high[k] + j) >= quad_all(entry->low[k]));
+    return quad_bits(meet);
+}
+
+static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t count, Tile *tile,
+                         TouchWriter *writer) {
+    for (uint32_t first = 0; first < count; first += TILE) {
+        fill_tile(entries + first, count - first < TILE ? count - first : TILE, tile);
+        for (uint32_t i = 0; i < first + tile->count && !touch_list_is_full(writer); i++) {
+            uint32_t after = i < first ? 0 : i - first + 1;
+            for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
+                unsigned meet = meet_four(tile, j, &entries[i]);
+                if (j < after) meet &= 15u << (after - j);
+                for (; meet; meet &= meet - 1)
+                    list_pair(find, entries[i].cell, entries[first + j + (unsigned)__builtin_ctz(meet)].cell, writer);
+            }
+        }
+    }
+}
+
+static void pair_block(void *context, TouchList *list, int block) {
+    const Find *find = context;
+    const TouchPlan *plan = find->plan;
+    TouchWriter writer = touch_list_begin(list, block);
+    Tile tile;
+    uint32_t first = (uint32_t)block * TOUCH_BUCKETS, last = first + TOUCH_BUCKETS;
+    if (last > plan->bucket_count) last = plan->bucket_count;
+    for (uint32_t b = first; b < last && !touch_list_is_full(&writer); b++) {
+        uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
+        if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);
+    }
+    touch_list_end(&writer);
+}
+
+static void keep_pair(void *context, const void *item, uint32_t number) {
+    const Find *find = context;
+    memcpy(&find->plan->pairs[number], item, sizeof(TouchPair));
+}
+
+static int grid_blocks(const TouchPlan *plan) {
+    return (int)((plan->bucket_count + TOUCH_BUCKETS - 1) / TOUCH_BUCKETS);
+}
+
+uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool) {
+    Find find = {plan, shell};
+    sort_into_grid(plan);
+    return touch_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_most, pair_block, &find);
+}
+
+void touch_grid_keep(TouchPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
+    Find find = {plan, shell};
+    int blocks = grid_blocks(plan);
+    plan->pair_count = touch_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
+    touch_list_read(&plan->found_pairs, pool, blocks, plan->pair_count, keep_pair, &find);
+}

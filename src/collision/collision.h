@@ -1,0 +1,68 @@
+// Sheets do not pass through themselves nor through each other.
+//
+// What must not cross is the drawn mesh: a cell's four triangles around its virtual centre, the mean of its corners
+// (sections 6 and 7 of the paper let layers pass through each other). Twice in a step this part of the dynamics acts:
+//
+//   in every substep   points of two cells that are nearer than the contact thickness are pushed apart, with friction
+//                      (repulsion.c)
+//   at the step's end  no way from the last step's places to the present ones may lead through another cell: where it
+//                      does, what meets goes only as far as is free (ccd.c). That is a guarantee, not a force
+//
+// Both look at pairs of cells that are near, which are found anew when cells have used up the motion that the last
+// search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. Where there are more
+// pairs than a list has room for, it grows (collision_capacity.c).
+#ifndef COLLISION_COLLISION_H
+#define COLLISION_COLLISION_H
+
+#include "common/stream.h"
+#include "common/pool.h"
+#include "shell/shell.h"
+
+typedef struct TouchPlan TouchPlan;
+
+SingeResult touch_check(const SingeContactDef *def, SingeError *error);
+
+/// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
+SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                              TouchPlan **plan);
+void touch_plan_free(Memory *memory, TouchPlan *plan);
+
+/// What the plan remembers of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
+/// reading; what does not fit fails the stream.
+SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
+
+/// To be called when cells have other corners than before.
+void touch_plan_forget(TouchPlan *plan);
+
+/// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as touch_guard:
+/// where sheets crowd, lists grow. Then the step is to be undone; the next one searches anew.
+SingeResult touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
+
+/// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
+void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
+
+/// Closes the step: no cell of the drawn mesh has passed through another since touch_open.
+SingeResult touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                        DynamicsState *dynamics);
+
+/// What has been done since the plan was made.
+typedef struct TouchCounters {
+    uint64_t searches;   ///< for pairs that are near
+    uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
+    uint64_t pushes;     ///< pairs of points that a substep had to push apart, summed over substeps
+    uint64_t stops;      ///< pairs of cells whose way was cut short
+    uint64_t looks;      ///< pairs of cells that were looked at again, as a round had moved one of them
+    uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
+    uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
+    uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
+    uint32_t tangled_first; ///< the lowest of them
+    double seconds;
+} TouchCounters;
+
+TouchCounters touch_counters(const TouchPlan *plan);
+
+/// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the drawn
+/// surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
+void touch_room(const TouchPlan *plan, const Shell *shell, const State *state, float *room);
+
+#endif

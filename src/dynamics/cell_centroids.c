@@ -1,0 +1,83 @@
+// Contact of the cells between particles. What is smaller than a cell would reach through it, for particles of a layer
+// are a cell apart. So the mean of a cell's corners,
+//
+//   x = (x_0 + x_1 + x_2 + x_3)/4,
+//
+// touches colliders as a particle does, with friction, and its corners go where it goes; those that are held stay.
+// Cells of one family share no corner; family follows family. The particles' own contact comes after it and has the
+// last word.
+#include "dynamics/dynamics_plan.h"
+
+typedef struct Middle {
+    const DynamicsPlan *plan;
+    const Shell *shell;
+    const AblateState *ablate;
+    DynamicsState *dynamics;
+    const uint32_t *cells; ///< of the family
+    uint32_t collider_count;
+    float h;
+} Middle;
+
+/// Of the offset, how much cells keep: less than all, so that what lies on something flat is left to its particles.
+static const float MIDDLE_SHARE = 0.875f;
+
+/// Whether a place is nearer to a collider than that.
+static bool middle_is_near(const MovingCollider *moving, float limit, Vec place) {
+    const Collider *collider = moving->collider;
+    Vec from = vec_sub(place, moving->after.position), normal;
+    for (int i = 2; i >= 0; i--) {
+        float along = vec_dot(from, moving->axis[i]);
+        if (!(along < moving->high[i] && along > moving->low[i])) return false;
+    }
+    return collider_distance(collider, quat_unrotate(moving->after.rotation, from), limit, &normal) < limit;
+}
+
+static Vec middle_previous(const Middle *job, const uint32_t corner[4]) {
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) {
+        Vec predicted = vec_load(job->plan->predicted[corner[i]]);
+        sum = vec_add(sum, vec_mad(predicted, vec_load(job->dynamics->velocity[corner[i]]), -job->h));
+    }
+    return vec_scale(sum, 0.25f);
+}
+
+static void middle_cell(const Middle *job, const uint32_t corner[4]) {
+    float(*position)[4] = job->dynamics->position;
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = vec_add(sum, vec_load(position[corner[i]]));
+    Vec mean = vec_scale(sum, 0.25f);
+    float place[3];
+    bool touched = false;
+    vec_store(place, mean);
+    for (uint32_t c = 0; c < job->collider_count; c++) {
+        const MovingCollider *collider = &job->plan->colliders[c];
+        // nothing of a plane lies between places outside of it
+        if (collider->collider->def.kind == SINGE_COLLIDER_PLANE) continue;
+        float offset = MIDDLE_SHARE * collider->collider->def.offset;
+        if (middle_is_near(collider, offset, vec_load(place)))
+            touched |= contact_particle(collider, offset, middle_previous(job, corner), place);
+    }
+    if (!touched) return;
+    Vec moved = vec_sub(vec_load(place), mean);
+    for (int i = 0; i < 4; i++) {
+        float *x = position[corner[i]];
+        if (x[3] > 0) vec_store(x, vec_add(vec_load(x), moved));
+    }
+}
+
+static void middle_cells(void *task, int begin, int end) {
+    const Middle *job = task;
+    for (int k = begin; k < end; k++)
+        if (job->ablate->cell_flags[job->cells[k]] & SINGE_ALIVE) middle_cell(job, job->shell->cells[job->cells[k]]);
+}
+
+void contact_middles(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
+                     Pool *pool, float h, DynamicsState *dynamics) {
+    bool any = false;
+    for (uint32_t c = 0; c < collider_count; c++) any |= plan->colliders[c].collider->def.kind != SINGE_COLLIDER_PLANE;
+    for (uint32_t f = 0; any && f < shell->cell_family_count; f++) {
+        uint32_t first = shell->cell_family_first[f], count = shell->cell_family_first[f + 1] - first;
+        Middle job = {plan, shell, ablate, dynamics, shell->cell_order + first, collider_count, h};
+        pool_for(pool, (int)count, POOL_BLOCK, middle_cells, &job);
+    }
+}

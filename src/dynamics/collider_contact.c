@@ -1,0 +1,175 @@
+// Contact with colliders (section 7), with Coulomb friction. A substep has one projection, of all colours in
+// their order, and contact closes it: once a substep, after the colours.
+//
+// A particle nearer than the collider's offset is moved out along the normal by its depth p. Its slip
+// over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction
+// as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
+//
+// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its way
+// over the collider in this substep is longer than its distance, the way is followed from its start, in the collider's
+// frame, by steps that the distance allows (contact_enters); what enters goes back to the plane that touches the
+// surface there.
+#include "common/float4.h"
+#include "dynamics/dynamics_plan.h"
+
+/// m/s, relative to a collider: what is faster may pass what is smaller than its way in a substep.
+static const float CONTACT_SPEED = 20;
+
+/// Parts of the way that it is followed in at most.
+enum { CONTACT_STEPS = 128 };
+
+/// As far outside of a surface as this, of the offset or in m, counts as there.
+static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_LEAST = 1e-6f;
+
+/// How far any point of a box about the origin moves between two poses.
+static float contact_motion(const Pose *before, const Pose *after, float size) {
+    float turn = 0, back = 0;
+    for (int k = 0; k < 4; k++) {
+        float a = after->rotation[k] - before->rotation[k], b = after->rotation[k] + before->rotation[k];
+        turn += a * a, back += b * b;
+    }
+    float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
+    return vec_length(vec_sub(after->position, before->position)) + (angle > 1e-6f ? angle * size : 0);
+}
+
+MovingCollider contact_collider(const Collider *collider, double before, double after) {
+    MovingCollider moving = {.collider = collider, .before = path_pose(&collider->path, before),
+                             .after = path_pose(&collider->path, after)};
+    Vec low, high;
+    collider_bounds(collider, &low, &high);
+    const float ends[3][2] = {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}};
+    float size = 0;
+    for (int i = 0; i < 3; i++) {
+        float far = fmaxf(fabsf(ends[i][0]), fabsf(ends[i][1]));
+        if (isfinite(far)) size += far * far; // what has no end along an axis is taken not to turn about another
+    }
+    float margin = collider->def.offset + CONTACT_SPEED * (float)(after - before) +
+                   contact_motion(&moving.before, &moving.after, sqrtf(size));
+    for (int i = 0; i < 3; i++) {
+        float unit[3] = {0, 0, 0};
+        unit[i] = 1;
+        moving.axis[i] = quat_rotate(moving.after.rotation, vec_load(unit));
+        moving.low[i] = ends[i][0] - margin, moving.high[i] = ends[i][1] + margin;
+    }
+    return moving;
+}
+
+/// Where a way enters a collider, and the normal there.
+typedef struct Entry {
+    Vec place, normal;
+    float distance;
+} Entry;
+
+/// Follows the way from `from`, outside, to `to`, in the collider's frame.
+static bool contact_enters(const Collider *collider, Vec from, Vec to, Entry *entry) {
+    float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_LEAST);
+    Vec way = vec_sub(to, from);
+    float length = vec_length(way), least = fmaxf(length / CONTACT_STEPS, skin), done = 0;
+    while (done < length) {
+        Entry next = {.place = vec_mad(from, way, done / length)};
+        next.distance = collider_distance(collider, next.place, length - done, &next.normal);
+        if (next.distance >= length - done) return false; // the rest of the way is free
+        bool began = done > 0, turned = began && entry->distance < least && vec_dot(entry->normal, next.normal) < -0.5f;
+        if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
+        *entry = next;
+        if (next.distance <= skin && vec_dot(way, next.normal) < 0) return true;
+        done += fmaxf(next.distance, least);
+    }
+    return false;
+}
+
+/// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is along which way.
+static float contact_out(const Collider *collider, float offset, Vec from, Vec *to, Vec *normal) {
+    float way = vec_length(vec_sub(*to, from));
+    float distance = collider_distance(collider, *to, offset + way, normal);
+    Entry entry = {0};
+    // behind a plane, however far, the way out is up
+    if (distance < way && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
+        (distance >= offset || vec_dot(entry.normal, *normal) < 0.5f)) {
+        float depth = offset - entry.distance - vec_dot(vec_sub(*to, entry.place), entry.normal);
+        *to = vec_mad(*to, entry.normal, depth);
+        Vec there;
+        float rest = offset - collider_distance(collider, *to, offset, &there);
+        if (rest > 0) *to = vec_mad(*to, there, rest);
+        *normal = entry.normal;
+        return depth;
+    }
+    if (distance >= offset) return 0;
+    *to = vec_mad(*to, *normal, offset - distance);
+    return offset - distance;
+}
+
+bool contact_particle(const MovingCollider *moving, float offset, Vec previous, float *position) {
+    const Collider *collider = moving->collider;
+    Vec local = pose_unapply(&moving->after, vec_load(position)), out = local, normal;
+    float depth = contact_out(collider, offset, pose_unapply(&moving->before, previous), &out, &normal);
+    if (depth <= 0) return false;
+    normal = quat_rotate(moving->after.rotation, normal);
+    Vec x = vec_add(vec_load(position), quat_rotate(moving->after.rotation, vec_sub(out, local)));
+    // slip: the particle's way less the collider's way at this place
+    Vec way = vec_sub(x, previous);
+    Vec carried = vec_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
+    Vec slip = vec_sub(way, carried);
+    slip = vec_mad(slip, normal, -vec_dot(slip, normal));
+    float length = vec_length(slip), most = collider->def.friction * depth;
+    x = vec_mad(x, slip, length <= most ? -1 : -most / length);
+    vec_store(position, x);
+    return true;
+}
+
+/// Which of four particles may be nearer to a collider than it reaches.
+static inline bool contact_any_near(const MovingCollider *collider, const Quad x[4]) {
+    Vec origin = collider->after.position;
+    Quad dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
+    QuadMask near = {-1, -1, -1, -1};
+    for (int i = 2; i >= 0; i--) {
+        Vec axis = collider->axis[i];
+        Quad along = dx * axis.x + dy * axis.y + dz * axis.z;
+        near &= (along < collider->high[i]) & (along > collider->low[i]);
+        if (!(near[0] | near[1] | near[2] | near[3])) return false;
+    }
+    return true;
+}
+
+uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+                       int end) {
+    uint64_t contacts = 0;
+    float(*position)[4] = dynamics->position;
+    for (int first = begin; first < end && collider_count > 0; first += 4) {
+        int count = end - first < 4 ? end - first : 4;
+        Quad x[4];
+        for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
+        quad_transpose(x);
+        for (uint32_t c = 0; c < collider_count; c++) {
+            const MovingCollider *collider = &plan->colliders[c];
+            if (!contact_any_near(collider, x)) continue;
+            float offset = collider->collider->def.offset;
+            for (int i = first; i < first + count; i++) {
+                if (position[i][3] == 0) continue;
+                Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
+                contacts += contact_particle(collider, offset, previous, position[i]);
+            }
+            for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
+            quad_transpose(x);
+        }
+    }
+    return contacts;
+}
+
+typedef struct Contact {
+    const DynamicsPlan *plan;
+    uint32_t collider_count;
+    float h;
+    DynamicsState *dynamics;
+} Contact;
+
+static double contact_block(void *task, int begin, int end) {
+    const Contact *job = task;
+    return (double)contact_touch(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
+}
+
+uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {
+    if (collider_count == 0) return 0;
+    Contact job = {plan, collider_count, h, dynamics};
+    return (uint64_t)pool_sum(pool, (int)plan->particle_count, contact_block, &job, plan->partial);
+}

@@ -1,3 +1,0 @@
-// Conjugate gradients for every processor: two lanes, which x86-64 and AArch64 have.
-#define CONJUGATE_KERNEL conjugate_plain
-#include "dynamics/conjugate_kernel.h"

@@ -1,0 +1,200 @@
+// The dynamics' own scratch and the parts of its step. Nothing outside src/dynamics includes this.
+#ifndef DYNAMICS_DYNAMICS_PLAN_H
+#define DYNAMICS_DYNAMICS_PLAN_H
+
+#include "dynamics/attach.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/strand/strand_lanes.h"
+
+#include <stdatomic.h>
+
+/// A collider at the two ends of a substep, and a box about it that turns with it: what is outside of it is not
+/// touched, whatever the shape. A plane's box is without end but along its normal.
+typedef struct MovingCollider {
+    const Collider *collider;
+    Pose before, after;
+    Vec axis[3];           ///< of the box, which has `after.position` for its origin
+    float low[3], high[3]; ///< m
+} MovingCollider;
+
+/// The loops that are written once for every instruction set.
+typedef struct Kernels {
+    StrandSolve *solve;
+    AttachHold *hold;
+    StrandBend *bend;
+} Kernels;
+
+/// Those for these instructions, or NULL where the processor lacks them (strand_kernels.c).
+const Kernels *kernels_choose(SingeInstructions instructions);
+
+/// The strands of all colours, and scratch for the threads that solve them.
+typedef struct Strands {
+    StrandSet sets[SINGE_COLOUR_COUNT];
+    StrandSolve *solve;
+    uint32_t longest; ///< rows
+    int room_count;   ///< 1 to 64 threads that may solve at once
+    float *keep;      ///< room_count times STRAND_KEEP (longest + 1) STRAND_LANES
+    _Atomic uint64_t taken;
+} Strands;
+
+/// For substeps of h seconds.
+bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *solver, float h, int room_count,
+                    StrandSolve *solve, Strands *strands);
+void strands_free(Memory *memory, Strands *strands);
+
+/// A spring that a tear has taken out of its strand, or made (patch.c).
+typedef struct Patch {
+    uint32_t spring, a, b;
+    float length, weight, compliance;
+    float pull; ///< sum of mu in this step
+} Patch;
+
+/// The patches of all colours. Empty where sheets cannot tear.
+typedef struct Patches {
+    uint32_t capacity; ///< of each list
+    uint32_t count[SINGE_COLOUR_COUNT];
+    Patch *items[SINGE_COLOUR_COUNT];
+    uint32_t split_count; ///< of the shell that they are for
+    float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, as in patch.c, of the step done
+} Patches;
+
+typedef struct Paper Paper;
+
+/// Where two cells meet that a green spring joins, as they lie at rest (crease.c).
+typedef struct Hinge {
+    uint8_t side[2]; ///< of the cell at each of the spring's ends
+    float arc;       ///< m, s, from middle to middle along the sheet
+    float angle;     ///< rad, theta_0
+    float twist;     ///< rad, tau_0
+    float most;      ///< rad, beta
+    float lean;      ///< rad, phi
+    float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY where there is none
+} Hinge;
+
+struct DynamicsPlan {
+    DynamicsSettings settings;
+    Paper *paper;            ///< of the methods other than strand, else NULL
+    // per particle, refreshed at every step
+    float *inverse_mass;     ///< 1/kg; 0 for what is pinned or gone
+    float *drag;             ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
+    float (*normal)[4];      ///< unit
+    float (*air)[4];         ///< m/s, the wind there
+    float (*predicted)[4];   ///< m, x~ of eq 9
+    const Kernels *kernels;
+    float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
+    Strands strands;
+    Patches patches;
+    bool strands_written; ///< their weights and targets, in a step that was done
+    Attachments attachments;
+    TouchPlan *touch;        ///< NULL where sheets pass through each other
+    Hinge *hinges;        ///< [green springs], or NULL where no bend stays
+    bool creased;         ///< there are creases after the step before
+    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
+    float (*cell_normal)[4]; ///< unit times twice the area
+    MovingCollider *colliders;
+    uint32_t collider_capacity;
+    double *partial;         ///< [pool_blocks(particles or springs of a colour)]
+    uint32_t particle_count, cell_count, spring_count[SINGE_COLOUR_COUNT];
+};
+
+/// Inverse masses, weights, normals, drag and wind for this step (prepare.c).
+void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
+                      DynamicsState *dynamics);
+
+/// What happens to each particle between two projections (move.c).
+typedef struct Between {
+    uint32_t collider_count; ///< in plan->colliders, to be touched
+    bool closes;             ///< eq 13 of the substep behind
+    bool opens;              ///< eq 8 and 9 of the substep ahead
+    bool attaches;           ///< to sources at their places in the substep ahead
+} Between;
+
+/// One pass over the particles. Returns the number of contacts.
+uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
+                       DynamicsState *dynamics);
+
+/// Puts pinned particles on their paths (move.c).
+void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+                         DynamicsState *dynamics);
+
+/// One projection of one colour, family after family (strand_project.c).
+void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
+                    DynamicsCounters *counters);
+
+/// Room for the limits of bends, where a material has one (curvature.c). False when out of memory.
+bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
+/// Once a step: the limits along a strand, whose weights are known.
+void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set);
+/// Straightens what is bent sharper than its material's curvature_max.
+void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics);
+
+bool patches_create(Memory *memory, const Shell *shell, Patches *patches);
+void patches_free(Memory *memory, const Shell *shell, Patches *patches);
+/// Once a step: finds the springs that are in no strand any more where tears have changed the shell (true then), ...
+bool patch_follow(DynamicsPlan *plan, const Shell *shell);
+/// ... takes over their weights and lengths, and starts to sum.
+void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state);
+/// Whether a spring still runs where its strand does.
+bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring, size_t slot);
+/// Projects a colour's patches one by one.
+void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, DynamicsState *dynamics);
+/// The forces of the step's substeps of h seconds, in plan->patches.pull.
+void patch_gather(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h);
+
+/// Bytes of height_wait.
+size_t height_wait_count(const Shell *shell);
+
+/// Keeps every centre over its cell's corners (height.c).
+void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics);
+
+/// Internal friction of both layers over a step of h seconds (smooth.c).
+void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
+                     DynamicsState *dynamics);
+
+/// Shortens sides and diagonals that a step has left far too long (limit.c). Whether it has found any.
+bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics);
+
+/// Puts centres that have gone through their corners back over them: the last pass of a step (layer_order.c).
+void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
+                    DynamicsState *dynamics);
+
+/// What bends may stay at (crease.c).
+void creases_measure(const Shell *shell, Hinge *hinges);
+
+/// Lets what is bent too sharply keep a part of it, for the steps to come.
+void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+                     DynamicsState *dynamics);
+
+/// Target length of a green spring of which a crease of so many rad stays, over that without, when it is bent to `now`.
+float crease_ratio(const Hinge *hinge, float stays, float now);
+
+/// Share of its crease that burning has left to a green spring.
+float crease_kept(const Shell *shell, const State *state, uint32_t green);
+
+/// A collider between two times of a substep.
+MovingCollider contact_collider(const Collider *collider, double before, double after);
+
+/// W of a spring from a to b (eq 19) that is there: the mean of its ends' material weights, times that of their
+/// softness.
+static inline float dynamics_weight(Field material, const float *soft, uint32_t a, uint32_t b) {
+    return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
+}
+
+/// Contact and friction of particles [begin, end) with the colliders in plan->colliders (collider_contact.c). Returns the number
+/// of contacts.
+uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+                       int end);
+
+/// Contact and friction of one place that was at `previous` when the substep began, at that offset from the surface;
+/// false where it touches nothing.
+bool contact_particle(const MovingCollider *collider, float offset, Vec previous, float *place);
+
+/// Contact of what lies between a cell's corners (cell_centroids.c).
+void contact_middles(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
+                     Pool *pool, float h, DynamicsState *dynamics);
+
+/// The same for all particles.
+uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);
+
+#endif

@@ -1,0 +1,82 @@
+// From what a sheet should be to what its springs are. Blue, green and yellow springs have the material's compliance c,
+// the mean of their ends: on square cells the stiffness of stretch, bending and shear is then 1/c, t^2/c and 1/c
+// whatever the side s of the cells. Transverse shear by the angle gamma makes a red spring longer by
+// gamma t (s/2)/l; for the stiffness S = 1/c, a force per width over gamma, it needs
+//
+//   c_spring = c t^2/l^2,   l^2 = s^2/2 + t^2,   t the thickness
+//
+// A solver has softness of its own, which acts like a further compliance of a spring,
+//
+//   (a + r) h^2/m,   m = s^2 grammage/2 the mass of an unburnt particle, h the substep
+//
+// r is its floor, the `regularisation`. a comes of one projection of a colour a substep, which leaves the colours in
+// each other's way where forces change from spring to spring, as those of red do under transverse shear: 2.5 (measured)
+// for red and 0 for the others. This is taken from c_spring, so that the sum does not hang on h, as far as it goes:
+//
+//   h <= sqrt(c_spring m/(a + r))
+//
+// Sheets have one s and one grammage here, their median and mean.
+#include "dynamics/stiffness.h"
+
+#include <math.h>
+
+/// a above, of red springs.
+static const float COUPLING = 2.5f;
+
+/// Mass of an unburnt particle in the middle of a sheet, kg.
+static float particle_mass(const Shell *shell, const Sheet *sheet) {
+    double mass = 0, area = 0;
+    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        mass += (double)shell->matter.mass[shell_centre(shell, c)];
+        area += (double)shell->matter.area[shell_centre(shell, c)];
+    }
+    return area > 0 ? (float)(mass / area) * sheet->cell_size * sheet->cell_size : 0;
+}
+
+/// t^2/l^2 at a cell's centre.
+static float thickness_share(const Shell *shell, const Sheet *sheet, uint32_t centre) {
+    float t = field_at(shell->matter.thickness, centre), s = sheet->cell_size;
+    return t * t / (0.5f * s * s + t * t);
+}
+
+static float mean_compliance(const Shell *shell, SingeColour colour, const uint32_t *ends) {
+    const Field compliance = shell->matter.compliance[colour];
+    return 0.5f * (field_at(compliance, ends[0]) + field_at(compliance, ends[1]));
+}
+
+void firmness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Firmness *firmness) {
+    float softness = (colour == SINGE_RED ? COUPLING : 0) + regularisation;
+    *firmness = (Firmness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
+}
+
+float firmness_compliance(Firmness *firmness, uint32_t spring) {
+    const Shell *shell = firmness->shell;
+    const uint32_t *ends = shell->springs[firmness->colour].ends[spring];
+    float compliance = mean_compliance(shell, firmness->colour, ends);
+    uint32_t index = shell->matter.sheet[ends[0]];
+    const Sheet *sheet = &shell->sheets[index];
+    if (index != firmness->sheet) {
+        float mass = firmness->softness > 0 ? particle_mass(shell, sheet) : 0;
+        firmness->sheet = index;
+        firmness->own = mass > 0 ? firmness->softness / mass : 0;
+    }
+    uint32_t centre = ends[0] > ends[1] ? ends[0] : ends[1]; // of a red spring: they come after all vertices
+    if (firmness->colour == SINGE_RED) compliance *= thickness_share(shell, sheet, centre);
+    return compliance > firmness->own ? compliance - firmness->own : 0;
+}
+
+int firmness_substeps(const Shell *shell, float h, float regularisation) {
+    const float softness = COUPLING + regularisation;
+    float count = 1;
+    for (uint32_t i = 0; i < shell->sheet_count; i++) {
+        const Sheet *sheet = &shell->sheets[i];
+        float mass = particle_mass(shell, sheet), least = INFINITY;
+        for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+            uint32_t centre = shell_centre(shell, c);
+            float compliance = field_at(shell->matter.compliance[SINGE_RED], centre);
+            least = fminf(least, compliance * thickness_share(shell, sheet, centre));
+        }
+        if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (least * mass))));
+    }
+    return count < FIRMNESS_MOST ? (int)count : FIRMNESS_MOST;
+}

@@ -1,0 +1,80 @@
+// Strands laid out for lanes. A group is up to STRAND_LANES lanes side by side; a lane holds one strand, or several
+// one after another with a row between them that holds no spring. Row k of lane j of a group is the slot
+// (row + k) STRAND_LANES + j, of a node and of the spring from it to the node of the next row; a group ends with
+// a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is one of those after
+// the last particle, which have no mass.
+//
+// Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then
+// takes the particles of width / 4 columns beside each other at once. Strands are laid so that columns beside each
+// other hold particles of consecutive numbers where they can (strand_lay.c).
+#ifndef DYNAMICS_STRAND_STRAND_LANES_H
+#define DYNAMICS_STRAND_STRAND_LANES_H
+
+#include "shell/shell.h"
+
+enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
+
+/// Of a bend beyond the limit what a substep takes away (curvature.c).
+#define BEND_GAIN 0.5f
+
+/// y of the constraint in strand_kernel.h.
+#define STRAND_YIELD 0.5f
+
+/// In StrandSet.beside: the particles of the row are anywhere.
+#define STRAND_APART UINT32_MAX
+
+/// Lanes that are solved together.
+typedef struct StrandGroup {
+    uint32_t row;     ///< its first row in the set
+    uint32_t rows;    ///< springs of its longest lane; one more row of nodes
+    uint32_t columns; ///< in use
+    uint32_t width;   ///< lanes: 4, 8 or 16, as many as columns at least
+    bool ring;        ///< every lane is one ring of `rows` springs
+} StrandGroup;
+
+/// The strands of one colour. Family f is the groups [family_first[f], family_first[f + 1]).
+typedef struct StrandSet {
+    uint32_t group_count, row_count, family_count, strand_count;
+    uint32_t longest;      ///< rows of the longest group
+    uint32_t group_capacity;
+    StrandGroup *groups;
+    uint32_t *family_first;
+    uint32_t *strand_slot; ///< [strands] slot of the strand's first spring; spring k lies k rows further
+    uint32_t *node;        ///< [row_count STRAND_LANES] four times the particle's number
+    uint32_t *beside;      ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_APART
+    float *length;         ///< [row_count STRAND_LANES] m, targets
+    float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
+    float *compliance;     ///< [row_count STRAND_LANES] m/N
+    float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
+    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: nobody asks
+    float compliance_all;  ///< m/N, that of every spring; negative where they differ
+    void *block;           ///< that the five lie in
+} StrandSet;
+
+static inline uint32_t strand_lane(uint32_t width, uint32_t column) {
+    return column / (width / 4) + 4 * (column % (width / 4));
+}
+static inline uint32_t strand_column(uint32_t width, uint32_t lane) { return lane % 4 * (width / 4) + lane / 4; }
+
+/// Lays out the strands of a colour. `nowhere` is the first particle of no mass. False when out of memory.
+bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowhere, bool pulls, StrandSet *set);
+void strand_set_free(Memory *memory, StrandSet *set);
+
+/// Gives every strand its slot, and writes groups, families and rows (strand_lay.c). False when out of memory.
+bool strand_lay(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set);
+
+typedef struct StrandJob {
+    const StrandSet *set;
+    float *position; ///< [4 (particles + 1)] m, fourth: inverse mass
+    float regularisation, inverse_h2;
+} StrandJob;
+
+/// Projects the strands of one group; `keep` has room for STRAND_KEEP floats for each row and lane.
+typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
+StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4;
+
+/// Limits the curvature along the strands of one group (curvature_kernel.h).
+typedef void StrandBend(const StrandSet *set, float *position, uint32_t group);
+StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4;
+
+#endif

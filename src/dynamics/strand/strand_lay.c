@@ -1,0 +1,334 @@
+// Laying strands into lanes so that particles of consecutive numbers lie beside each other, where kernels load them at
+// once. A run begins with the longest strand that is left, in a lane of its own. The lane to its right takes, row by
+// row, the strands through the next particles, p + 1 beside p, and so on until too little is found. In a mesh that is
+// numbered row by row, a strand across the rows so gets its neighbour beside it; and where a diagonal leaves the mesh
+// on one side, the row's last particle is followed by the first of the next row, with which a diagonal comes in on the
+// other side: lanes stay full. What no run takes fills the rest of the lanes, then lanes of its own, longest first.
+// Rings keep a lane each, and only rings of one length share a group.
+#include "dynamics/strand/strand_lanes.h"
+
+/// Where a strand's first node is.
+typedef struct Laid {
+    uint32_t strand, group, column, row;
+} Laid;
+
+typedef struct Lay {
+    const SpringSet *springs;
+    StrandSet *set;
+    uint32_t particle_count, frame; ///< frame: nodes that a lane may have
+    // the strands of a family by length
+    uint32_t *head;  ///< [longest + 1] a strand of that length, SHELL_NONE for none
+    uint32_t *next;  ///< [strands] the next of the same length
+    uint32_t *below; ///< [longest + 1] a length at most this one that may have strands; path-compressed
+    // the family's particles
+    uint32_t *owner; ///< [particles] the family's strand through it, SHELL_NONE for none
+    uint32_t *index; ///< [particles] which node of the strand it is
+    // lanes
+    uint32_t *left, *right; ///< [frame capacity] particles of a lane and of the one being laid to its right
+    uint32_t *tried;        ///< [strands] the last lane that the strand was tried for
+    uint32_t lane_serial;
+    Laid *laid; ///< [strands]
+    uint32_t laid_count;
+} Lay;
+
+/// Lanes that are worth a run; rows that a run may have above and below its first strand, beside a thirty-second of it.
+enum { LAY_RUN_MIN = 12, LAY_MARGIN = 4 };
+
+static uint32_t strand_length(const SpringSet *springs, uint32_t s) {
+    return springs->strand_first[s + 1] - springs->strand_first[s];
+}
+
+/// Node k of a chain.
+static uint32_t strand_node(const SpringSet *springs, uint32_t s, uint32_t k) {
+    uint32_t first = springs->strand_first[s];
+    return k ? springs->ends[first + k - 1][1] : springs->ends[first][0];
+}
+
+static bool lay_is_laid(const Lay *lay, uint32_t s) { return lay->set->strand_slot[s] != SHELL_NONE; }
+
+/// Puts a strand into its column. Its slot is written when its family is whole.
+static void lay_put(Lay *lay, uint32_t s, uint32_t group, uint32_t column, uint32_t row) {
+    lay->set->strand_slot[s] = 0;
+    lay->laid[lay->laid_count++] = (Laid){s, group, column, row};
+}
+
+// ---- what is left, by length
+
+/// Lists the chains or the rings of a family that are not laid; true where there are any.
+static bool lay_list(Lay *lay, uint32_t family, bool ring) {
+    const SpringSet *springs = lay->springs;
+    for (uint32_t length = 0; length <= springs->longest; length++)
+        lay->head[length] = SHELL_NONE, lay->below[length] = length ? length - 1 : 0;
+    bool any = false;
+    for (uint32_t s = springs->family_first[family + 1]; s-- > springs->family_first[family];) {
+        if ((springs->strand_ring[s] != 0) != ring || lay_is_laid(lay, s)) continue;
+        uint32_t length = strand_length(springs, s);
+        lay->next[s] = lay->head[length];
+        lay->head[length] = s;
+        any = true;
+    }
+    return any;
+}
+
+/// The longest length with a strand that is at most `most`; 0 for none. Forgets what has been laid meanwhile.
+static uint32_t lay_longest(Lay *lay, uint32_t most) {
+    uint32_t found = most;
+    while (found > 0) {
+        while (lay->head[found] != SHELL_NONE && lay_is_laid(lay, lay->head[found]))
+            lay->head[found] = lay->next[lay->head[found]];
+        if (lay->head[found] != SHELL_NONE) break;
+        found = lay->below[found];
+    }
+    while (most > found) {
+        uint32_t next = lay->below[most];
+        lay->below[most] = found;
+        most = next;
+    }
+    return found;
+}
+
+static uint32_t lay_take(Lay *lay, uint32_t length) {
+    uint32_t s = lay->head[length];
+    lay->head[length] = lay->next[s];
+    return s;
+}
+
+// ---- groups
+
+static StrandGroup *lay_open_group(Lay *lay, bool ring) {
+    StrandGroup *group = &lay->set->groups[lay->set->group_count++];
+    *group = (StrandGroup){.ring = ring};
+    return group;
+}
+
+/// Counts the rows of the last group, whose strands are `laid` from `first` on; moves them up to its row 0.
+static void lay_close_group(Lay *lay, uint32_t first) {
+    uint32_t low = UINT32_MAX, high = 0;
+    for (uint32_t i = first; i < lay->laid_count; i++) {
+        uint32_t row = lay->laid[i].row, end = row + strand_length(lay->springs, lay->laid[i].strand);
+        low = low < row ? low : row;
+        high = high > end ? high : end;
+    }
+    for (uint32_t i = first; i < lay->laid_count; i++) lay->laid[i].row -= low;
+    lay->set->groups[lay->set->group_count - 1].rows = high - low;
+}
+
+// ---- runs
+
+/// Writes the particles of the family's chains, or takes them away again.
+static void lay_own(Lay *lay, uint32_t family, bool own) {
+    const SpringSet *springs = lay->springs;
+    for (uint32_t s = springs->family_first[family]; s < springs->family_first[family + 1]; s++) {
+        if (springs->strand_ring[s]) continue;
+        for (uint32_t k = 0; k <= strand_length(springs, s); k++) {
+            uint32_t p = strand_node(springs, s, k);
+            lay->owner[p] = own ? s : SHELL_NONE;
+            lay->index[p] = k;
+        }
+    }
+}
+
+/// Lays a strand into the lane on the right if its place there is free.
+static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
+    uint32_t length = strand_length(lay->springs, s);
+    if (row + length >= lay->frame) return;
+    for (uint32_t k = 0; k <= length; k++)
+        if (lay->right[row + k] != SHELL_NONE) return;
+    for (uint32_t k = 0; k <= length; k++) lay->right[row + k] = strand_node(lay->springs, s, k);
+    lay_put(lay, s, lay->set->group_count - 1, column, row);
+}
+
+/// Fills the lane on the right with what runs beside the lane on the left. Returns how many particles have p + 1 beside
+/// them.
+static uint32_t lay_right(Lay *lay, uint32_t column) {
+    uint32_t beside = 0;
+    lay->lane_serial++;
+    for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
+    for (uint32_t k = 0; k < lay->frame; k++) {
+        if (lay->left[k] == SHELL_NONE || lay->left[k] + 1 >= lay->particle_count) continue;
+        uint32_t p = lay->left[k] + 1, s = lay->owner[p];
+        if (s == SHELL_NONE || lay_is_laid(lay, s) || lay->tried[s] == lay->lane_serial || lay->index[p] > k) continue;
+        lay->tried[s] = lay->lane_serial;
+        lay_put_right(lay, s, column, k - lay->index[p]);
+    }
+    for (uint32_t k = 0; k < lay->frame; k++)
+        beside += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
+    return beside;
+}
+
+/// From `s` to the left as long as strands are as long.
+static uint32_t lay_leftmost(const Lay *lay, uint32_t s) {
+    uint32_t start = s, length = strand_length(lay->springs, s);
+    for (;;) {
+        uint32_t p = strand_node(lay->springs, s, 0), t = p > 0 ? lay->owner[p - 1] : SHELL_NONE;
+        if (t == SHELL_NONE || t == start || lay_is_laid(lay, t) || lay->index[p - 1] != 0 ||
+            strand_length(lay->springs, t) != length)
+            return s;
+        s = t;
+    }
+}
+
+/// Takes back what was laid since there were `count` strands.
+static void lay_take_back(Lay *lay, uint32_t count) {
+    while (lay->laid_count > count) lay->set->strand_slot[lay->laid[--lay->laid_count].strand] = SHELL_NONE;
+}
+
+/// Lays the run that begins with `s`, and takes it back when it has few lanes.
+static bool lay_run(Lay *lay, uint32_t s) {
+    uint32_t length = strand_length(lay->springs, s), margin = LAY_MARGIN + length / 32, beside = length, lanes = 0;
+    uint32_t groups = lay->set->group_count, start = lay->laid_count, first = start, before = start;
+    StrandGroup *group = lay_open_group(lay, false);
+    lay->frame = length + 1 + 2 * margin;
+    for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
+    lay_put_right(lay, s, 0, margin);
+    for (; 2 * beside > length; lanes++) {
+        group->columns++;
+        uint32_t *lane = lay->left;
+        lay->left = lay->right, lay->right = lane;
+        if (group->columns == STRAND_LANES) {
+            lay_close_group(lay, first);
+            group = lay_open_group(lay, false);
+            first = lay->laid_count;
+        }
+        before = lay->laid_count;
+        beside = lay_right(lay, group->columns);
+    }
+    lay_take_back(lay, lanes < LAY_RUN_MIN ? start : before);
+    if (first < lay->laid_count)
+        lay_close_group(lay, first);
+    else
+        lay->set->group_count = lanes < LAY_RUN_MIN ? groups : lay->set->group_count - 1;
+    return lanes >= LAY_RUN_MIN;
+}
+
+static void lay_runs(Lay *lay, uint32_t family) {
+    uint32_t length = lay->springs->longest;
+    if (!lay_list(lay, family, false)) return;
+    lay_own(lay, family, true);
+    while ((length = lay_longest(lay, length)) > 0)
+        if (!lay_run(lay, lay_leftmost(lay, lay->head[length]))) lay_take(lay, length);
+    lay_own(lay, family, false);
+}
+
+// ---- what no run has taken
+
+/// Lays what fits into `nodes` free rows of a column from `row` on, longest first. Returns the row after its last node.
+static uint32_t lay_fill(Lay *lay, uint32_t group, uint32_t column, uint32_t row, uint32_t nodes) {
+    while (nodes > 1) {
+        uint32_t longest = lay->springs->longest, length = lay_longest(lay, nodes - 1 < longest ? nodes - 1 : longest);
+        if (length == 0) break;
+        lay_put(lay, lay_take(lay, length), group, column, row);
+        row += length + 1, nodes -= length + 1;
+    }
+    return row;
+}
+
+/// Fills the gaps between the strands laid from `first` on, which lie column after column from the top down.
+static void lay_fill_gaps(Lay *lay, uint32_t first) {
+    uint32_t count = lay->laid_count;
+    for (uint32_t i = first, row = 0; i < count; i++) {
+        Laid laid = lay->laid[i];
+        lay_fill(lay, laid.group, laid.column, row, laid.row - row);
+        row = laid.row + strand_length(lay->springs, laid.strand) + 1;
+        if (i + 1 < count && lay->laid[i + 1].group == laid.group && lay->laid[i + 1].column == laid.column) continue;
+        lay_fill(lay, laid.group, laid.column, row, lay->set->groups[laid.group].rows + 1 - row);
+        row = 0;
+    }
+}
+
+/// Fills the gaps of the family's groups, then their empty columns, then new groups.
+static void lay_rest(Lay *lay, uint32_t family, uint32_t first) {
+    StrandSet *set = lay->set;
+    if (!lay_list(lay, family, false)) return;
+    lay_fill_gaps(lay, first);
+    for (uint32_t g = set->family_first[family]; g < set->group_count; g++)
+        for (StrandGroup *group = &set->groups[g]; group->columns < STRAND_LANES; group->columns++) {
+            uint32_t rows = group->rows < lay->springs->longest ? group->rows : lay->springs->longest;
+            if (lay_longest(lay, rows) == 0) break;
+            lay_fill(lay, g, group->columns, 0, group->rows + 1);
+        }
+    // every lane up to the longest: diagonals of a rectangle so pair up
+    for (uint32_t longest = lay_longest(lay, lay->springs->longest); lay_longest(lay, longest) > 0;) {
+        StrandGroup *group = lay_open_group(lay, false);
+        for (; group->columns < STRAND_LANES && lay_longest(lay, longest) > 0; group->columns++) {
+            uint32_t end = lay_fill(lay, set->group_count - 1, group->columns, 0, longest + 1);
+            if (end - 1 > group->rows) group->rows = end - 1;
+        }
+    }
+}
+
+static void lay_rings(Lay *lay, uint32_t family) {
+    if (!lay_list(lay, family, true)) return;
+    StrandGroup *group = NULL;
+    for (uint32_t length = lay->springs->longest; (length = lay_longest(lay, length)) > 0;) {
+        if (!group || group->columns == STRAND_LANES || group->rows != length) group = lay_open_group(lay, true);
+        group->rows = length;
+        lay_put(lay, lay_take(lay, length), lay->set->group_count - 1, group->columns++, 0);
+    }
+}
+
+/// Widths and rows of the family's groups, and the slots of its strands.
+static void lay_slots(Lay *lay, uint32_t family, uint32_t first) {
+    StrandSet *set = lay->set;
+    for (uint32_t g = set->family_first[family]; g < set->group_count; g++) {
+        StrandGroup *group = &set->groups[g];
+        group->width = group->columns <= 4 ? 4 : group->columns <= 8 ? 8 : STRAND_LANES;
+        group->row = set->row_count;
+        set->row_count += group->rows + 1; // one more for the last node
+    }
+    for (uint32_t i = first; i < lay->laid_count; i++) {
+        const Laid *laid = &lay->laid[i];
+        const StrandGroup *group = &set->groups[laid->group];
+        uint32_t lane = strand_lane(group->width, laid->column);
+        set->strand_slot[laid->strand] = (group->row + laid->row) * STRAND_LANES + lane;
+    }
+}
+
+static void lay_family(Lay *lay, uint32_t family) {
+    uint32_t first = lay->laid_count;
+    lay->set->family_first[family] = lay->set->group_count;
+    lay_runs(lay, family);
+    lay_rest(lay, family, first);
+    lay_rings(lay, family);
+    lay_slots(lay, family, first);
+    lay->set->family_first[family + 1] = lay->set->group_count;
+}
+
+static size_t lay_frame_most(const SpringSet *springs) {
+    return (size_t)springs->longest + 1 + 2 * (LAY_MARGIN + springs->longest / 32);
+}
+
+static bool lay_create(Memory *memory, Lay *lay) {
+    const SpringSet *springs = lay->springs;
+    size_t lengths = (size_t)springs->longest + 1;
+    return NEW(memory, lay->head, lengths) && NEW(memory, lay->below, lengths) &&
+           NEW(memory, lay->next, springs->strand_count) && NEW(memory, lay->tried, springs->strand_count) &&
+           NEW(memory, lay->laid, springs->strand_count) && NEW(memory, lay->owner, lay->particle_count) &&
+           NEW(memory, lay->index, lay->particle_count) && NEW(memory, lay->left, lay_frame_most(springs)) &&
+           NEW(memory, lay->right, lay_frame_most(springs));
+}
+
+static void lay_free(Memory *memory, Lay *lay) {
+    const SpringSet *springs = lay->springs;
+    FREE(memory, lay->head, (size_t)springs->longest + 1);
+    FREE(memory, lay->below, (size_t)springs->longest + 1);
+    FREE(memory, lay->next, springs->strand_count);
+    FREE(memory, lay->tried, springs->strand_count);
+    FREE(memory, lay->laid, springs->strand_count);
+    FREE(memory, lay->owner, lay->particle_count);
+    FREE(memory, lay->index, lay->particle_count);
+    FREE(memory, lay->left, lay_frame_most(springs));
+    FREE(memory, lay->right, lay_frame_most(springs));
+}
+
+bool strand_lay(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set) {
+    Lay lay = {.springs = springs, .set = set, .particle_count = particle_count};
+    bool done = lay_create(memory, &lay);
+    if (done) {
+        for (uint32_t p = 0; p < particle_count; p++) lay.owner[p] = SHELL_NONE;
+        for (uint32_t s = 0; s < springs->strand_count; s++) set->strand_slot[s] = SHELL_NONE;
+        for (uint32_t f = 0; f < springs->family_count; f++) lay_family(&lay, f);
+    }
+    lay_free(memory, &lay);
+    return done;
+}

@@ -1,0 +1,82 @@
+// Strands and attachments four at a time, for x86-64-v2 (SSE 4.2).
+#ifdef __SSE4_2__
+#include <nmmintrin.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { LANES = 4 };
+typedef float Lanes __attribute__((vector_size(16)));
+typedef struct Node {
+    Lanes x, y, z, w;
+} Node;
+/// Quadruples of a particle each, a lane each.
+typedef struct Quads {
+    __m128 at[4];
+} Quads;
+
+static inline Lanes lanes_all(float a) { return (Lanes)_mm_set1_ps(a); }
+static inline Lanes lanes_load(const float *p) { return (Lanes)_mm_loadu_ps(p); }
+static inline void lanes_store(float *p, Lanes a) { _mm_storeu_ps(p, (__m128)a); }
+static inline Lanes lanes_sqrt(Lanes a) { return (Lanes)_mm_sqrt_ps((__m128)a); }
+static inline Lanes lanes_max(Lanes a, Lanes b) { return (Lanes)_mm_max_ps((__m128)a, (__m128)b); }
+static inline bool lanes_any_less(Lanes a, Lanes b) {
+    return _mm_movemask_ps(_mm_cmplt_ps((__m128)a, (__m128)b)) != 0;
+}
+static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
+    return (Lanes)_mm_blendv_ps((__m128)no, (__m128)yes, _mm_cmplt_ps((__m128)a, (__m128)b));
+}
+
+static inline Quads quads_beside(const float *x, size_t stride) {
+    return (Quads){{_mm_loadu_ps(x), _mm_loadu_ps(x + stride), _mm_loadu_ps(x + 2 * stride),
+                    _mm_loadu_ps(x + 3 * stride)}};
+}
+
+static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
+    for (size_t e = 0; e < 4; e++) _mm_storeu_ps(x + e * stride, quads->at[e]);
+}
+
+static inline Quads quads_apart(const float *position, const uint32_t *node) {
+    return (Quads){{_mm_loadu_ps(position + node[0]), _mm_loadu_ps(position + node[1]),
+                    _mm_loadu_ps(position + node[2]), _mm_loadu_ps(position + node[3])}};
+}
+
+static inline void quads_put_apart(float *position, const uint32_t *node, const Quads *quads) {
+    for (int e = 0; e < 4; e++) _mm_storeu_ps(position + node[e], quads->at[e]);
+}
+
+static inline Node quads_node(const Quads *quads) {
+    const __m128 *q = quads->at;
+    __m128 xy01 = _mm_unpacklo_ps(q[0], q[1]), zw01 = _mm_unpackhi_ps(q[0], q[1]);
+    __m128 xy23 = _mm_unpacklo_ps(q[2], q[3]), zw23 = _mm_unpackhi_ps(q[2], q[3]);
+    return (Node){(Lanes)_mm_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm_shuffle_ps(xy01, xy23, 0xEE),
+                  (Lanes)_mm_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm_shuffle_ps(zw01, zw23, 0xEE)};
+}
+
+#define QUAD_PUSH(e)                                                                                                   \
+    _mm_mul_ps(_mm_sub_ps(b->at[e], a->at[e]), _mm_shuffle_ps((__m128)factor, (__m128)factor, (e) * 0x55))
+static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
+    return (Quads){{QUAD_PUSH(0), QUAD_PUSH(1), QUAD_PUSH(2), QUAD_PUSH(3)}};
+}
+
+static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
+    for (int e = 0; e < 4; e++) {
+        __m128 w = _mm_shuffle_ps(x->at[e], x->at[e], 0xFF), push = _mm_sub_ps(forth->at[e], back->at[e]);
+        x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], _mm_mul_ps(w, push)), x->at[e], 8);
+    }
+}
+
+/// x += (x - anchor) factor.
+static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+    __m128 a = _mm_setr_ps(anchor[0], anchor[1], anchor[2], 0);
+    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm_blend_ps(_mm_add_ps(x->at[e], way.at[e]), x->at[e], 8);
+}
+
+#define ATTACH_HOLD attach_hold_v2
+#define STRAND_SOLVE strand_solve_v2
+#define STRAND_BEND strand_bend_v2
+#include "dynamics/attach_kernel.h"
+#include "dynamics/strand/strand_kernel.h"
+#include "dynamics/curvature_kernel.h"
+#endif

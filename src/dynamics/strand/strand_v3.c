@@ -1,0 +1,91 @@
+// Strands and attachments eight at a time, for x86-64-v3 (AVX2).
+#ifdef __AVX2__
+#include <immintrin.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { LANES = 8 };
+typedef float Lanes __attribute__((vector_size(32)));
+typedef struct Node {
+    Lanes x, y, z, w;
+} Node;
+/// Quadruples of a particle each: [e] those of lanes e and e + 4.
+typedef struct Quads {
+    __m256 at[4];
+} Quads;
+
+static inline Lanes lanes_all(float a) { return (Lanes)_mm256_set1_ps(a); }
+static inline Lanes lanes_load(const float *p) { return (Lanes)_mm256_loadu_ps(p); }
+static inline void lanes_store(float *p, Lanes a) { _mm256_storeu_ps(p, (__m256)a); }
+static inline Lanes lanes_sqrt(Lanes a) { return (Lanes)_mm256_sqrt_ps((__m256)a); }
+static inline Lanes lanes_max(Lanes a, Lanes b) { return (Lanes)_mm256_max_ps((__m256)a, (__m256)b); }
+static inline bool lanes_any_less(Lanes a, Lanes b) {
+    return _mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ)) != 0;
+}
+static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
+    return (Lanes)_mm256_blendv_ps((__m256)no, (__m256)yes, _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ));
+}
+
+static inline Quads quads_beside(const float *x, size_t stride) {
+    return (Quads){{_mm256_loadu_ps(x), _mm256_loadu_ps(x + stride), _mm256_loadu_ps(x + 2 * stride),
+                    _mm256_loadu_ps(x + 3 * stride)}};
+}
+
+static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
+    for (size_t e = 0; e < 4; e++) _mm256_storeu_ps(x + e * stride, quads->at[e]);
+}
+
+static inline Quads quads_apart(const float *position, const uint32_t *node) {
+    Quads quads;
+    for (int e = 0; e < 4; e++) {
+        __m256 q = _mm256_castps128_ps256(_mm_loadu_ps(position + node[e]));
+        quads.at[e] = _mm256_insertf128_ps(q, _mm_loadu_ps(position + node[e + 4]), 1);
+    }
+    return quads;
+}
+
+static inline void quads_put_apart(float *position, const uint32_t *node, const Quads *quads) {
+    for (int e = 0; e < 4; e++) {
+        _mm_storeu_ps(position + node[e], _mm256_castps256_ps128(quads->at[e]));
+        _mm_storeu_ps(position + node[e + 4], _mm256_extractf128_ps(quads->at[e], 1));
+    }
+}
+
+static inline Node quads_node(const Quads *quads) {
+    const __m256 *q = quads->at;
+    __m256 xy01 = _mm256_unpacklo_ps(q[0], q[1]), zw01 = _mm256_unpackhi_ps(q[0], q[1]);
+    __m256 xy23 = _mm256_unpacklo_ps(q[2], q[3]), zw23 = _mm256_unpackhi_ps(q[2], q[3]);
+    return (Node){(Lanes)_mm256_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm256_shuffle_ps(xy01, xy23, 0xEE),
+                  (Lanes)_mm256_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm256_shuffle_ps(zw01, zw23, 0xEE)};
+}
+
+#define QUAD_PUSH(e)                                                                                                   \
+    _mm256_mul_ps(_mm256_sub_ps(b->at[e], a->at[e]), _mm256_permute_ps((__m256)factor, (e) * 0x55))
+static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
+    return (Quads){{QUAD_PUSH(0), QUAD_PUSH(1), QUAD_PUSH(2), QUAD_PUSH(3)}};
+}
+
+static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
+    for (int e = 0; e < 4; e++) {
+        __m256 w = _mm256_permute_ps(x->at[e], 0xFF), push = _mm256_sub_ps(forth->at[e], back->at[e]);
+        x->at[e] = _mm256_blend_ps(_mm256_add_ps(x->at[e], _mm256_mul_ps(w, push)), x->at[e], 0x88);
+    }
+}
+
+/// x += (x - anchor) factor.
+static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+    __m256 a = _mm256_setr_ps(anchor[0], anchor[1], anchor[2], 0, anchor[0], anchor[1], anchor[2], 0);
+    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm256_blend_ps(_mm256_add_ps(x->at[e], way.at[e]), x->at[e], 0x88);
+}
+
+#define ATTACH_HOLD attach_hold_v3
+#define STRAND_SOLVE strand_solve_v3
+#define STRAND_BEND strand_bend_v3
+#define STRAND_NARROWER strand_solve_v2
+#define BEND_NARROWER strand_bend_v2
+#include "dynamics/attach_kernel.h"
+#include "dynamics/strand/strand_kernel.h"
+#include "dynamics/curvature_kernel.h"
+#endif

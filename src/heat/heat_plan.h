@@ -1,0 +1,189 @@
+// What the stage's files share: the plan, and the passes that heat_step calls in order.
+#ifndef HEAT_HEAT_PLAN_H
+#define HEAT_HEAT_PLAN_H
+
+#include <string.h>
+
+#include "common/float3.h"
+#include "heat/heat.h"
+
+/// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
+enum { HEAT_GROUP = 64 };
+/// Groups near one that can be listed.
+enum { HEAT_NEAR = 48 };
+
+/// A spring that shares both its ends with another one that conducts.
+typedef struct HeatTwin {
+    uint32_t spring;   ///< in the numbering of all colours
+    float conductance;
+} HeatTwin;
+
+/// Rows of the matrix that lie interleaved.
+enum { HEAT_ROWS = 4 };
+
+/// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
+/// spring conducts no more; conductances are without the time step. HEAT_ROWS rows lie interleaved, so that a processor
+/// can work on all of them at once (ELLPACK by slices): entry k of row i is heat_entry(matrix, i, k). Shorter rows are
+/// filled up with entries of value 0 in their own column.
+typedef struct HeatMatrix {
+    uint32_t *first;  ///< [slices + 1]
+    uint32_t *column; ///< [entries]
+    float *value;     ///< [entries]
+    float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
+    float dt;         ///< s, of `inverse`
+    uint32_t slices, entries;
+    HeatTwin *twins;  ///< hardly ever any
+    uint32_t twin_count, twin_capacity;
+    bool full; ///< a row has no room for all springs that tears have given it
+} HeatMatrix;
+
+/// Entries of every row in the slice of row i, and where entry k of row i lies.
+static inline uint32_t heat_row_width(const HeatMatrix *matrix, uint32_t i) {
+    return (matrix->first[i / HEAT_ROWS + 1] - matrix->first[i / HEAT_ROWS]) / HEAT_ROWS;
+}
+static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t k) {
+    return matrix->first[i / HEAT_ROWS] + HEAT_ROWS * k + i % HEAT_ROWS;
+}
+
+/// Groups of HEAT_GROUP particles in a row, and which of them have anything to conduct in this step (rest.c).
+typedef struct HeatRest {
+    uint32_t groups;
+    uint32_t (*near)[HEAT_NEAR]; ///< [groups] those that conduct with it, less itself
+    uint8_t *near_count; ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
+    uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
+    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
+} HeatRest;
+
+struct HeatPlan {
+    HeatSettings settings;
+    uint32_t particles, springs, sheets;
+    int blocks;
+    uint32_t spring_first[SINGE_COLOUR_COUNT + 1]; ///< springs of all colours in one numbering
+    float *thickening;     ///< [sheets] F
+
+    // operator
+    float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
+    float *conductance;    ///< [springs] alpha F times the operator's weight: D/s. Gone once the matrix is built, but
+                           ///< where sheets can tear
+    uint32_t split_count;  ///< of the shell that the matrix is for
+    uint8_t *spring_alive; ///< [springs] as the matrix has it
+    uint8_t *alive;        ///< [particles] as the matrix has it
+    HeatMatrix matrix;
+    HeatRest rest;
+
+    void *scratch;         ///< the arrays below
+    size_t scratch_size;
+
+    // sources, per particle
+    float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
+
+    // solver, per particle
+    float *star;           ///< T* after sources and losses, K
+    float *delta;          ///< T* - T, K
+    float *correction;     ///< T - T* of the diffusion, K
+    float *residual, *search, *product;
+    float *next;           ///< the new temperature, K
+    double (*partial)[4];  ///< [blocks]
+};
+
+/// What a step's passes read.
+typedef struct HeatPass {
+    HeatPlan *plan;
+    const Shell *shell;
+    const State *state;
+    HeatState *heat;
+    Pool *pool;
+    float h;  ///< s of scene time
+    float dt; ///< s of fire
+    float step_length; ///< of the conjugate gradients
+    float direction;   ///< their beta
+    int turn;          ///< which of rest.awake holds
+    float least, most; ///< K, the range of T*
+    double slack;      ///< K, beyond it, before a step ends by bound.c
+    double share;      ///< of what is missing to the range's end, in bound.c
+} HeatPass;
+
+/// Makes operator and matrix follow a shell that has torn since the last call (heat_plan.c).
+void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state);
+
+/// What one cell gives to the springs along its four sides and two diagonals by linear elements, without diffusivity
+/// and F. Sides opposite to obtuse angles are negative. False, and zeros, where it cannot be cut into two triangles
+/// (weights.c).
+bool heat_cell_linear(const Vec corners[4], double weights[6]);
+/// The same, so that no side is negative once what the cell `across` it gives by linear elements (0 at a border) is
+/// added, and no diagonal.
+void heat_cell_weights(const Vec corners[4], const double across[4], double weights[6]);
+
+/// Fills plan->conductance and plan->measure (operator.c).
+void heat_operator(HeatPlan *plan, const Shell *shell);
+/// The same of one cell's sides and diagonals, and of a vertex, where a tear has come by; not for the umbrella.
+void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
+void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
+/// Whether a tear may change what the cell gives to springs that are not torn.
+bool heat_operator_may_change(const Shell *shell, uint32_t cell);
+
+/// Builds the matrix's pattern, all springs alive (matrix.c).
+SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
+/// Writes it anew for a shell that has torn; `length` and `fill`, [particles], are scratch.
+void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
+/// Writes a row anew, for springs that tears have changed; `list` is scratch for the springs of it.
+/// False where it has no room for all.
+bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
+void heat_matrix_free(Memory *memory, HeatPlan *plan);
+/// Makes the matrix follow what ablation removed since the last call, and the time step.
+void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *ablate, float dt);
+
+/// Lists which groups conduct with which (rest.c).
+SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
+/// The same anew, of all or of one group; `seen`, [groups], is scratch.
+void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
+void heat_rest_update(HeatPlan *plan, uint32_t group, uint32_t *seen);
+void heat_rest_free(Memory *memory, HeatPlan *plan);
+/// Whether the group or one near it is in `set`.
+bool heat_rest_reaches(const HeatRest *rest, const uint8_t *set, uint32_t group);
+
+/// Sums all sources into the plan's arrays (source.c).
+void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *colliders, const SingeView *view);
+
+/// Solves the diffusion and leaves new temperatures in plan->next (conduct.c). *made is the heat in J that
+/// the umbrella made.
+SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, SingeError *error);
+
+/// Leaves new temperatures in plan->next that keep to the range of T*, and returns the heat that the umbrella made, for
+/// plan->star as the solver left it (bound.c).
+double heat_bound(HeatPass *pass);
+
+enum { HEAT_SEED = 0x68656174 };
+/// A float next to x, the upper or the lower with the odds that make it right in the mean.
+static inline float heat_round(double x, uint32_t hash) {
+    float near = (float)x;
+    if ((double)near == x || !(x > 1e-30 && x < 1e30)) return near;
+    uint32_t bits;
+    memcpy(&bits, &near, sizeof bits);
+    bits = (bits & 0x7f800000u) - (23u << 23); // one unit of the last digit
+    float unit;
+    memcpy(&unit, &bits, sizeof unit);
+    return (float)(x + (double)unit * (((double)(hash >> 8) + 0.5) / 16777216.0 - 0.5));
+}
+
+/// Calls run over [0, blocks) through the pool and adds up column c of plan->partial in order.
+void heat_blocks(HeatPass *pass, SingeTaskFn *run);
+double heat_sum(const HeatPlan *plan, int column);
+/// The particles of a block.
+static inline uint32_t heat_block_end(const HeatPlan *plan, int block) {
+    uint32_t end = (uint32_t)(block + 1) * POOL_BLOCK;
+    return end < plan->particles ? end : plan->particles;
+}
+/// The groups of a block are [heat_group_first, heat_group_end).
+static inline uint32_t heat_group_first(int block) { return (uint32_t)block * (POOL_BLOCK / HEAT_GROUP); }
+static inline uint32_t heat_group_end(const HeatPlan *plan, int block) {
+    uint32_t end = heat_group_first(block + 1);
+    return end < plan->rest.groups ? end : plan->rest.groups;
+}
+/// The particles of a group are [group * HEAT_GROUP, heat_group_last).
+static inline uint32_t heat_group_last(const HeatPlan *plan, uint32_t group) {
+    uint32_t last = (group + 1) * HEAT_GROUP;
+    return last < plan->particles ? last : plan->particles;
+}
+
+#endif

@@ -1,0 +1,23 @@
+// The sweeps that conjugate gradients consist of, for the instruction sets that have their own.
+#ifndef REFERENCE_CONJUGATE_H
+#define REFERENCE_CONJUGATE_H
+
+#include "reference/spring_network.h"
+
+typedef struct Conjugate {
+    const SpringGroup *group;
+    const double *value;
+    double *x, *r, *p, *q;
+    double alpha, beta;
+} Conjugate;
+
+/// Each works on the rows [begin, end) of a Conjugate, which are whole slices.
+typedef struct ConjugateKernel {
+    PoolSumFn *multiply; ///< q = A p and p . q
+    PoolSumFn *reduce;   ///< r -= alpha q and r . r
+    SingeTaskFn *advance; ///< x += alpha p, p = r + beta p
+} ConjugateKernel;
+
+extern const ConjugateKernel conjugate_plain, conjugate_v3;
+
+#endif

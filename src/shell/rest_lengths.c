@@ -1,0 +1,139 @@
+// Rest geometry: where the centres lie, and what area each particle has.
+//
+//   centre    x_c = (x_0 + x_1 + x_2 + x_3)/4 + t n,   n = (x_2 - x_0) x (x_3 - x_1), normalised
+//   area      A_c = sum of the triangles (x_i, x_i+1, mean) [m2]; A_v = half of each triangle at v
+//
+// The areas of each layer sum to the sheet's area. For rectangles A_v is the usual quarter of each cell around.
+#include "shell/rest_lengths.h"
+
+#include <math.h>
+#include <string.h>
+
+/// A corner's share of its cell below this makes the four shares equal: a concave corner has little or
+/// negative area around it, but a particle needs mass.
+static const double share_min = 1.0 / 32;
+
+static void subtract(const double a[3], const double b[3], double r[3]) {
+    for (int k = 0; k < 3; k++) r[k] = a[k] - b[k];
+}
+
+static void cross(const double a[3], const double b[3], double r[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Areas of the triangles (x_i, x_i+1, mean), negative where they face away from the normal.
+static void share_area(double p[4][3], CellShape *shape) {
+    for (int i = 0; i < 4; i++) {
+        double a[3], b[3], c[3];
+        subtract(p[i], shape->centre, a);
+        subtract(p[(i + 1) & 3], shape->centre, b);
+        cross(a, b, c);
+        double area = copysign(sqrt(dot(c, c)) / 2, dot(c, shape->normal));
+        shape->area += area;
+        shape->corner_area[i] += area / 2;
+        shape->corner_area[(i + 1) & 3] += area / 2;
+    }
+    bool even = false;
+    for (int i = 0; i < 4; i++) even |= !(shape->corner_area[i] >= share_min * shape->area);
+    for (int i = 0; i < 4 && even; i++) shape->corner_area[i] = shape->area / 4;
+}
+
+CellShape cell_shape(const float *const corners[4]) {
+    CellShape shape = {0};
+    double p[4][3], diagonal[2][3], side[3];
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) {
+            p[i][k] = (double)corners[i][k];
+            shape.centre[k] += p[i][k] / 4;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        subtract(p[(i + 1) & 3], p[i], side);
+        double length = sqrt(dot(side, side));
+        if (i == 0 || length < shape.shortest) shape.shortest = length;
+        if (i == 0 || length > shape.longest) shape.longest = length;
+    }
+    subtract(p[2], p[0], diagonal[0]);
+    subtract(p[3], p[1], diagonal[1]);
+    cross(diagonal[0], diagonal[1], shape.normal);
+    double length = sqrt(dot(shape.normal, shape.normal));
+    shape.vector_area = length / 2;
+    for (int k = 0; k < 3 && length > 0; k++) shape.normal[k] /= length;
+    share_area(p, &shape);
+    return shape;
+}
+
+void measure_particles(Shell *shell) {
+    Matter *matter = &shell->matter;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const float *corners[4];
+        for (int i = 0; i < 4; i++) corners[i] = shell->rest_position[shell->cells[c][i]];
+        CellShape shape = cell_shape(corners);
+        uint32_t centre = shell_centre(shell, c);
+        double thickness = (double)field_at(matter->thickness, centre);
+        for (int k = 0; k < 3; k++)
+            shell->rest_position[centre][k] = (float)(shape.centre[k] + thickness * shape.normal[k]);
+        matter->area[centre] = (float)shape.area;
+        for (int i = 0; i < 4; i++) matter->area[shell->cells[c][i]] += (float)shape.corner_area[i];
+    }
+}
+
+/// The k-th smallest of the sides of a sheet's cells, digit by digit: positive floats are in the order
+/// of their bits, so a histogram of 256 bins for each byte from the top finds it in four passes.
+static float select_length(const Shell *shell, const Sheet *sheet, uint64_t k) {
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    uint32_t prefix = 0;
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        uint64_t bins[256] = {0};
+        for (uint32_t c = 0; c < 4 * sheet->cell_count; c++) {
+            const CellSprings *springs = &shell->cell_springs[sheet->cell_first + c / 4];
+            uint32_t cell = sheet->cell_first + c / 4, other = shell_neighbour(shell, cell, c & 3), bits;
+            if (other != SHELL_NONE && other < cell) continue; // once an edge
+            memcpy(&bits, &blue->rest[springs->blue[c & 3]], sizeof bits);
+            if (shift == 24 || bits >> (shift + 8) == prefix >> (shift + 8)) bins[bits >> shift & 255]++;
+        }
+        uint32_t digit = 0;
+        while (digit < 255 && k >= bins[digit]) k -= bins[digit++];
+        prefix |= digit << shift;
+    }
+    float length;
+    memcpy(&length, &prefix, sizeof length);
+    return length;
+}
+
+static float median_edge(const Shell *shell, const Sheet *sheet) {
+    uint64_t edges = 0;
+    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell_neighbour(shell, c, i);
+            edges += other == SHELL_NONE || other > c;
+        }
+    }
+    return edges ? select_length(shell, sheet, edges / 2) : 0;
+}
+
+SingeResult measure_springs(Shell *shell, SingeError *error) {
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        SpringSet *set = &shell->springs[colour];
+        for (uint32_t s = 0; s < set->count; s++) {
+            const float *a = shell->rest_position[set->ends[s][0]], *b = shell->rest_position[set->ends[s][1]];
+            double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+            set->rest[s] = (float)sqrt(x * x + y * y + z * z);
+            if (isnormal(set->rest[s])) continue;
+            uint32_t p = set->ends[s][0];
+            const Sheet *sheet = &shell->sheets[shell->matter.sheet[p]];
+            bool corner = shell_is_corner(shell, p);
+            uint32_t element = corner ? p - sheet->vertex_first : p - shell->vertex_count - sheet->cell_first;
+            return error_set(error, SINGE_ERROR_MESH, "sheet", element,
+                             "sheet '%s': a spring at %s %u has no length; is the sheet too thick for its curvature?",
+                             sheet->name, corner ? "vertex" : "the centre of cell", element);
+        }
+    }
+    for (uint32_t i = 0; i < shell->sheet_count; i++)
+        shell->sheets[i].cell_size = median_edge(shell, &shell->sheets[i]);
+    return SINGE_OK;
+}

@@ -1,0 +1,123 @@
+// What a simulation tells its host's log. Errors are results, not lines: the log has what no result says.
+#include "sim/sim_internal.h"
+
+#include "common/format.h"
+
+static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format, ...) {
+    const SingeLog *log = &sim->def.log;
+    if (!log->write) return;
+    char line[256];
+    va_list list;
+    va_start(list, format);
+    text_print(line, sizeof line, format, list);
+    va_end(list);
+    log->write(log->context, level, line);
+}
+
+/// A sheet that falls far within a substep, against its cells, is stretched visibly where it is held.
+static const float fall_most = 0.02f;
+
+static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
+    const SingeSimDef *def = &sim->def;
+    const Sheet *sheet = &sim->shell.sheets[index];
+    sim_log(sim, SINGE_LOG_INFO, "sheet %u: cells of %.3g mm, its front %.3g times as thick as a real one", index,
+            1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
+    float h = def->time_step / (float)dynamics_plan_substeps(sim->dynamics);
+    if (sim->tear)
+        sim_log(sim, SINGE_LOG_INFO,
+                "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", index,
+                (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
+    float gravity = vec_length(vec_load(def->gravity));
+    if (gravity * h * h > fall_most * sheet->cell_size)
+        sim_log(sim, SINGE_LOG_WARNING,
+                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: it will stretch; more substeps or a "
+                "smaller time step help",
+                index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
+}
+
+/// The stopping rules of the methods that iterate (docs/equations.md).
+static void sim_log_solver(const SingeSim *sim) {
+    const SingeSolverDef *solver = &sim->def.solver;
+    double tolerance = (double)solver->tolerance;
+    const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
+    if (solver->method == SINGE_SOLVER_STRAND) {
+        if (solver->substeps == 0)
+            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' firmness",
+                    dynamics_plan_substeps(sim->dynamics));
+        return;
+    }
+    if (solver->method == SINGE_SOLVER_MASS_SPRING) {
+        sim_log(sim, SINGE_LOG_INFO, "solver: mass-spring, %g N/m, %d substeps", (double)solver->stiffness,
+                dynamics_plan_substeps(sim->dynamics));
+    } else if (solver->early_exit) {
+        sim_log(sim, SINGE_LOG_INFO,
+                "solver: up to %d projections a substep, ending when no %s has an error above %g of its lengths; "
+                "conjugate gradients to a residual of %g, or to that error",
+                solver->projections, each, tolerance, tolerance);
+    } else {
+        sim_log(sim, SINGE_LOG_INFO, "solver: %d projections a substep; conjugate gradients to a residual of %g",
+                solver->projections, tolerance);
+    }
+}
+
+void sim_log_commit(const SingeSim *sim) {
+    SingeCensus census = singe_sim_census(sim);
+    uint32_t springs = 0, strands = 0;
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c], strands += census.strands[c];
+    sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", census.particles, springs, strands,
+            1e-6 * (double)census.memory);
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
+    sim_log_solver(sim);
+    if (sim->def.solver.tearing && !sim->tear)
+        sim_log(sim, SINGE_LOG_WARNING, "tearing needs the solver's method `strand`: these sheets stay whole");
+}
+
+void sim_log_short_of_spares(SingeSim *sim) {
+    if (sim->tear_warned) return;
+    sim->tear_warned = true;
+    sim_log(sim, SINGE_LOG_WARNING,
+            "tearing: a sheet has used up the vertices it has in reserve and tears no further (said once)");
+}
+
+void sim_log_unconverged(SingeSim *sim) {
+    if (sim->heat_warned) return;
+    sim->heat_warned = true;
+    sim_log(sim, SINGE_LOG_WARNING,
+            "heat: steps are too long for conduction to come to heat_tolerance in 200 iterations; a smaller time_step "
+            "or pace, or a larger tolerance, helps (said once)");
+}
+
+void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
+    if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
+        sim->tangle_warned = true;
+        const float *at = sim->shell.rest_position[sim->shell.cells[touches->tangled_first][0]];
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts, one "
+                "near (%.4g, %.4g, %.4g) m; they are left alone until they have parted",
+                touches->tangled, (double)at[0], (double)at[1], (double)at[2]);
+    }
+    if (touches->unresolved && !sim->crossing_warned) {
+        sim->crossing_warned = true;
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: at %.4g s cells could not be kept apart: what holds them pulls them through each other, or "
+                "they began on top of each other (said once)",
+                sim->state.time);
+    }
+    if (touches->dropped && !sim->crowd_warned) {
+        sim->crowd_warned = true;
+        sim_log(sim, SINGE_LOG_WARNING,
+                "contact: at %.4g s sheets lie too thick on each other for the lists; some may cross (said once)",
+                sim->state.time);
+    }
+}
+
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place) {
+    sim_log(sim, SINGE_LOG_WARNING,
+            "collider %u: %.3g %% of the sheets begin inside it, up to %.3g m deep, at (%.4g, %.4g, %.4g) m: it throws "
+            "them out in the first step, which stretches them",
+            collider, 100 * share, (double)depth, (double)place.x, (double)place.y, (double)place.z);
+}
+
+void sim_log_turned(const SingeSim *sim, uint32_t collider) {
+    sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been turned", collider);
+}

@@ -1,0 +1,264 @@
+// A simulation's life: create, add sheets, commit, destroy.
+#include "sim/sim_internal.h"
+
+#include <stddef.h>
+#include <string.h>
+
+SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message) {
+    return error_set(&sim->error, code, stage, element, "%s", message);
+}
+
+const SingeError *singe_sim_error(const SingeSim *sim) { return &sim->error; }
+
+static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
+
+static const char *sim_check_solver(const SingeSolverDef *solver) {
+    bool seen[SINGE_COLOUR_COUNT] = {false};
+    if ((int)solver->method < SINGE_SOLVER_STRAND || solver->method > SINGE_SOLVER_MASS_SPRING)
+        return "solver.method is none of the methods";
+    if (solver->projections < 1 || solver->projections > 1000) return "solver.projections must be between 1 and 1000";
+    if (!in_range(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
+    if (!in_range(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
+    if (solver->substeps < 0 || solver->substeps > 1000)
+        return "solver.substeps must be between 1 and 1000, or 0 for as many as firmness needs";
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
+        int colour = (int)solver->order[i];
+        if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])
+            return "solver.order must name each colour once";
+        seen[colour] = true;
+        if (!in_range(solver->regularisation[i], 1e-6f, 1e6f))
+            return "solver.regularisation must be between 1e-6 and 1e6";
+    }
+    if (!in_range(solver->smoothing, 0, 1e6f)) return "solver.smoothing must be between 0 and 1e6 1/s";
+    if (!in_range(solver->smoothing_length, 0, 1e3f)) return "solver.smoothing_length must be between 0 and 1000 m";
+    if (!in_range(solver->height_min, 0, 1)) return "solver.height_min must be between 0 and 1";
+    if (!in_range(solver->height_gain, 0, 1)) return "solver.height_gain must be between 0 and 1";
+    return NULL;
+}
+
+SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
+    const char *what = sim_check_solver(&def->solver);
+    if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
+    if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_X86_V4)
+        what = "instructions is none of the choices";
+    if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
+    if (!in_range(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
+    for (int i = 0; i < 3; i++)
+        if (!in_range(def->gravity[i], -1e4f, 1e4f)) what = "gravity must be between -10000 and 10000 m/s2";
+    if (!in_range(def->ambient_temperature, 1, 1e4f)) what = "ambient_temperature must be between 1 and 10000 K";
+    if (!in_range(def->air_density, 0, 1e3f)) what = "air_density must be between 0 and 1000 kg/m3";
+    if (!in_range(def->heat_tolerance, 1e-9f, 1)) what = "heat_tolerance must be between 1e-9 and 1";
+    if (!in_range(def->surface_detail, 0, 1e3f)) what = "surface_detail must be between 0 and 1000 m";
+    if (!in_range(def->surface_raggedness, 0, 1e3f)) what = "surface_raggedness must be between 0 and 1000 m";
+    if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
+    if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
+    TRY(gas_check(&def->gas, error));
+    TRY(touch_check(&def->contact, error));
+    return wind_check(&def->wind, error);
+}
+
+bool sim_read_def(void *def, size_t size, const void *given, size_t given_size) {
+    size_t known;
+    if (!given || given_size < sizeof known) return false;
+    memcpy(&known, given, sizeof known);
+    if (known < sizeof known || known > given_size) return false;
+    memcpy(def, given, known < size ? known : size);
+    memcpy(def, &size, sizeof size);
+    return true;
+}
+
+/// Reads a simulation's Def of any version. Wind, solver, gas and contact lie inside and grow by themselves, so that
+/// what comes after each is found by the size that the caller's header gave it.
+static bool sim_read_sim_def(const SingeSimDef *given, SingeSimDef *def) {
+    const size_t head = offsetof(SingeSimDef, wind);
+    const char *bytes = (const char *)given;
+    *def = singe_default_sim();
+    if (!given || given->struct_size < sizeof(size_t)) return false;
+    size_t rest = given->struct_size, wind, solver, gas;
+    memcpy(def, bytes, rest < head ? rest : head);
+    def->struct_size = sizeof *def;
+    if (rest <= head) return true;
+    bytes += head, rest -= head;
+    if (!sim_read_def(&def->wind, sizeof def->wind, bytes, rest)) return false;
+    memcpy(&wind, bytes, sizeof wind);
+    bytes += wind, rest -= wind;
+    if (rest == 0) return true;
+    if (!sim_read_def(&def->solver, sizeof def->solver, bytes, rest)) return false;
+    memcpy(&solver, bytes, sizeof solver);
+    bytes += solver, rest -= solver;
+    if (rest == 0) return true;
+    if (!sim_read_def(&def->gas, sizeof def->gas, bytes, rest)) return false;
+    memcpy(&gas, bytes, sizeof gas);
+    bytes += gas, rest -= gas;
+    return rest == 0 || sim_read_def(&def->contact, sizeof def->contact, bytes, rest);
+}
+
+SingeResult singe_sim_create(const SingeSimDef *given, SingeSim **out, SingeError *error) {
+    *out = NULL;
+    SingeSimDef def;
+    if (!sim_read_sim_def(given, &def))
+        return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1,
+                         "struct_size is not set; start from singe_default_sim()");
+    TRY(sim_check_def(&def, error));
+    if (!dynamics_runs_here(def.instructions))
+        return error_set(error, SINGE_ERROR_LIMIT, "simulation", -1, "this processor lacks the instructions asked for");
+    Memory memory = memory_make(def.allocator);
+    SingeSim *sim = memory_new(&memory, 1, sizeof *sim);
+    if (!sim) return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
+    sim->memory = memory;
+    sim->def = def;
+    sim->next_generation = 1;
+    if (pool_create(&sim->memory, def.tasks, def.thread_count, &sim->pool)) {
+        singe_sim_destroy(sim);
+        return error_set(error, SINGE_ERROR_MEMORY, "simulation", -1, "out of memory");
+    }
+    *out = sim;
+    return SINGE_OK;
+}
+
+/// Frees what sim_build made, also so that a failed commit can be tried again.
+static void sim_unbuild(SingeSim *sim) {
+    Memory *memory = &sim->memory;
+    heat_plan_free(memory, sim->heat);
+    ablate_plan_free(memory, sim->ablate);
+    dynamics_plan_free(memory, &sim->shell, sim->dynamics);
+    gas_plan_free(memory, sim->gas);
+    tear_plan_free(memory, sim->tear);
+    sim->heat = NULL, sim->ablate = NULL, sim->dynamics = NULL, sim->gas = NULL, sim->tear = NULL;
+    FREE(memory, sim->thickening, sim->shell.sheet_count);
+    FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
+    FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
+    sim->events = (EventList){0};
+    memory_free(memory, (void *)&sim->backup, sim->state.basic_size, 1);
+    state_free(memory, &sim->state);
+    shell_free(memory, &sim->shell);
+}
+
+void singe_sim_destroy(SingeSim *sim) {
+    if (!sim) return;
+    Memory *memory = &sim->memory;
+    pool_destroy(memory, sim->pool);
+    for (uint32_t i = 0; i < sim->sources.count; i++) sim_free_source(sim, &sim->sources.items[i]);
+    for (uint32_t i = 0; i < sim->colliders.count; i++) collider_free(memory, &sim->colliders.items[i]);
+    for (uint32_t i = 0; i < sim->pins.count; i++) sim_free_pin(sim, &sim->pins.items[i]);
+    FREE(memory, sim->sources.items, sim->sources.capacity);
+    FREE(memory, sim->colliders.items, sim->colliders.capacity);
+    FREE(memory, sim->pins.items, sim->pins.capacity);
+    sim_unbuild(sim);
+    for (uint32_t i = 0; i < sim->sheet_count; i++) sheet_source_free(memory, &sim->sheets[i]);
+    FREE(memory, sim->sheets, sim->sheet_capacity);
+    Memory last = *memory;
+    FREE(&last, sim, 1);
+}
+
+void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *capacity, size_t size, uint32_t *index) {
+    char *items;
+    memcpy(&items, items_pointer, sizeof items);
+    uint32_t i = 0;
+    for (; i < *count; i++) {
+        uint32_t generation;
+        memcpy(&generation, items + i * size, sizeof generation);
+        if (generation == 0) break;
+    }
+    if (i == *capacity) {
+        uint32_t grown = *capacity ? 2 * *capacity : 4;
+        if (!memory_grow(&sim->memory, items_pointer, *capacity, grown, size)) return NULL;
+        *capacity = grown;
+        memcpy(&items, items_pointer, sizeof items);
+    }
+    if (i == *count) ++*count;
+    *index = i;
+    return memset(items + i * size, 0, size);
+}
+
+SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id) {
+    *id = (SingeSheetId){0, 0};
+    if (sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "sheet", -1, "sheets are added before singe_sim_commit");
+    if (sim->sheet_count == UINT16_MAX) return sim_fail(sim, SINGE_ERROR_LIMIT, "sheet", -1, "more than 65535 sheets");
+    if (sim->sheet_count == sim->sheet_capacity) {
+        uint32_t grown = sim->sheet_capacity ? 2 * sim->sheet_capacity : 1;
+        if (!memory_grow(&sim->memory, &sim->sheets, sim->sheet_capacity, grown, sizeof *sim->sheets))
+            return sim_fail(sim, SINGE_ERROR_MEMORY, "sheet", -1, "out of memory");
+        sim->sheet_capacity = grown;
+    }
+    SheetSource source = {0};
+    TRY(sheet_source_create(&sim->memory, def, &source, &sim->error));
+    sim->sheets[sim->sheet_count] = source;
+    *id = (SingeSheetId){sim->sheet_count++, 1};
+    return SINGE_OK;
+}
+
+/// Vertices that a sheet has in reserve for tears: half as many as it has, and some for small ones.
+static uint32_t sim_spares(const SingeSim *sim, const Sheet *sheet) {
+    const SingeSolverDef *solver = &sim->def.solver;
+    return solver->tearing && solver->method == SINGE_SOLVER_STRAND ? sheet->vertex_count / 2 + 16 : 0;
+}
+
+SingeResult sim_build(SingeSim *sim) {
+    const SingeSimDef *def = &sim->def;
+    Memory *memory = &sim->memory;
+    Shell *shell = &sim->shell;
+    for (uint32_t s = 0; s < sim->sheet_count; s++)
+        sim->sheets[s].sheet.spare_count = sim_spares(sim, &sim->sheets[s].sheet);
+    TRY(shell_create(memory, sim->sheets, sim->sheet_count, shell, &sim->error));
+    shell->creases = def->solver.creases && def->solver.method == SINGE_SOLVER_STRAND;
+
+    // a particle ignites once, a hole has a cell of its own and so has every piece
+    size_t events = shell->particle_count + 2 * (size_t)shell->cell_count;
+    HeatSettings heat = {.ambient_temperature = def->ambient_temperature,
+                         .tolerance = def->heat_tolerance,
+                         .pace = def->pace,
+                         .scratch_least = events * sizeof *sim->events.items};
+    GasSettings gas = {.def = def->gas,
+                       .gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
+                       .ambient_temperature = def->ambient_temperature,
+                       .time_step = def->time_step,
+                       .pace = def->pace,
+                       .instructions = def->instructions};
+    DynamicsSettings dynamics = {.gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
+                                 .air_density = def->air_density,
+                                 .solver = def->solver,
+                                 .contact = def->contact,
+                                 .time_step = def->time_step,
+                                 .instructions = def->instructions,
+                                 .thread_count = def->tasks.enqueue ? 64 : def->thread_count};
+    bool ok = state_create(memory, shell, &sim->state) == SINGE_OK;
+    ok = ok && (sim->backup = memory_new(memory, sim->state.basic_size, 1)) != NULL;
+    SingeResult result = ok ? heat_plan_create(memory, shell, &heat, &sim->heat, &sim->error) : SINGE_ERROR_MEMORY;
+    if (result && result != SINGE_ERROR_MEMORY) return result;
+    ok = !result;
+    ok = ok && ablate_plan_create(memory, shell, &sim->ablate) == SINGE_OK;
+    ok = ok && dynamics_plan_create(memory, shell, &dynamics, &sim->dynamics) == SINGE_OK;
+    ok = ok && dynamics_plan_reserve(memory, sim->dynamics, sim->colliders.count);
+    ok = ok && (!def->gas.enabled || gas_plan_create(memory, shell, &gas, &sim->gas, &sim->state.gas) == SINGE_OK);
+    float h_sub = ok ? def->time_step / (float)dynamics_plan_substeps(sim->dynamics) : 0;
+    ok = ok && (shell->spare_count == 0 || tear_plan_create(memory, shell, h_sub, &sim->tear) == SINGE_OK);
+    ok = ok && NEW(memory, sim->thickening, shell->sheet_count);
+    ok = ok && NEW(memory, sim->partial, pool_blocks((int)shell->particle_count));
+    ok = ok && NEW(memory, sim->sample, shell->springs[SINGE_BLUE].count);
+    if (!ok) return sim_fail(sim, SINGE_ERROR_MEMORY, "commit", -1, "out of memory");
+    // events come after the heat stage and are gone when the next one begins
+    sim->events = (EventList){.items = heat_scratch(sim->heat), .capacity = events};
+    for (uint32_t s = 0; s < shell->sheet_count; s++) sim->thickening[s] = heat_thickening(sim->heat, s);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_commit(SingeSim *sim) {
+    if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "the simulation is committed already");
+    if (sim->sheet_count == 0) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "there is no sheet");
+    SingeResult result = sim_build(sim);
+    // the first look: pieces are labelled before anything burns
+    if (!result)
+        result = ablate_step(sim->ablate, &sim->shell, &sim->state, sim->pool, sim->def.ambient_temperature,
+                             &sim->state.ablate, &sim->events, &sim->error);
+    if (result) {
+        sim_unbuild(sim);
+        return result;
+    }
+    sim->events.count = 0;
+    sim->heat_start = sim_enthalpy(sim);
+    sim->committed = true;
+    sim_log_commit(sim);
+    return SINGE_OK;
+}

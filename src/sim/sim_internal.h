@@ -1,0 +1,92 @@
+// A simulation: everything a SingeSim owns. Only src/sim includes this.
+#ifndef SIM_SIM_INTERNAL_H
+#define SIM_SIM_INTERNAL_H
+
+#include "ablate/ablate.h"
+#include "burn/burn.h"
+#include "collision/collision.h"
+#include "dynamics/dynamics.h"
+#include "gas/gas.h"
+#include "heat/heat.h"
+#include "tear/tear.h"
+
+struct SingeSim {
+    Memory memory;
+    SingeSimDef def;
+    Pool *pool;
+    SingeError error; ///< of the last failed call
+
+    // description: fixed once committed
+    uint32_t sheet_count, sheet_capacity;
+    SheetSource *sheets;
+    bool committed;
+    Shell shell;
+    float *thickening; ///< [sheet_count] F
+
+    // what the sheets meet
+    uint32_t next_generation;
+    SourceList sources;
+    ColliderList colliders;
+    PinList pins;
+
+    // what changes
+    State state;
+    double heat_start; ///< J, enthalpy at the start
+    void *backup;      ///< the state's basic part before the step
+    EventList events;
+    SingeTimers timers;
+    bool tangle_warned, crossing_warned, crowd_warned; ///< of contact, once each
+    bool heat_warned;  ///< that the diffusion ran out of iterations
+    bool tear_warned;  ///< that a sheet ran out of spare vertices
+
+    // plans and scratch of the stages
+    HeatPlan *heat;
+    AblatePlan *ablate;
+    DynamicsPlan *dynamics;
+    GasPlan *gas; ///< NULL without gas
+    TearPlan *tear; ///< NULL where sheets cannot tear
+    double *partial;      ///< [pool_blocks(particles)]
+    float *sample;        ///< [blue springs], at least as many as cells: of a statistic
+};
+
+/// Notes a failure in sim->error and returns it.
+SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
+
+/// Copies what both headers know of a caller's Def, which begins with its struct_size, over *def of `size`
+/// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is not set.
+bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
+
+/// Checks the numbers of a simulation's Def.
+SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
+
+/// Everything commit builds from sim->sheets, without the first state (also used by load).
+SingeResult sim_build(SingeSim *sim);
+
+/// Tells the log what was committed, and what will look bad.
+void sim_log_commit(const SingeSim *sim);
+/// Tells it once that conduction is less exact than was asked for.
+void sim_log_unconverged(SingeSim *sim);
+/// Tells it that a collider's mesh was inside out.
+void sim_log_turned(const SingeSim *sim, uint32_t collider);
+/// Tells it once that a sheet has no vertices left to tear with.
+void sim_log_short_of_spares(SingeSim *sim);
+
+/// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
+void sim_log_touches(SingeSim *sim, const TouchCounters *touches);
+
+/// Tells it of colliders that sheets begin deep inside of.
+void sim_find_buried(const SingeSim *sim);
+/// Tells it of one, `depth` m deep at `place`.
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place);
+
+/// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
+double sim_enthalpy(const SingeSim *sim);
+
+void sim_free_source(SingeSim *sim, Source *source);
+void sim_free_pin(SingeSim *sim, Pin *pin);
+
+/// Free slot of a list of `size`-byte items that begin with their generation; the item is zeroed and its
+/// generation left 0. NULL when out of memory.
+void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *capacity, size_t size, uint32_t *index);
+
+#endif

@@ -1,0 +1,163 @@
+// Numbers about the present state. Sums are in double and in order of particle, so that they do not
+// depend on the number of threads.
+//
+// Enthalpy H = sum over what is left of C (T - T_amb), C the heat capacity of the unburnt particle
+// (eq 1 adds heat to T without regard to the mass left). What is removed takes its enthalpy along; that
+// counts as lost. Ledger: heat_in + heat_of_combustion - heat_lost = H - H_start.
+#include "sim/sim_internal.h"
+
+#include <math.h>
+
+double sim_enthalpy(const SingeSim *sim) {
+    const Matter *matter = &sim->shell.matter;
+    double sum = 0;
+    for (uint32_t i = 0; i < sim->shell.particle_count; i++)
+        if (sim->state.ablate.particle_flags[i] & SINGE_ALIVE)
+            sum += (double)matter->capacity[i] *
+                   ((double)sim->state.heat.temperature[i] - (double)sim->def.ambient_temperature);
+    return sum;
+}
+
+/// The k-th smallest of n values, which are reordered (Hoare's selection).
+static float stats_select(float *values, size_t n, size_t k) {
+    size_t low = 0, high = n - 1;
+    while (low < high) {
+        float pivot = values[low + (high - low) / 2];
+        size_t i = low, j = high;
+        while (i <= j) {
+            while (values[i] < pivot) i++;
+            while (values[j] > pivot) j--;
+            if (i > j) break;
+            float swap = values[i];
+            values[i++] = values[j], values[j] = swap;
+            if (j-- == 0) break;
+        }
+        if (k <= j && j != SIZE_MAX) high = j;
+        else if (k >= i) low = i;
+        else break;
+    }
+    return values[k];
+}
+
+/// Strain of the mesh's edges: |length/target - 1| of blue springs that are drawn, wholly or in part. Those between two
+/// held particles are left out: nothing in the step can change them.
+static void stats_strain(const SingeSim *sim, SingeStats *stats) {
+    const SpringSet *blue = &sim->shell.springs[SINGE_BLUE];
+    size_t n = 0;
+    double sum = 0;
+    for (uint32_t k = 0; k < blue->count; k++) {
+        if (!(sim->state.ablate.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
+        if (sim->state.dynamics.pinned[blue->ends[k][0]] && sim->state.dynamics.pinned[blue->ends[k][1]]) continue;
+        if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 &&
+            ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
+            continue;
+        Vec d = vec_sub(vec_load(sim->state.dynamics.position[blue->ends[k][1]]),
+                        vec_load(sim->state.dynamics.position[blue->ends[k][0]]));
+        float strain = fabsf(vec_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
+        sum += (double)strain;
+        if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
+        sim->sample[n++] = strain;
+    }
+    if (n == 0) return;
+    stats->strain_mean = sum / (double)n;
+    stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));
+}
+
+/// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its middle.
+static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
+    Vec p[4];
+    for (int i = 0; i < 4; i++) p[i] = vec_load(sim->shell.rest_position[corner[i]]);
+    Vec a = vec_scale(vec_sub(vec_add(p[1], p[2]), vec_add(p[0], p[3])), 0.5f);
+    Vec b = vec_scale(vec_sub(vec_add(p[2], p[3]), vec_add(p[0], p[1])), 0.5f);
+    float ta = 0.5f * (time[1] + time[2] - time[0] - time[3]), tb = 0.5f * (time[2] + time[3] - time[0] - time[1]);
+    float aa = vec_dot(a, a), ab = vec_dot(a, b), bb = vec_dot(b, b), area2 = aa * bb - ab * ab;
+    return area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
+}
+
+/// A front that passes at speed v ignites places a distance d apart d/v after each other.
+static double stats_front_speed(const SingeSim *sim) {
+    size_t n = 0;
+    for (uint32_t c = 0; c < sim->shell.cell_count; c++) {
+        const uint32_t *corner = sim->shell.cells[c];
+        float time[4];
+        bool ignited = true;
+        for (int i = 0; i < 4; i++) ignited &= (time[i] = sim->state.burn.time_ignited[corner[i]]) >= 0;
+        float slope2 = ignited ? stats_slope2(sim, corner, time) : 0;
+        if (slope2 > 0) sim->sample[n++] = 1 / (sqrtf(slope2) * sim->def.pace);
+    }
+    return n ? (double)stats_select(sim->sample, n, n / 2) : 0;
+}
+
+/// A cell of no area has no front on which its centre could be missing.
+static uint32_t stats_inverted(const SingeSim *sim) {
+    const float(*x)[4] = (const float(*)[4])sim->state.dynamics.position;
+    uint32_t inverted = 0;
+    for (uint32_t c = 0; c < sim->shell.cell_count; c++) {
+        if (!(sim->state.ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        const uint32_t *corner = sim->shell.cells[c];
+        Vec p[4], mean = {0, 0, 0};
+        for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]), mean = vec_mad(mean, p[i], 0.25f);
+        Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
+        float above = vec_dot(normal, vec_sub(vec_load(x[shell_centre(&sim->shell, c)]), mean));
+        inverted += !(above > 0) && !(vec_dot(normal, normal) == 0);
+    }
+    return inverted;
+}
+
+static void stats_particles(const SingeSim *sim, SingeStats *stats) {
+    const State *state = &sim->state;
+    const Matter *matter = &sim->shell.matter;
+    double square = 0, moving = 0;
+    for (uint32_t i = 0; i < sim->shell.particle_count; i++) {
+        stats->mass_initial += (double)matter->mass[i];
+        if (!(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+        stats->particles++;
+        stats->mass += (double)matter->mass[i] * (double)state->burn.mass[i];
+        stats->temperature_max = fmaxf(stats->temperature_max, state->heat.temperature[i]);
+        if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
+        Vec v = vec_load(state->dynamics.velocity[i]);
+        square += (double)vec_dot(v, v);
+        moving++;
+    }
+    stats->speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
+}
+
+static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
+    const State *state = &sim->state;
+    stats->mass_burnt = state->burn.mass_burnt;
+    stats->mass_removed = state->ablate.mass_removed;
+    stats->burnt_fraction =
+        stats->mass_initial > 0 ? (stats->mass_burnt + stats->mass_removed) / stats->mass_initial : 0;
+    double missing = stats->mass_initial - stats->mass - stats->mass_burnt - stats->mass_removed;
+    stats->mass_ledger_error = stats->mass_initial > 0 ? fabs(missing) / stats->mass_initial : 0;
+
+    stats->heat_in = state->heat.heat_in;
+    stats->heat_of_combustion = state->heat.heat_of_combustion;
+    stats->heat_lost = state->heat.heat_lost + state->ablate.heat_removed;
+    stats->heat_stored = sim_enthalpy(sim) - sim->heat_start;
+    double most = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
+                       fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
+    double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
+    stats->ledger_error = most > 0 ? fabs(error) / most : 0;
+    stats->ledgers_close =
+        stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
+}
+
+SingeStats singe_sim_stats(const SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    SingeStats stats = {.time = sim->state.time, .pieces = sim->state.ablate.piece_count};
+    if (!sim->committed) return stats;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
+        for (uint32_t k = 0; k < shell->springs[colour].count; k++)
+            stats.springs += sim->state.ablate.spring_flags[colour][k] & SINGE_ALIVE;
+    for (uint32_t c = 0; c < shell->cell_count; c++) stats.cells += sim->state.ablate.cell_flags[c] & SINGE_ALIVE;
+    stats_particles(sim, &stats);
+    stats_ledgers(sim, &stats);
+    stats_strain(sim, &stats);
+    stats.inverted_cells = stats_inverted(sim);
+    stats.tangled_cells = dynamics_plan_touches(sim->dynamics).tangled;
+    stats.tears = sim->state.tear.split_count;
+    stats.front_speed = stats_front_speed(sim);
+    for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
+    return stats;
+}

@@ -1,0 +1,95 @@
+// Read-only views, events, timers, census and the drawn surface.
+#include "sim/sim_internal.h"
+
+SingeView singe_sim_view(const SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    const State *state = &sim->state;
+    SingeView view = {
+        .time = state->time,
+        .step = state->step,
+        .topology_version = state->ablate.topology_version,
+        .particle_count = shell->particle_count,
+        .vertex_count = shell->vertex_count,
+        .cell_count = shell->cell_count,
+        .position = (const float(*)[4])state->dynamics.position,
+        .velocity = (const float(*)[4])state->dynamics.velocity,
+        .rest_position = (const float(*)[4])shell->rest_position,
+        .uv = (const float(*)[2])shell->uv,
+        .area = shell->matter.area,
+        .mass = state->burn.mass,
+        .fuel = state->burn.fuel,
+        .temperature = state->heat.temperature,
+        .temperature_peak = state->heat.temperature_peak,
+        .burn_rate = state->burn.burn_rate,
+        .time_ignited = state->burn.time_ignited,
+        .time_burnt = state->burn.time_burnt,
+        .piece = state->ablate.piece,
+        .particle_flags = state->ablate.particle_flags,
+        .cell_flags = state->ablate.cell_flags,
+        .cells = (const uint32_t(*)[4])shell->cells,
+        .line_force = shell->spare_count ? (const float(*)[6])state->tear.line_force : NULL,
+        .source_vertex = shell->source_vertex,
+    };
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        view.spring_count[colour] = shell->springs[colour].count;
+        view.springs[colour] = (const uint32_t(*)[2])shell->springs[colour].ends;
+        view.spring_length[colour] = state->burn.spring_length[colour];
+        view.spring_rest[colour] = shell->springs[colour].rest;
+        view.spring_flags[colour] = state->ablate.spring_flags[colour];
+    }
+    return view;
+}
+
+const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
+    *count = sim->events.count;
+    return sim->events.items;
+}
+
+SingeGas singe_sim_gas(const SingeSim *sim) {
+    return sim->gas ? gas_view(sim->gas) : (SingeGas){0};
+}
+
+SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }
+
+SingeCensus singe_sim_census(const SingeSim *sim) {
+    const Shell *shell = &sim->shell;
+    SingeCensus census = {.cells = shell->cell_count, .memory = sim->memory.held};
+    double springs = 0, strands = 0, size = 0;
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
+        census.springs[colour] = shell_strand_springs(shell, colour);
+        census.strands[colour] = shell->springs[colour].strand_count;
+        census.families[colour] = shell->springs[colour].family_count;
+        springs += census.springs[colour];
+        strands += shell->springs[colour].strand_count;
+    }
+    census.mean_strand_length = strands > 0 ? springs / strands : 0;
+    for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
+    census.cell_size = (float)size;
+    for (uint32_t i = 0; i < shell->particle_count; i++) census.particles += shell->matter.area[i] > 0;
+    return census;
+}
+
+/// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
+static float leaves_most(const SingeSim *sim) {
+    float cell = INFINITY;
+    if (!sim->def.contact.enabled) return 0;
+    for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
+    return 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell);
+}
+
+SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
+    SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
+                            leaves_most(sim)};
+    if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
+    float *room;
+    if (!NEW(&sim->memory, room, sim->shell.vertex_count))
+        return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
+    dynamics_plan_room(sim->dynamics, &sim->shell, &sim->state, room);
+    detail.room = room;
+    SingeResult result = ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
+                                             surface, &sim->error);
+    FREE(&sim->memory, room, sim->shell.vertex_count);
+    return result;
+}

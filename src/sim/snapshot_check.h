@@ -1,0 +1,17 @@
+// What must hold of a simulation that was read back: all that stages and public functions rely on, whoever wrote it.
+#ifndef SIM_SNAPSHOT_CHECK_H
+#define SIM_SNAPSHOT_CHECK_H
+
+#include "sim/sim_internal.h"
+
+/// Objects have generations that were given out.
+bool snapshot_generations_fit(const SingeSim *sim);
+
+/// A pin's particles are in order and exist; its anchors are places.
+bool snapshot_pin_fits(const Shell *shell, const Pin *pin);
+
+/// The State holds what steps can leave there, for the shell as it has torn and the pins that there are. Target lengths
+/// and the places of lanes without a strand follow from the rest: they are put as they should be.
+bool snapshot_state_fits(SingeSim *sim);
+
+#endif

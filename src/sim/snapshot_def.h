@@ -1,0 +1,20 @@
+// Defs in a snapshot: each field that counts, without padding, pointers and hooks.
+#ifndef SIM_SNAPSHOT_DEF_H
+#define SIM_SNAPSHOT_DEF_H
+
+#include "common/stream.h"
+#include "sim/sim_internal.h"
+
+/// All but hooks and thread count, which stay as they are when reading.
+void snapshot_sim_def(Stream *stream, SingeSimDef *def);
+
+/// Name, counts, material and the rest of a sheet as it was added.
+void snapshot_sheet_def(Stream *stream, Sheet *sheet);
+
+/// Without path, picture, strength and callback.
+void snapshot_source_def(Stream *stream, SingeSourceDef *def);
+
+/// Without path.
+void snapshot_collider_def(Stream *stream, SingeColliderDef *def);
+
+#endif

@@ -1,0 +1,250 @@
+// Marching triangles over fine triangles and coarse ones.
+//
+// A cell's triangle is k^2 fine ones in k rows, k = 1 for a flat cell that is not split. The row at the side has as many
+// parts along the side as both of its cells draw there. Each is clipped as in surface.c, once to count and once to draw;
+// a fine side's cut is made once and shared, on the sides of cells through `cuts`.
+//
+// A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn
+// there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
+// centre at rest and now:
+//
+//   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
+#include "surface/surface_fine.h"
+
+#include <string.h>
+
+/// surface_cut of a fine side: a few micrometres, which floats tell apart some metres from the origin and nobody sees.
+#define NEAREST 0.03125f
+
+/// How many times as long as at rest it may be.
+#define TORN 1.6f
+
+typedef struct Marching {
+    Fine *fine;
+    bool drawing;
+    uint64_t triangles, crossed; ///< counted
+} Marching;
+
+/// A triangle to clip. cut[i] belongs to the edge from corner i to the next one.
+typedef struct Piece {
+    uint32_t point[3];
+    FinePlace place[3];
+    uint32_t *cut[3];
+} Piece;
+
+static uint32_t add_vertex(Fine *fine, FinePlace place, float mass, uint32_t source) {
+    fine->vertices[fine->vertex_count] = (FineVertex){place, mass, source};
+    return ++fine->vertex_count;
+}
+
+static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
+    uint32_t point = piece->point[corner];
+    if (!fine->drawn[point])
+        fine->drawn[point] = add_vertex(fine, piece->place[corner], fine->values[point].mass,
+                                        point < fine->shell->vertex_count ? point : SHELL_NONE);
+    return fine->drawn[point];
+}
+
+/// The vertex that cuts edge `edge`, of which one end is inside.
+static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
+    int inside = edge, outside = edge == 2 ? 0 : edge + 1;
+    if (fine->values[piece->point[inside]].level < 0) inside = outside, outside = edge;
+    const FineValue *in = &fine->values[piece->point[inside]], *out = &fine->values[piece->point[outside]];
+    float t = surface_cut(in->level, out->level, NEAREST);
+    if (!(t > 0)) return point_vertex(fine, piece, inside);
+    if (*piece->cut[edge]) return *piece->cut[edge];
+    FinePlace place = piece->place[inside];
+    for (int i = 0; i < 3; i++) place.weight[i] += t * (piece->place[outside].weight[i] - place.weight[i]);
+    return *piece->cut[edge] = add_vertex(fine, place, in->mass + t * (out->mass - in->mass), SHELL_NONE);
+}
+
+static void draw(Fine *fine, const Piece *piece) {
+    const float level[3] = {fine->values[piece->point[0]].level, fine->values[piece->point[1]].level,
+                            fine->values[piece->point[2]].level};
+    const int first = surface_fan(level, NEAREST);
+    uint32_t polygon[4];
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        int a = (first + i) % 3, b = (a + 1) % 3;
+        bool in = level[a] >= 0, next = level[b] >= 0;
+        uint32_t vertex[2];
+        int made = 0;
+        if (in) vertex[made++] = point_vertex(fine, piece, a);
+        if (in != next) vertex[made++] = cut_vertex(fine, piece, a);
+        for (int m = 0; m < made; m++)
+            if (!count || polygon[count - 1] != vertex[m]) polygon[count++] = vertex[m];
+    }
+    if (count > 1 && polygon[count - 1] == polygon[0]) count--;
+    for (int k = 2; k < count; k++) {
+        uint32_t *triangle = fine->surface->triangles[fine->surface->triangle_count++];
+        triangle[0] = polygon[0] - 1, triangle[1] = polygon[k - 1] - 1, triangle[2] = polygon[k] - 1;
+    }
+}
+
+static int inside_count(const Fine *fine, const uint32_t point[3]) {
+    int inside = 0;
+    for (int i = 0; i < 3; i++) inside += fine->values[point[i]].level >= 0;
+    return inside;
+}
+
+static void count(Marching *march, int inside) {
+    march->triangles += inside == 2 ? 2 : inside > 0;
+    march->crossed += inside == 1 || inside == 2;
+}
+
+/// Entry of a cell's side in the cuts, for its i-th part of `parts`.
+static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, int i) {
+    const Shell *shell = fine->shell;
+    uint32_t blue = shell->cell_springs[cell].blue[side];
+    bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[cell][side];
+    return &fine->cuts[fine->side_cut[blue] + (uint32_t)(forwards ? i : parts - 1 - i)];
+}
+
+// ---- what has been torn
+
+/// Products of a cell's triangle's sides from its virtual centre.
+static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
+    Vec centre = {0, 0, 0};
+    for (int i = 0; i < 4; i++) centre = vec_mad(centre, vec_load(field[at[i]]), 0.25f);
+    Vec a = vec_sub(vec_load(field[at[side]]), centre), b = vec_sub(vec_load(field[at[(side + 1) & 3]]), centre);
+    product[0] = vec_dot(a, a), product[1] = vec_dot(a, b), product[2] = vec_dot(b, b);
+}
+
+static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
+    const CellSprings *springs = &fine->shell->cell_springs[cell];
+    uint8_t *const *flags = fine->state->ablate.spring_flags, left = SINGE_ALIVE;
+    for (int i = 0; i < 4; i++) left &= flags[SINGE_BLUE][springs->blue[i]] & flags[SINGE_RED][springs->red[i]];
+    return !left;
+}
+
+bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
+    if (!has_lost_a_spring(fine, cell)) return false;
+    float rest[3], now[3];
+    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->shell->rest_position, rest);
+    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->state->dynamics.position, now);
+    float det = rest[0] * rest[2] - rest[1] * rest[1];
+    float half_trace = 0.5f * (rest[2] * now[0] - 2 * rest[1] * now[1] + rest[0] * now[2]) / det;
+    float product = (now[0] * now[2] - now[1] * now[1]) / det;
+    return half_trace + sqrtf(fmaxf(0, half_trace * half_trace - product)) > TORN * TORN;
+}
+
+// ---- a triangle of a cell
+
+/// A row of fine triangles: between `lower` parts of the line j and `upper` parts of the line j + 1. Cuts of both lines'
+/// parts, and of the first and the last side between them.
+typedef struct Row {
+    uint32_t cell;
+    int side, splits, j, lower, upper;
+    uint32_t *lower_cut[FINE_SPLITS_MAX], *upper_cut[FINE_SPLITS_MAX], *first, *last;
+} Row;
+
+/// Point i of the row's lower or upper line.
+static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint32_t *point, FinePlace *place) {
+    int j = row->j + upper, parts = row->j == 0 && !upper ? row->lower : row->splits;
+    *point = j == 0 ? fine_side_point(fine, row->cell, row->side, parts, i)
+                    : fine_point(fine, row->cell, row->side, row->splits, i, j);
+    *place = fine_point_place(row->cell, row->side, parts, i, j);
+}
+
+/// Where a line's point i is along the row, 0 to 1.
+static float along_row(const Row *row, bool upper, int i) {
+    int parts = upper ? row->upper : row->lower;
+    float inset = upper ? 0.5f / (float)(row->splits - row->j) : 0;
+    return parts == 0 ? 0.5f : inset + (1 - 2 * inset) * (float)i / (float)parts;
+}
+
+/// Whether the next triangle stands on the lower line: where that leaves the lines' ends nearer to each other.
+static bool stands(const Row *row, int low, int high) {
+    if (low == row->lower || high == row->upper) return low < row->lower;
+    return along_row(row, false, low + 1) - along_row(row, true, high) <=
+           along_row(row, true, high + 1) - along_row(row, false, low);
+}
+
+static void march_row(Marching *march, const Row *row) {
+    Fine *fine = march->fine;
+    uint32_t rung[2 * FINE_SPLITS_MAX + 1] = {0}; // cuts of the sides between the lines
+    int low = 0, high = 0, steps = row->lower + row->upper;
+    for (int step = 0; step < steps; step++) {
+        Piece piece;
+        bool on_lower = stands(row, low, high);
+        row_point(fine, row, false, low, &piece.point[0], &piece.place[0]);
+        row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.place[1]);
+        row_point(fine, row, true, high, &piece.point[2], &piece.place[2]);
+        uint32_t *back = step == 0 ? row->first : &rung[step], *on = step + 1 == steps ? row->last : &rung[step + 1];
+        piece.cut[0] = on_lower ? row->lower_cut[low] : on, piece.cut[1] = on_lower ? on : row->upper_cut[high];
+        piece.cut[2] = back;
+        int inside = inside_count(fine, piece.point);
+        if (!march->drawing) count(march, inside);
+        else if (inside > 0) draw(fine, &piece);
+        if (on_lower) low++;
+        else high++;
+    }
+}
+
+/// The rows of one of a cell's four triangles. `first` and `last` are cuts of its sides towards the centre.
+static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *first, uint32_t *last) {
+    const Fine *fine = march->fine;
+    int splits = fine->splits[cell];
+    uint32_t line[2][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines between rows
+    for (int j = 0; j < splits; j++) {
+        Row row = {cell, side, splits, j, j == 0 ? fine_parts(fine, cell, side) : splits - j, splits - j - 1,
+                   .first = &first[j], .last = &last[j]};
+        memset(line[j & 1], 0, sizeof line[j & 1]);
+        for (int i = 0; i < row.lower; i++)
+            row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];
+        for (int i = 0; i < row.upper; i++) row.upper_cut[i] = &line[j & 1][i];
+        march_row(march, &row);
+    }
+}
+
+static void march_cell(Marching *march, uint32_t cell) {
+    uint32_t line[4][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines from the corners to the centre
+    for (int side = 0; side < 4; side++)
+        if (!fine_is_torn(march->fine, cell, side)) march_triangle(march, cell, side, line[side], line[(side + 1) & 3]);
+}
+
+// ---- all
+
+static void march_cells(Marching *march) {
+    const Fine *fine = march->fine;
+    for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
+        if (fine->cell_triangle && march->drawing) fine->cell_triangle[c] = fine->surface->triangle_count;
+        if (!(fine->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        uint32_t before = fine->surface->triangle_count;
+        march_cell(march, c);
+        if (fine_is_split(fine, c)) fine->surface->fine_triangle_count += fine->surface->triangle_count - before;
+    }
+    if (fine->cell_triangle && march->drawing)
+        fine->cell_triangle[fine->shell->cell_count] = fine->surface->triangle_count;
+}
+
+/// Lays out the cuts on the cells' sides.
+static void lay_cuts(Fine *fine) {
+    uint32_t sides = fine->shell->springs[SINGE_BLUE].count;
+    fine->side_cut[0] = 0;
+    for (uint32_t s = 0; s < sides; s++) fine->side_cut[s + 1] = fine->side_cut[s] + fine->parts[s];
+    fine->cut_count = fine->side_cut[sides];
+}
+
+static uint64_t points_inside(const Fine *fine) {
+    uint64_t inside = 0;
+    for (uint32_t p = 0; p < fine->point_count; p++) inside += fine->values[p].level >= 0;
+    return inside;
+}
+
+SingeResult fine_march(Fine *fine, SingeError *error) {
+    Marching march = {.fine = fine};
+    lay_cuts(fine);
+    if (!NEW(fine->memory, fine->cuts, fine->cut_count) || !NEW(fine->memory, fine->drawn, fine->point_count))
+        return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+    march_cells(&march);
+    TRY(surface_reserve_triangles(fine->surface, march.triangles, error));
+    uint64_t most = points_inside(fine) + 2 * march.crossed; // a triangle has two cuts, and most share them
+    if (most > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
+    fine->vertex_capacity = (uint32_t)most;
+    if (!NEW(fine->memory, fine->vertices, fine->vertex_capacity))
+        return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+    march.drawing = true;
+    march_cells(&march);
+    return SINGE_OK;
+}

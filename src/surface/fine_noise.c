@@ -1,0 +1,99 @@
+// Where a place is drawn: burnt edges crumble.
+//
+// Noise of the rest position r(x), 0 to `reach` and fixed to the paper, says how far the edge is eaten at x:
+//
+//   L(x) = min { S(x), S(x + r u_1), S(x + r u_2), S(x + r u_3) },   u_i three directions 120 degrees apart
+//
+// with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of
+// the directions another noise. What is drawn is L >= 0: about the places farther than r from the edge of S. As S
+// never grows, nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where
+// the fire does, and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the
+// place where L is taken, so that char follows the edge.
+//
+// r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
+// sheet and its grid.
+#include "surface/surface_fine.h"
+#include "common/random.h"
+
+/// The largest features of the noise, m; its mean depth over the reach, the first octave's strength and an octave's
+/// over that of the one before.
+#define NOISE_SIZE 3e-3f
+#define NOISE_MEAN 0.45f
+#define NOISE_STRENGTH 0.7f
+#define NOISE_GAIN 2.3f
+
+int fine_octaves(float spacing) {
+    int octaves = 1;
+    for (float size = 0.5f * NOISE_SIZE; size >= 1.6f * spacing && octaves < 8; size *= 0.5f) octaves++;
+    return octaves;
+}
+
+static const float two_pi = 6.2831853f;
+
+Vec fine_rest(const Shell *shell, FinePlace place) {
+    const uint32_t *at = shell->cells[place.cell];
+    float quarter = 0.25f * place.weight[2];
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) {
+        float weight = quarter;
+        if (i == place.side) weight += place.weight[0];
+        if (i == ((place.side + 1) & 3)) weight += place.weight[1];
+        sum = vec_mad(sum, vec_load(shell->rest_position[at[i]]), weight);
+    }
+    return sum;
+}
+
+Vec fine_askew(Vec p) {
+    return vec(0.7447f * p.x - 0.5389f * p.y + 0.3937f * p.z, 0.6325f * p.x + 0.7574f * p.y - 0.1598f * p.z,
+               -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
+}
+
+/// The noise at a place: how far it eats, m, and the direction, as an angle.
+static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, float *angle) {
+    Vec p = vec_scale(fine_askew(fine_rest(fine->shell, place)), 1 / NOISE_SIZE);
+    float sum = 0, strength = NOISE_GAIN;
+    for (int octave = 0; octave < sheet->octaves; octave++) {
+        float noise = random_noise(p.x, p.y, p.z, sheet->seed + (uint32_t)octave);
+        if (octave <= 1) *angle = 3 * two_pi * noise;
+        sum += strength * (noise - 0.5f);
+        strength *= NOISE_STRENGTH;
+        p = vec_add(vec_scale(p, 2), vec(17.31f, 5.77f, 11.83f));
+    }
+    float depth = fabsf(NOISE_MEAN + sum); // folded back where it leaves 0 to 1, so that no edge is smooth
+    if (depth > 1) depth = fmaxf(2 - depth, 0);
+    return sheet->reach * depth;
+}
+
+/// A step of at most half a cell.
+static float half_at_most(float length, float axis) {
+    return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0;
+}
+
+/// S at a place.
+static float smooth_level(const Fine *fine, FinePlace place) {
+    float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], place);
+    if (fine->flags[place.cell] & FINE_WHOLE) return level;
+    return fminf(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], place)));
+}
+
+FineValue fine_value(const Fine *fine, FinePlace place) {
+    const Shell *shell = fine->shell;
+    uint32_t sheet = shell->matter.sheet[shell_centre(shell, place.cell)];
+    FinePlace least_place = place;
+    float least = smooth_level(fine, place), angle = 0, x, y;
+    if (fine->sheets[sheet].reach > 0) {
+        float depth = eaten(fine, place, &fine->sheets[sheet], &angle);
+        x = half_at_most(depth, fine->axes[place.cell][0]), y = half_at_most(depth, fine->axes[place.cell][1]);
+        float c = cosf(angle), s = sinf(angle);
+        const float across = 0.8660254f; // of 120 degrees
+        const float direction[3][2] = {{c, s}, {-0.5f * c - across * s, across * c - 0.5f * s},
+                                       {-0.5f * c + across * s, -across * c - 0.5f * s}};
+        for (int i = 0; i < 3; i++) {
+            FinePlace there = fine_walk(shell, place, x * direction[i][0], y * direction[i][1]);
+            float value = smooth_level(fine, there);
+            if (value < least) least = value, least_place = there;
+        }
+    }
+    if (fine->flags[place.cell] & FINE_LIP) least = fminf(least, fine_lip_level(fine, place));
+    return (FineValue){least, fine_spline_at(shell, &fine->splines[SPLINE_MASS], least_place)};
+}

@@ -1,0 +1,313 @@
+// Which cells are split, and the points that the level is taken at.
+//
+// A cell is near the front where the level in it or in the eight cells around it may be negative, by the bounds of its
+// spline, and may be positive in itself. Its sides and triangles get points, k - 1 within a side and within each line
+// from a corner to the centre, (k - 1)(k - 2)/2 within a triangle, and the level is evaluated there; on a side once,
+// for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles will do.
+//
+// Unless it is bent: then it gets the points that show how, in fewer parts. Its sides are drawn in the more of its parts
+// and those of the cell across.
+#include "surface/surface_fine.h"
+
+#include <string.h>
+
+static bool alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
+
+static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
+    uint32_t other = shell_neighbour(fine->shell, cell, side);
+    return other != SHELL_NONE && !alive(fine, other);
+}
+
+// ---- numbering
+
+/// Lengths of a cell's two axes at rest.
+static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
+    const uint32_t *at = shell->cells[cell];
+    Vec corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
+    axes[0] = 0.5f * vec_length(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])));
+    axes[1] = 0.5f * vec_length(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])));
+}
+
+/// Flags of the cells by the bounds of their splines, and their axes.
+static void bound_cells(Fine *fine) {
+    for (uint32_t c = 0; c < fine->shell->cell_count; c++) {
+        float low, high, whole, wholest, lightest, heaviest;
+        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_LEVEL], c, &low, &high);
+        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_WHOLE], c, &whole, &wholest);
+        fine_spline_bounds(fine->shell, &fine->splines[SPLINE_MASS], c, &lightest, &heaviest);
+        low = fminf(low, fine_whole_level(whole));
+        fine->low[c] = low;
+        measure_axes(fine->shell, c, fine->axes[c]);
+        fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
+        if (whole == 1) fine->flags[c] |= FINE_WHOLE;
+        if (alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours have been asked
+    }
+}
+
+static bool negative_around(const Fine *fine, uint32_t cell) {
+    const Shell *shell = fine->shell;
+    for (int i = 0; i < 4; i++) {
+        uint32_t v = shell->cells[cell][i];
+        for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
+            if (fine->low[shell->fan[k]] < 0) return true;
+    }
+    return false;
+}
+
+static uint32_t side_of_cell(const Fine *fine, uint32_t cell, int side) {
+    return fine->shell->cell_springs[cell].blue[side];
+}
+
+static int inner_points(int splits) { return 4 * (splits - 1) + 2 * (splits - 1) * (splits - 2); }
+
+static void number_cell(Fine *fine, uint32_t cell, uint64_t *point) {
+    int splits = fine_splits(fine, cell);
+    for (int i = 0; i < 4; i++) {
+        uint32_t blue = side_of_cell(fine, cell, i);
+        if (fine->side_point[blue] != SHELL_NONE) continue;
+        fine->side_owner[fine->side_count++] = 4 * cell + (uint32_t)i;
+        fine->side_point[blue] = (uint32_t)*point;
+        *point += (uint64_t)splits - 1;
+    }
+    fine->cell_point[cell] = (uint32_t)*point;
+    fine->near[fine->near_count++] = cell;
+    *point += (uint64_t)inner_points(splits);
+}
+
+/// Points of bent cells and of their sides, in case that they are not split.
+static void number_bent(Fine *fine, uint64_t *point) {
+    const Shell *shell = fine->shell;
+    memset(fine->parts, 1, shell->springs[SINGE_BLUE].count);
+    for (uint32_t c = 0; c < shell->cell_count; c++)
+        for (int i = 0; i < 4 && fine->bent[c] > 1; i++) {
+            uint8_t *parts = &fine->parts[side_of_cell(fine, c, i)];
+            if (*parts < fine->bent[c]) *parts = fine->bent[c];
+        }
+    for (uint32_t s = 0; s < shell->springs[SINGE_BLUE].count; s++) {
+        fine->bent_side[s] = (uint32_t)*point;
+        *point += (uint64_t)fine->parts[s] - 1;
+    }
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->bent_point[c] = (uint32_t)*point;
+        *point += (uint64_t)inner_points(fine->bent[c]);
+    }
+}
+
+static SingeResult number(Fine *fine, SingeError *error) {
+    const Shell *shell = fine->shell;
+    uint64_t point = shell->particle_count;
+    memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (!(fine->flags[c] & FINE_NEAR)) continue;
+        bool near = fine->flags[c] & FINE_LIP || negative_around(fine, c);
+        if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
+        else fine->flags[c] &= (uint8_t)~FINE_NEAR;
+        if (point > INT32_MAX) break;
+    }
+    number_bent(fine, &point);
+    if (point > INT32_MAX)
+        return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "the drawn surface's detail is too fine");
+    fine->point_count = (uint32_t)point;
+    return SINGE_OK;
+}
+
+uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, int i) {
+    const uint32_t *at = fine->shell->cells[cell];
+    if (i == 0) return at[side];
+    if (i == parts) return at[(side + 1) & 3];
+    uint32_t blue = side_of_cell(fine, cell, side);
+    bool forwards = fine->shell->springs[SINGE_BLUE].ends[blue][0] == at[side];
+    return fine->side_point[blue] + (uint32_t)((forwards ? i : parts - i) - 1);
+}
+
+uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j) {
+    int next = (side + 1) & 3, line = splits - 1;
+    if (j == splits) return shell_centre(fine->shell, cell);
+    if (j == 0) return fine_side_point(fine, cell, side, splits, i);
+    uint32_t first = fine->cell_point[cell];
+    if (i == 0) return first + (uint32_t)(side * line + j - 1);
+    if (i + j == splits) return first + (uint32_t)(next * line + j - 1);
+    int row = (j - 1) * line - (j - 1) * j / 2;
+    return first + (uint32_t)(4 * line + side * (line * (splits - 2) / 2) + row + i - 1);
+}
+
+FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j) {
+    float part = 1 / (float)splits;
+    return (FinePlace){cell, (uint8_t)side, {(float)(splits - i - j) * part, (float)i * part, (float)j * part}};
+}
+
+// ---- evaluation
+
+static bool even_around(const Fine *fine, uint32_t vertex) {
+    const Shell *shell = fine->shell;
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
+        if (!(fine->flags[shell->fan[k]] & FINE_EVEN)) return false;
+    return true;
+}
+
+/// What a value is beside a cell that is gone: no more than the straight line between its ends has.
+static FineValue held_back(FineValue value, float level) {
+    if (level < value.level) value.level = level;
+    return value;
+}
+
+static FineValue particle_value(const Fine *fine, uint32_t particle) {
+    return (FineValue){fine->raw_level[particle], fine->state->burn.mass[particle]};
+}
+
+static void evaluate_vertices(void *context, int begin, int end) {
+    Fine *fine = context;
+    const Shell *shell = fine->shell;
+    for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
+        uint32_t home = SHELL_NONE;
+        bool gone = false;
+        for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
+            if (!alive(fine, shell->fan[k])) gone = true;
+            else if (home == SHELL_NONE) home = shell->fan[k];
+        }
+        fine->values[v] = (FineValue){-1, 0};
+        if (home == SHELL_NONE) continue;
+        fine->values[v] = particle_value(fine, v);
+        if (even_around(fine, v)) continue;
+        uint8_t corner = 0;
+        while (shell->cells[home][corner] != v) corner++;
+        fine->values[v] = fine_value(fine, (FinePlace){home, corner, {1, 0, 0}});
+        if (gone) fine->values[v] = held_back(fine->values[v], fine->raw_level[v]);
+    }
+}
+
+static void evaluate_centres(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        FineValue *value = &fine->values[shell_centre(fine->shell, c)];
+        *value = (FineValue){-1, 0};
+        if (!alive(fine, c)) continue;
+        if (fine->flags[c] & FINE_EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
+        else *value = fine_value(fine, (FinePlace){c, 0, {0, 0, 1}});
+    }
+}
+
+static void evaluate_sides(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (int s = begin; s < end; s++) {
+        uint32_t cell = fine->side_owner[s] / 4;
+        int side = (int)(fine->side_owner[s] & 3), splits = fine_splits(fine, cell);
+        const uint32_t *at = fine->shell->cells[cell];
+        bool gone = gone_beside(fine, cell, side);
+        for (int i = 1; i < splits; i++) {
+            FinePlace place = fine_point_place(cell, side, splits, i, 0);
+            FineValue value = fine_value(fine, place);
+            if (gone)
+                value = held_back(value, place.weight[0] * fine->raw_level[at[side]] +
+                                             place.weight[1] * fine->raw_level[at[(side + 1) & 3]]);
+            fine->values[fine_point(fine, cell, side, splits, i, 0)] = value;
+        }
+    }
+}
+
+/// A cell is split where its points are not all on one side of the level.
+static bool differs(const Fine *fine, uint32_t cell, int splits) {
+    bool inside = false, outside = false;
+    for (int side = 0; side < 4; side++)
+        for (int j = 0; j <= splits; j++)
+            for (int i = 0; i + j <= splits; i++) {
+                float level = fine->values[fine_point(fine, cell, side, splits, i, j)].level;
+                inside |= level >= 0, outside |= level < 0;
+                if (inside && outside) return true;
+            }
+    return false;
+}
+
+static void evaluate_cells(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (int n = begin; n < end; n++) {
+        uint32_t cell = fine->near[n];
+        int splits = fine_splits(fine, cell);
+        for (int side = 0; side < 4; side++)
+            for (int j = 1; j < splits; j++)
+                for (int i = 0; i + j < splits; i++) // the line i + j = k is the next triangle's i = 0
+                    fine->values[fine_point(fine, cell, side, splits, i, j)] =
+                        fine_value(fine, fine_point_place(cell, side, splits, i, j));
+    }
+}
+
+/// Not while cells are evaluated, which look at the flags of others.
+static void mark_split(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (int n = begin; n < end; n++)
+        if (differs(fine, fine->near[n], fine_splits(fine, fine->near[n]))) fine->flags[fine->near[n]] |= FINE_SPLIT;
+}
+
+// ---- what is bent and not split
+
+/// Decides how cells and their sides are drawn.
+static void settle(Fine *fine) {
+    const Shell *shell = fine->shell;
+    uint32_t *split_side = fine->bent_side; // the two change places; back where a side belongs to a split cell
+    fine->bent_side = fine->side_point, fine->side_point = split_side;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        fine->splits[c] = fine->bent[c];
+        if (!fine_is_split(fine, c)) fine->cell_point[c] = fine->bent_point[c];
+    }
+    for (uint32_t n = 0; n < fine->near_count; n++) {
+        uint32_t c = fine->near[n];
+        if (!fine_is_split(fine, c)) continue;
+        fine->splits[c] = (uint8_t)fine_splits(fine, c);
+        for (int i = 0; i < 4; i++) {
+            uint32_t blue = side_of_cell(fine, c, i);
+            fine->parts[blue] = fine->splits[c], fine->side_point[blue] = fine->bent_side[blue];
+        }
+    }
+}
+
+/// The value at a place of a cell that is not split: on the same side of the level as at `particle`.
+static FineValue bent_value(const Fine *fine, uint32_t particle, FinePlace place) {
+    const FineValue *there = &fine->values[particle];
+    if (fine->flags[place.cell] & FINE_EVEN) return *there;
+    FineValue value = fine_value(fine, place);
+    value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
+    return value;
+}
+
+/// Whether a cell's side gets its points from this cell, and for bends.
+static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
+    uint32_t other = shell_neighbour(fine->shell, cell, side);
+    if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
+    return other == SHELL_NONE || !alive(fine, other) || (cell < other && !fine_is_split(fine, other));
+}
+
+static void evaluate_bent(void *context, int begin, int end) {
+    Fine *fine = context;
+    for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
+        int splits = fine->splits[c];
+        if (!alive(fine, c) || fine_is_split(fine, c)) continue;
+        for (int side = 0; side < 4; side++) {
+            int parts = fine_parts(fine, c, side);
+            for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
+                fine->values[fine_side_point(fine, c, side, parts, i)] =
+                    bent_value(fine, fine->shell->cells[c][side], fine_point_place(c, side, parts, i, 0));
+            for (int j = 1; j < splits; j++)
+                for (int i = 0; i + j < splits; i++)
+                    fine->values[fine_point(fine, c, side, splits, i, j)] =
+                        bent_value(fine, shell_centre(fine->shell, c), fine_point_place(c, side, splits, i, j));
+        }
+    }
+}
+
+SingeResult fine_points(Fine *fine, SingeError *error) {
+    const Shell *shell = fine->shell;
+    bound_cells(fine);
+    fine_lips(fine);
+    TRY(number(fine, error));
+    if (!NEW(fine->memory, fine->values, fine->point_count))
+        return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
+    pool_for(fine->pool, (int)shell->vertex_count, 256, evaluate_vertices, fine);
+    pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_centres, fine);
+    pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);
+    pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
+    pool_for(fine->pool, (int)fine->near_count, 64, mark_split, fine);
+    settle(fine);
+    pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_bent, fine);
+    return SINGE_OK;
+}

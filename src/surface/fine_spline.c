@@ -1,0 +1,146 @@
+// A smooth field over the sheet from its values at the particles.
+//
+// On the body-centred square the cells' triangles are a four-direction mesh. On it the Zwart-Powell element, centred on
+// the cells, gives a C1 piecewise quadratic: with q of a cell and its triangle's corners A, B and centre C,
+//
+//   q    = f_C / 2 + (f_1 + f_2 + f_3 + f_4) / 8
+//   b_AB = (q + q') / 2             q' of the cell across the side; (f_A + f_B) / 2 where there is none
+//   b_A  = mean of b of the sides at A;                                f_A at the sheet's border
+//   b_AC = (b_AB + b_A'A) / 2       of the two sides of the cell at A
+//   b_C  = mean of b of the cell's four sides
+//
+//   S = b_A x^2 + b_B y^2 + b_C z^2 + 2 (b_AB x y + b_AC x z + b_BC y z)     (Bernstein-Bezier, barycentric x, y, z)
+//
+// (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
+// regular: C1 but at their irregular vertices). All weights are positive: where no particle's mass grows, nor does S.
+// It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
+#include "surface/surface_fine.h"
+
+#include <string.h>
+
+static void cell_values(const Fine *fine, const float *values) {
+    const Shell *shell = fine->shell;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        float corners = values[at[0]] + values[at[1]] + values[at[2]] + values[at[3]];
+        fine->cell_value[c] = 0.5f * values[shell_centre(shell, c)] + 0.125f * corners;
+    }
+}
+
+/// The cells' values are in place. Without values at the particles, the sheet goes on evenly beyond its border.
+static void side_coefficients(const Fine *fine, const float *values, float *edge) {
+    const Shell *shell = fine->shell;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        const uint32_t *at = shell->cells[c];
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = shell_neighbour(shell, c, i), blue = shell->cell_springs[c].blue[i];
+            if (other != SHELL_NONE) edge[blue] = 0.5f * (fine->cell_value[c] + fine->cell_value[other]);
+            else edge[blue] = values ? 0.5f * (values[at[i]] + values[at[(i + 1) & 3]]) : fine->cell_value[c];
+        }
+    }
+}
+
+static void corner_coefficients(const Fine *fine, const float *values, Spline *spline) {
+    const Shell *shell = fine->shell;
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    memset(spline->corner, 0, shell->vertex_count * sizeof *spline->corner);
+    for (uint32_t s = 0; s < blue->count; s++)
+        for (int end = 0; end < 2; end++) spline->corner[blue->ends[s][end]] += spline->edge[s];
+    for (uint32_t v = 0; v < shell->vertex_count; v++) {
+        uint32_t cells = shell->fan_first[v + 1] - shell->fan_first[v];
+        uint32_t sides = cells + fine->plan->rim[v]; // one more at the border
+        if (cells == 0 || (values && fine->plan->rim[v])) spline->corner[v] = values ? values[v] : 0;
+        else spline->corner[v] /= (float)sides;
+    }
+}
+
+void fine_spline(const Fine *fine, const float *values, Spline *spline) {
+    cell_values(fine, values);
+    side_coefficients(fine, values, spline->edge);
+    corner_coefficients(fine, values, spline);
+}
+
+void fine_spline_cells(const Fine *fine, Spline *spline) {
+    const uint8_t *flags = fine->state->ablate.cell_flags;
+    for (uint32_t c = 0; c < fine->shell->cell_count; c++) fine->cell_value[c] = flags[c] & SINGE_ALIVE ? 1 : -1;
+    side_coefficients(fine, NULL, spline->edge);
+    corner_coefficients(fine, NULL, spline);
+}
+
+void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high) {
+    *low = INFINITY, *high = -INFINITY;
+    for (int i = 0; i < 4; i++) { // the other coefficients are means of these
+        float side = spline->edge[shell->cell_springs[cell].blue[i]], corner = spline->corner[shell->cells[cell][i]];
+        *low = fminf(*low, fminf(side, corner)), *high = fmaxf(*high, fmaxf(side, corner));
+    }
+}
+
+float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place) {
+    const uint32_t *at = shell->cells[place.cell], *sides = shell->cell_springs[place.cell].blue;
+    int a = place.side, b = (a + 1) & 3, opposite = (a + 2) & 3, before = (a + 3) & 3;
+    float ab = spline->edge[sides[a]], bb = spline->edge[sides[b]], aa = spline->edge[sides[before]];
+    float centre = 0.25f * ((ab + bb) + (aa + spline->edge[sides[opposite]]));
+    float x = place.weight[0], y = place.weight[1], z = place.weight[2];
+    return spline->corner[at[a]] * x * x + spline->corner[at[b]] * y * y + centre * z * z + 2 * ab * x * y +
+           (aa + ab) * x * z + (ab + bb) * y * z;
+}
+
+// `out` is the distance from the centre towards a side, `along` runs from its first corner to its second.
+
+void fine_coordinates(FinePlace place, float *x, float *y) {
+    float out = 0.5f * (place.weight[0] + place.weight[1]), along = 0.5f * (place.weight[1] - place.weight[0]);
+    switch (place.side) {
+    case 0: *x = along, *y = -out; break;
+    case 1: *x = out, *y = along; break;
+    case 2: *x = -along, *y = out; break;
+    default: *x = -out, *y = -along; break;
+    }
+}
+
+static FinePlace from_coordinates(uint32_t cell, float x, float y) {
+    FinePlace place = {.cell = cell};
+    float out, along;
+    if (fabsf(x) > fabsf(y)) {
+        place.side = x > 0 ? 1 : 3;
+        out = fabsf(x), along = x > 0 ? y : -y;
+    } else {
+        place.side = y > 0 ? 2 : 0;
+        out = fabsf(y), along = y > 0 ? -x : x;
+    }
+    place.weight[0] = out - along, place.weight[1] = out + along, place.weight[2] = 1 - 2 * out;
+    return place;
+}
+
+/// The side by which a cell's neighbour borders on spring `blue`.
+static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
+    int side = 0;
+    while (side < 3 && shell->cell_springs[cell].blue[side] != blue) side++;
+    return side;
+}
+
+FinePlace fine_walk(const Shell *shell, FinePlace place, float dx, float dy) {
+    uint32_t cell = place.cell;
+    float x, y;
+    fine_coordinates(place, &x, &y);
+    x += dx, y += dy;
+    for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
+        int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);
+        uint32_t other = shell_neighbour(shell, cell, side);
+        if (other == SHELL_NONE) {
+            if (side & 1) x = fmaxf(-0.5f, fminf(x, 0.5f));
+            else y = fmaxf(-0.5f, fminf(y, 0.5f));
+            continue;
+        }
+        // the neighbour's centre is the new origin; then quarter turns until the side that was crossed lies behind
+        if (side & 1) x += side == 1 ? -1.0f : 1.0f;
+        else y += side == 2 ? -1.0f : 1.0f;
+        int turns = (side_of(shell, other, shell->cell_springs[cell].blue[side]) + 2 - side) & 3;
+        for (; turns > 0; turns--) {
+            float turned = -y;
+            y = x, x = turned;
+        }
+        cell = other;
+    }
+    x = fmaxf(-0.5f, fminf(x, 0.5f)), y = fmaxf(-0.5f, fminf(y, 0.5f));
+    return from_coordinates(cell, x, y);
+}

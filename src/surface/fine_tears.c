@@ -1,0 +1,105 @@
+// The lips of tears. A sheet tears along the sides of its cells (src/tear): drawn like that, tears would be straight
+// cuts and stairs. So the lips are drawn a little within their cells, where a smooth field S is 0.3:
+//
+//   S    of the splines of fine_spline.c, with b of a side 1, and 0 where it is torn; b of a vertex at a tear
+//        min(3/4, A/pi - 1), A the angle of the cells that are left at it, taken twice at the border of the sheet: 0
+//        beside a straight tear, -1/2 at a corner of it that stands out, 1/2 at one that stands in, 3/4 at its end
+//   L(x) = max(S(x + D(x)) - 0.3, z(x + D(x)) - 0.45)/2
+//
+// D is a noise of the place at rest, as a vector. Both lips have the same there and lie on different sides, so that
+// what one gives away the other keeps: the tear wanders, frays at small scales, and its lips fit. x + D stays on the
+// lip's own side, for no way leads over a torn side: there it ends, where S is 0 (fine_walk). S is that of the sheet as
+// it is cut, so that it runs slantwise where a tear runs in stairs. z is the weight of a cell's middle: what is torn
+// off all around is drawn, too.
+//
+// Nothing is drawn outside the cells, so lips cross nothing that the cells do not.
+#include "surface/surface_fine.h"
+#include "common/random.h"
+
+static const float LIP_LEAST = 0.3f;    ///< S at the lip: 0.16 of a cell's side beside a straight tear
+static const float LIP_MIDDLE = 0.45f; ///< z from which on something is left of a cell
+static const float LIP_WANDERS = 0.25f; ///< |D|, at most, of a cell's side
+static const float LIP_WAVE = 2.2f;    ///< largest features of D, of a cell's side
+static const float LIP_STRENGTH = 0.6f, LIP_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
+
+static const float pi = 3.14159265f;
+
+static float angle_at(const Shell *shell, uint32_t cell, int corner) {
+    const uint32_t *at = shell->cells[cell];
+    Vec p = vec_load(shell->rest_position[at[corner]]);
+    Vec a = vec_unit(vec_sub(vec_load(shell->rest_position[at[(corner + 1) & 3]]), p));
+    Vec b = vec_unit(vec_sub(vec_load(shell->rest_position[at[(corner + 3) & 3]]), p));
+    return atan2f(vec_length(vec_cross(a, b)), vec_dot(a, b));
+}
+
+/// b of a vertex at a tear; marks its cells.
+static void lip_vertex(Fine *fine, uint32_t vertex) {
+    const Shell *shell = fine->shell;
+    const Spline *spline = &fine->splines[SPLINE_LIP];
+    float angle = 0;
+    bool border = false;
+    if (shell->fan_first[vertex] == shell->fan_first[vertex + 1]) return;
+    if (fine_splits(fine, shell->fan[shell->fan_first[vertex]]) == 1) return; // too coarse to be drawn any finer
+    for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
+        uint32_t cell = shell->fan[k];
+        int i = 0;
+        while (shell->cells[cell][i] != vertex) i++;
+        angle += angle_at(shell, cell, i);
+        for (int side = i, turn = 0; turn < 2; turn++, side = (i + 3) & 3)
+            border |= shell_neighbour(shell, cell, side) == SHELL_NONE &&
+                      spline->edge[shell->cell_springs[cell].blue[side]] > 0;
+        fine->flags[cell] = (uint8_t)((fine->flags[cell] | FINE_LIP) & ~FINE_EVEN);
+    }
+    spline->corner[vertex] = fmaxf(-0.5f, fminf((border ? 2 : 1) * angle / pi - 1, 0.75f));
+}
+
+void fine_lips(Fine *fine) {
+    const Shell *shell = fine->shell;
+    const SpringSet *blue = &shell->springs[SINGE_BLUE];
+    const Spline *spline = &fine->splines[SPLINE_LIP];
+    uint32_t first = blue->count - shell->edge_spare_count;
+    if (shell->edge_spare_used == 0) return;
+    for (uint32_t s = 0; s < blue->count; s++) spline->edge[s] = 1;
+    for (uint32_t v = 0; v < shell->vertex_count; v++) spline->corner[v] = 1;
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        spline->edge[first + k] = spline->edge[shell->edge_origin[k]] = 0;
+    for (uint32_t k = 0; k < shell->edge_spare_used; k++)
+        for (int end = 0; end < 2; end++) {
+            lip_vertex(fine, blue->ends[first + k][end]);
+            lip_vertex(fine, blue->ends[shell->edge_origin[k]][end]);
+        }
+}
+
+/// D at a place, m, each component up to `reach`.
+static Vec wander(const FineSheet *sheet, Vec place, float size, float reach) {
+    Vec p = vec_scale(place, 1 / (LIP_WAVE * size)), sum = {0, 0, 0};
+    float strength = LIP_GAIN;
+    for (int octave = 0; octave < sheet->octaves; octave++) {
+        const uint32_t seed = sheet->seed + 3 * (uint32_t)octave + 101;
+        Vec noise = vec(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
+                        random_noise(p.x, p.y, p.z, seed + 2));
+        sum = vec_mad(sum, vec_sub(noise, vec(0.5f, 0.5f, 0.5f)), strength);
+        strength *= LIP_STRENGTH;
+        p = vec_add(vec_scale(p, 2), vec(11.83f, 17.31f, 5.77f));
+    }
+    float length = vec_length(sum);
+    return vec_scale(sum, length > 1 ? reach / length : reach);
+}
+
+float fine_lip_level(const Fine *fine, FinePlace place) {
+    const Shell *shell = fine->shell;
+    uint32_t index = shell->matter.sheet[shell_centre(shell, place.cell)];
+    const FineSheet *sheet = &fine->sheets[index];
+    const uint32_t *at = shell->cells[place.cell];
+    float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, LIP_WANDERS * size);
+    if (reach > 0) {
+        Vec corner[4], way = wander(sheet, fine_askew(fine_rest(shell, place)), size, reach);
+        for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
+        Vec along = vec_scale(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])), 0.5f);
+        Vec up = vec_scale(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])), 0.5f);
+        place = fine_walk(shell, place, vec_dot(way, along) / vec_dot(along, along),
+                          vec_dot(way, up) / vec_dot(up, up));
+    }
+    float field = fine_spline_at(shell, &fine->splines[SPLINE_LIP], place);
+    return 0.5f * fmaxf(field - LIP_LEAST, place.weight[2] - LIP_MIDDLE);
+}

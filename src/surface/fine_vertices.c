@@ -1,0 +1,72 @@
+// The fields of the fine surface's vertices. Velocity, uv and rest position lie on the cell's triangle, straight between
+// its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level was taken
+// with. Of times to ignition, those of corners that have ignited count, by their weights. Where vertices are, and their
+// normals, fine_position.c says.
+#include "surface/surface_fine.h"
+
+/// Of a triangle's corners: two particles, and the mean of four for the virtual centre.
+static Vec blend(const uint32_t at[4], const FinePlace *place, const float (*field)[4]) {
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) {
+        float weight = 0.25f * place->weight[2];
+        if (i == place->side) weight += place->weight[0];
+        if (i == ((place->side + 1) & 3)) weight += place->weight[1];
+        sum = vec_mad(sum, vec_load(field[at[i]]), weight);
+    }
+    return sum;
+}
+
+static float blend_times(const float *time, const uint32_t particle[3], const float weight[3]) {
+    float sum = 0, total = 0;
+    for (int i = 0; i < 3; i++)
+        if (time[particle[i]] >= 0) sum += weight[i] * time[particle[i]], total += weight[i];
+    return total > 0 ? sum / total : -1;
+}
+
+static void fill(const Fine *fine, const FinePatch *patch, uint32_t v) {
+    const FineVertex *vertex = &fine->vertices[v];
+    const FinePlace *place = &vertex->place;
+    const Shell *shell = fine->shell;
+    const State *state = fine->state;
+    const uint32_t *at = shell->cells[place->cell];
+    SingeSurface *surface = fine->surface;
+    uint32_t centre = shell_centre(shell, place->cell);
+    const uint32_t particle[3] = {at[place->side], at[(place->side + 1) & 3], centre};
+    fine_place_at(fine, patch, place, surface->position[v], surface->normal[v]);
+    vec_store(surface->velocity[v], blend(at, place, (const float (*)[4])state->dynamics.velocity));
+    vec_store(surface->rest_position[v], blend(at, place, (const float (*)[4])shell->rest_position));
+    float mass_min = 0, yield = 0, u = 0, w = 0;
+    for (int i = 0; i < 3; i++) {
+        u += place->weight[i] * shell->uv[particle[i]][0], w += place->weight[i] * shell->uv[particle[i]][1];
+        mass_min += place->weight[i] * field_at(shell->matter.mass_min, particle[i]);
+        yield += place->weight[i] * field_at(shell->matter.char_yield, particle[i]);
+    }
+    surface->uv[v][0] = u, surface->uv[v][1] = w;
+    surface->temperature[v] = fine_spline_at(shell, &fine->splines[SPLINE_TEMPERATURE], *place);
+    surface->temperature_peak[v] = fine_spline_at(shell, &fine->splines[SPLINE_PEAK], *place);
+    surface->burn_rate[v] = fine_spline_at(shell, &fine->splines[SPLINE_RATE], *place);
+    surface->mass[v] = vertex->mass;
+    float fuel = fminf(fmaxf(fine_spline_at(shell, &fine->splines[SPLINE_FUEL], *place), 0), 1);
+    surface->char_fraction[v] = yield * shell_char(vertex->mass, fuel, mass_min, yield);
+    surface->ash_fraction[v] = fmaxf(vertex->mass - fuel - surface->char_fraction[v], 0);
+    surface->burn[v] = shell_burn_progress(vertex->mass, mass_min);
+    surface->time_ignited[v] = blend_times(state->burn.time_ignited, particle, place->weight);
+    surface->piece[v] = state->ablate.piece[particle[0]];
+    surface->sheet[v] = shell->matter.sheet[centre];
+    surface->source_vertex[v] = vertex->source == SHELL_NONE ? -1 : shell->source_vertex[vertex->source];
+}
+
+static void fill_range(void *context, int begin, int end) {
+    const Fine *fine = context;
+    FinePatch patch;
+    uint32_t cell = SHELL_NONE;
+    for (int v = begin; v < end; v++) {
+        if (fine->vertices[v].place.cell != cell) cell = fine->vertices[v].place.cell, patch = fine_patch(fine, cell);
+        fill(fine, &patch, (uint32_t)v);
+    }
+}
+
+void fine_vertices(const Fine *fine) {
+    pool_for(fine->pool, (int)fine->vertex_count, 256, fill_range, (void *)(uintptr_t)fine);
+    fine->surface->vertex_count = fine->vertex_count;
+}

@@ -1,0 +1,165 @@
+// Seams of the uv. A vertex where cells have different uv is drawn once for each, at the same place and with the same
+// normal, so that pictures break there and the surface does not. A drawn vertex lies on one of a cell's four triangles
+// at rest; with its barycentric weights w there, of the side's two corners and the virtual centre,
+//
+//   uv = w_a uv_a + w_b uv_b + w_c (uv_1 + uv_2 + uv_3 + uv_4)/4,   uv_i as this cell has them
+//
+// Only cells are looked at whose uv differ from what their vertices have (Shell.uv). Where the input had several
+// vertices on a seam, each copy has the number of its own.
+#include "ablate/ablate_plan.h"
+#include "common/float3.h"
+
+#include <string.h>
+
+/// uv are the same within this share of the cell's; weights this near to 1 are a corner.
+#define SEAM_SAME 1e-3f
+
+typedef struct Seams {
+    const Shell *shell;
+    SingeSurface *surface;
+    uint8_t *claimed;   ///< [capacity] a triangle uses the vertex with its uv
+    uint32_t *next;     ///< [capacity] another copy of it, SHELL_NONE
+    uint32_t capacity;
+} Seams;
+
+static bool is_seamed(const Shell *shell, uint32_t cell) {
+    for (int i = 0; i < 4; i++)
+        if (memcmp(shell->corner_uv[cell][i], shell->uv[shell->cells[cell][i]], 2 * sizeof(float)) != 0 ||
+            shell->corner_source[cell][i] != shell->source_vertex[shell->cells[cell][i]])
+            return true;
+    return false;
+}
+
+static Vec corner_rest(const Shell *shell, uint32_t cell, int i) {
+    return vec_load(shell->rest_position[shell->cells[cell][i]]);
+}
+
+static Vec centre_rest(const Shell *shell, uint32_t cell) {
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = vec_add(sum, corner_rest(shell, cell, i));
+    return vec_scale(sum, 0.25f);
+}
+
+/// Barycentric weights of a point in the cell's triangle of that side.
+static void weights_at(const Shell *shell, uint32_t cell, int side, Vec point, float weight[3]) {
+    Vec c = centre_rest(shell, cell), a = vec_sub(corner_rest(shell, cell, side), c);
+    Vec b = vec_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = vec_sub(point, c);
+    float aa = vec_dot(a, a), ab = vec_dot(a, b), bb = vec_dot(b, b), pa = vec_dot(p, a), pb = vec_dot(p, b);
+    float det = aa * bb - ab * ab;
+    weight[0] = det > 0 ? (pa * bb - pb * ab) / det : 0;
+    weight[1] = det > 0 ? (pb * aa - pa * ab) / det : 0;
+    weight[2] = 1 - weight[0] - weight[1];
+}
+
+/// The side in whose triangle a drawn triangle lies: where the least weight of its middle is largest.
+static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
+    Vec middle = {0, 0, 0};
+    for (int k = 0; k < 3; k++) middle = vec_add(middle, vec_load(seams->surface->rest_position[triangle[k]]));
+    middle = vec_scale(middle, 1 / 3.0f);
+    int best = 0;
+    float most = -INFINITY;
+    for (int side = 0; side < 4; side++) {
+        float weight[3];
+        weights_at(seams->shell, cell, side, middle, weight);
+        float least = fminf(weight[0], fminf(weight[1], weight[2]));
+        if (least > most) most = least, best = side;
+    }
+    return best;
+}
+
+/// uv of a point, and its number where it is a corner that has one.
+static void cell_uv(const Shell *shell, uint32_t cell, int side, Vec point, float uv[2], int32_t *source) {
+    const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
+    const int next = (side + 1) & 3;
+    float weight[3];
+    weights_at(shell, cell, side, point, weight);
+    if (*source >= 0) *source = shell->corner_source[cell][weight[0] > weight[1] ? side : next];
+    for (int k = 0; k < 2; k++) {
+        float centre = 0.25f * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
+        float mixed = weight[0] * corner[side][k] + weight[1] * corner[next][k] + weight[2] * centre;
+        uv[k] = weight[0] > 1 - SEAM_SAME ? corner[side][k] : weight[1] > 1 - SEAM_SAME ? corner[next][k] : mixed;
+    }
+}
+
+static float cell_uv_size(const Shell *shell, uint32_t cell) {
+    const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
+    float size = 0;
+    for (int i = 1; i < 4; i++)
+        size = fmaxf(size, fmaxf(fabsf(corner[i][0] - corner[0][0]), fabsf(corner[i][1] - corner[0][1])));
+    return size;
+}
+
+/// The copy of a vertex that has this uv and number; made where there is none.
+static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
+    SingeSurface *surface = seams->surface;
+    uint32_t last = vertex;
+    if (!seams->claimed[vertex]) {
+        seams->claimed[vertex] = 1;
+        memcpy(surface->uv[vertex], uv, 2 * sizeof *uv);
+        surface->source_vertex[vertex] = source;
+        return vertex;
+    }
+    for (uint32_t v = vertex; v != SHELL_NONE; last = v, v = seams->next[v])
+        if (fabsf(surface->uv[v][0] - uv[0]) <= same && fabsf(surface->uv[v][1] - uv[1]) <= same &&
+            surface->source_vertex[v] == source)
+            return v;
+    uint32_t copy = surface->vertex_count++;
+    surface_copy_vertex(surface, vertex, copy);
+    memcpy(surface->uv[copy], uv, 2 * sizeof *uv);
+    surface->source_vertex[copy] = source;
+    seams->claimed[copy] = 1;
+    seams->next[copy] = SHELL_NONE;
+    seams->next[last] = copy;
+    return copy;
+}
+
+static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end) {
+    const float same = SEAM_SAME * cell_uv_size(seams->shell, cell);
+    for (uint32_t t = begin; t < end; t++) {
+        uint32_t *triangle = seams->surface->triangles[t], parted[3];
+        int side = side_of(seams, cell, triangle);
+        for (int k = 0; k < 3; k++) {
+            float uv[2];
+            int32_t source = seams->surface->source_vertex[triangle[k]];
+            cell_uv(seams->shell, cell, side, vec_load(seams->surface->rest_position[triangle[k]]), uv, &source);
+            parted[k] = copy_with(seams, triangle[k], uv, same, source);
+        }
+        memcpy(triangle, parted, sizeof parted);
+    }
+}
+
+/// Claims what cells without a seam use; returns how many copies there may be.
+static uint64_t claim(Seams *seams, const uint32_t *cell_first) {
+    const Shell *shell = seams->shell;
+    uint64_t copies = 0;
+    for (uint32_t c = 0; c < shell->cell_count; c++) {
+        if (is_seamed(shell, c)) {
+            copies += 3 * (uint64_t)(cell_first[c + 1] - cell_first[c]);
+            continue;
+        }
+        for (uint32_t t = cell_first[c]; t < cell_first[c + 1] && seams->claimed; t++)
+            for (int k = 0; k < 3; k++) seams->claimed[seams->surface->triangles[t][k]] = 1;
+    }
+    return copies;
+}
+
+SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error) {
+    Memory memory = memory_make(surface->allocator);
+    Seams seams = {.shell = shell, .surface = surface};
+    uint64_t most = surface->vertex_count + claim(&seams, cell_first);
+    SingeResult result = surface_grow_vertices(surface, most, error);
+    if (result) return result;
+    seams.capacity = (uint32_t)most;
+    if (NEW(&memory, seams.claimed, seams.capacity) && NEW(&memory, seams.next, seams.capacity)) {
+        memset(seams.next, 0xff, seams.capacity * sizeof *seams.next);
+        claim(&seams, cell_first);
+        for (uint32_t c = 0; c < shell->cell_count; c++)
+            if (is_seamed(shell, c)) part_cell(&seams, c, cell_first[c], cell_first[c + 1]);
+    } else {
+        surface_clear(surface);
+        result = error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
+    }
+    FREE(&memory, seams.claimed, seams.capacity);
+    FREE(&memory, seams.next, seams.capacity);
+    return result;
+}

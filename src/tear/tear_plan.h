@@ -1,0 +1,62 @@
+// What the stage's files share.
+#ifndef TEAR_TEAR_PLAN_H
+#define TEAR_TEAR_PLAN_H
+
+#include "common/float3.h"
+#include "shell/split.h"
+#include "tear/tear.h"
+
+/// What cells hold that hang together by a vertex alone, of the strength.
+static const float TEAR_HINGE = 0.25f;
+
+/// A symmetric tensor: xx, yy, zz, yz, zx, xy.
+typedef float Tensor[6];
+
+/// n . t n
+static inline float tensor_across(const float *t, Vec n) {
+    return t[0] * n.x * n.x + t[1] * n.y * n.y + t[2] * n.z * n.z +
+           2 * (t[3] * n.y * n.z + t[4] * n.z * n.x + t[5] * n.x * n.y);
+}
+
+/// t += s n n
+static inline void tensor_add(float *t, Vec n, float s) {
+    t[0] += s * n.x * n.x, t[1] += s * n.y * n.y, t[2] += s * n.z * n.z;
+    t[3] += s * n.y * n.z, t[4] += s * n.z * n.x, t[5] += s * n.x * n.y;
+}
+
+/// What pulls at a vertex.
+typedef struct TearPull {
+    float ratio; ///< of the largest principal line force and the strength; 0 where nothing can tear
+    Vec across;  ///< its direction at rest
+    Tensor force;
+} TearPull;
+
+struct TearPlan {
+    uint32_t cell_count, vertex_count, particle_count;
+    Tensor *smooth[2];  ///< [cells] N/m, averaged over the process zone, turn by turn
+    float *ratio;       ///< [vertices] of TearPull
+    uint8_t *torn;      ///< [vertices] an edge at it is torn
+    uint32_t split_count; ///< of the shell that `torn` is for
+    uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
+    double *partial;    ///< [pool_blocks(cells)]
+    uint32_t sheet_count;
+    float safe;         ///< N/m, nothing tears below: the least strength of all, as char or weakened
+    float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
+    float *least;       ///< [sheets] that factor where it is pulled farther apart than it reaches
+};
+
+/// N/m, the line force at which a vertex tears.
+float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
+
+/// The line force of every cell in this step, filtered (line_force.c). Returns how many cells come near their strength.
+double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
+                    Pool *pool, float h);
+/// Averages it over the process zone; the result is in plan->smooth[0].
+void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool);
+/// What pulls at a vertex, of the averaged line force.
+TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
+
+/// Splits a vertex and gives the new one its state (split_state.c).
+void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *split, SplitResult *result);
+
+#endif

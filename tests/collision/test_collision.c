@@ -1,0 +1,524 @@
+// Sheets that fall on themselves and each other.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "count_crossings.h"
+#include "collision/narrow_phase.h"
+#include "collision/feature_distance.h"
+#include "collision/collision_plan.h"
+
+/// A flat sheet of n x n cells from `corner` along two sides.
+typedef struct Flat {
+    int n;
+    float corner[3], u[3], v[3]; ///< m
+} Flat;
+
+static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick, float wave, const float velocity[3]) {
+    uint32_t n = (uint32_t)flat->n, row = n + 1;
+    float *x = malloc(3 * row * row * sizeof *x);
+    uint32_t *cells = malloc(4 * n * n * sizeof *cells);
+    for (uint32_t j = 0; j <= n; j++)
+        for (uint32_t i = 0; i <= n; i++) {
+            float s = (float)i / (float)n, t = (float)j / (float)n, bend = wave * sinf(9 * t) + wave / 2 * sinf(7 * s);
+            for (int k = 0; k < 3; k++)
+                x[3 * (j * row + i) + (uint32_t)k] =
+                    flat->corner[k] + s * flat->u[k] + t * flat->v[k] + (k == 1 ? bend : 0);
+        }
+    for (uint32_t j = 0; j < n; j++)
+        for (uint32_t i = 0; i < n; i++) {
+            uint32_t *c = cells + 4 * (j * n + i);
+            c[0] = j * row + i, c[1] = c[0] + 1, c[2] = c[1] + row, c[3] = c[0] + row;
+        }
+    SingeSheetDef def = singe_default_sheet();
+    def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
+    def.material.thickness = singe_param(cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] +
+                                                      flat->u[2] * flat->u[2]) / (float)n);
+    for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
+    SingeSheetId id;
+    assert_int_equal(singe_sim_add_sheet(sim, &def, &id), SINGE_OK);
+    free(x), free(cells);
+    return id;
+}
+
+static SingeSim *new_sim(int threads, bool contact) {
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    def.thread_count = threads;
+    def.contact.enabled = contact;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    return sim;
+}
+
+static void add_ground(SingeSim *sim) {
+    SingeColliderDef ground = singe_default_collider();
+    SingePoseKey key = {.rotation = {0, 0, 0, 1}};
+    ground.path_count = 1, ground.path = &key, ground.friction = 0.3f, ground.offset = 1e-3f;
+    SingeColliderId id;
+    assert_int_equal(singe_sim_add_collider(sim, &ground, &id), SINGE_OK);
+}
+
+static void steps(SingeSim *sim, int count) {
+    for (int i = 0; i < count; i++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
+}
+
+static long crossings(SingeSim *sim) {
+    SingeSurface surface = {0};
+    assert_int_equal(singe_sim_surface(sim, &surface), SINGE_OK);
+    long count = crossings_count(&surface);
+    singe_surface_free(&surface);
+    return count;
+}
+
+#ifdef SINGE_THREADS_ONLY
+enum { HEAP = 16, HEAP_STEPS = 40 };
+#else
+enum { HEAP = 36, HEAP_STEPS = 100 };
+#endif
+
+/// A sheet on edge that falls into folds.
+static SingeSim *heap(int threads, bool contact) {
+    SingeSim *sim = new_sim(threads, contact);
+    add_flat(sim, &(Flat){HEAP, {-0.1f, 0, 0.02f}, {0.2f, 0, 0}, {0, 0, 0.2f}}, 0.4f, 4e-3f, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    add_ground(sim);
+    return sim;
+}
+
+static void a_heap_does_not_cross(void **unused) {
+    (void)unused;
+    SingeSim *sim = heap(2, true), *without = heap(2, false);
+    long crossed = 0;
+    for (int frame = 0; frame < 24; frame++) {
+        steps(sim, 20), steps(without, 20);
+        assert_int_equal(crossings(sim), 0);
+        crossed += crossings(without);
+    }
+    print_message("without contact: %ld crossings\n", crossed);
+    assert_true(crossed > 100); // it would
+    SingeTimers timers = singe_sim_timers(sim);
+    assert_int_equal(timers.contact_unresolved, 0);
+    assert_int_equal(timers.contact_dropped, 0);
+    assert_true(timers.contact_pushes > 1000);
+    SingeStats stats = singe_sim_stats(sim);
+    assert_true(stats.speed_rms_unburnt < 0.3f); // it lies there
+    singe_sim_destroy(sim), singe_sim_destroy(without);
+}
+
+static void thrown_sheets_do_not_cross(void **unused) {
+    (void)unused;
+    SingeSim *sim = new_sim(1, true);
+    // two that fly into each other on edge, at 12 m/s: some ten thicknesses a substep
+    add_flat(sim, &(Flat){14, {-0.05f, -0.03f, 1}, {0.1f, 0, 0.01f}, {0, 0.02f, 0.1f}}, 0.6f, 2e-3f,
+             (float[3]){0, 6, 0});
+    add_flat(sim, &(Flat){14, {0, 0.03f, 0.97f}, {0.08f, 0.06f, 0}, {0, 0, 0.1f}}, 0.6f, 2e-3f, (float[3]){0, -6, 0});
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    for (int frame = 0; frame < 60; frame++) {
+        steps(sim, 2);
+        assert_int_equal(crossings(sim), 0);
+    }
+    assert_true(singe_sim_timers(sim).contact_stops > 0);
+    singe_sim_destroy(sim);
+}
+
+static void layers_keep_their_thickness(void **unused) {
+    (void)unused;
+    SingeSim *sim = new_sim(1, true);
+    for (int k = 0; k < 3; k++)
+        add_flat(sim, &(Flat){12, {0.003f * (float)k, 0.002f * (float)k, 1.2e-3f + 2e-3f * (float)k}, {0.05f, 0, 0},
+                              {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    add_ground(sim);
+    steps(sim, 480);
+    SingeView view = singe_sim_view(sim);
+    double height[3] = {0};
+    for (uint32_t v = 0; v < view.vertex_count; v++) height[v / 169] += (double)view.position[v][2] / 169;
+    for (int k = 1; k < 3; k++) {
+        double apart = height[k] - height[k - 1];
+        assert_true(apart > 0.8 * 0.5e-3 && apart < 2 * 0.5e-3); // 0.5 mm is the default
+    }
+    assert_int_equal(crossings(sim), 0);
+    singe_sim_destroy(sim);
+}
+
+/// How far the upper of two sheets has slid in 0.2 s; the lower one lies on the ground.
+static double slide(float friction) {
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    def.contact.enabled = true, def.contact.friction = friction, def.air_density = 0;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    add_flat(sim, &(Flat){20, {0, 0, 1.01e-3f}, {0.1f, 0, 0}, {0, 0.1f, 0}}, 0.6f, 0, NULL);
+    add_flat(sim, &(Flat){8, {0.02f, 0.03f, 1.6e-3f}, {0.04f, 0, 0}, {0, 0.04f, 0}}, 0.6f, 0, (float[3]){0.2f, 0, 0});
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    add_ground(sim);
+    SingeView view = singe_sim_view(sim);
+    double before = 0, after = 0;
+    for (uint32_t v = 441; v < view.vertex_count; v++) before += (double)view.position[v][0] / 81;
+    steps(sim, 96);
+    for (uint32_t v = 441; v < view.vertex_count; v++) after += (double)view.position[v][0] / 81;
+    singe_sim_destroy(sim);
+    return after - before;
+}
+
+static void sheets_rub(void **unused) {
+    (void)unused;
+    double slippery = slide(0), rough = slide(0.3f);
+    print_message("slid %.4f m without friction, %.4f m with 0.3\n", slippery, rough);
+    // free but for damping: 38 mm, as without gravity; at 0.3 g it stops after 68 ms and 6.8 mm
+    assert_true(fabs(slippery - 0.038) < 0.004);
+    assert_true(fabs(rough - 0.0068) < 0.0015);
+}
+
+static void crossing_input_is_left_alone(void **unused) {
+    (void)unused;
+    SingeSim *sim = new_sim(1, true);
+    add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    steps(sim, 1);
+    assert_true(singe_sim_stats(sim).tangled_cells > 8);
+    steps(sim, 120);
+    SingeStats stats = singe_sim_stats(sim);
+    assert_true(stats.strain_max < 0.2 && stats.speed_rms_unburnt < 4);
+    singe_sim_destroy(sim);
+}
+
+/// Two cells that approach, each crossed by a cell of its own: what crosses one is nothing to the other.
+static void cells_of_other_crossings_are_kept_apart(void **unused) {
+    (void)unused;
+    const float side = 0.02f, speed = 0.5f;
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    def.contact.enabled = true, def.air_density = 0, def.gravity[2] = 0;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    for (int upper = 0; upper < 2; upper++) {
+        float z = upper ? 0.01f : 0, x = upper ? 0.013f : 0.006f, velocity[3] = {0, 0, upper ? -speed : speed};
+        add_flat(sim, &(Flat){1, {0, 0, z}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
+        // up to 1 mm through it, on the side of the other one
+        float low = upper ? z - 1e-3f : z + 1e-3f - side;
+        add_flat(sim, &(Flat){1, {x, 1e-3f, low}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, velocity);
+    }
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    steps(sim, 1);
+    assert_int_equal(singe_sim_stats(sim).tangled_cells, 4);
+    steps(sim, 14); // unhindered they pass each other at the fifth, and are 19 mm beyond
+    SingeView view = singe_sim_view(sim);
+    float lower = 0, upper = 0;
+    for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[8 + v][2] / 4;
+    print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
+    assert_true(upper > lower);
+    singe_sim_destroy(sim);
+}
+
+static void sheets_in_one_place_are_left_alone(void **unused) {
+    (void)unused;
+    SingeSim *sim = new_sim(1, true);
+    for (int sheet = 0; sheet < 3; sheet++)
+        add_flat(sim, &(Flat){10, {0, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    // and one that lies next to them
+    add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    steps(sim, 1);
+    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    steps(sim, 20);
+    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
+    singe_sim_destroy(sim);
+}
+
+static void any_number_of_threads(void **unused) {
+    (void)unused;
+    SingeSim *one = heap(1, true), *three = heap(3, true), *again;
+    uint8_t *a, *b;
+    size_t na, nb;
+    steps(one, HEAP_STEPS), steps(three, HEAP_STEPS);
+    // and from a snapshot between two searches
+    assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
+    SingeSimDef hooks = singe_default_sim();
+    assert_int_equal(singe_sim_load(&hooks, a, na, &again, NULL), SINGE_OK);
+    singe_sim_free_bytes(one, a, na);
+    steps(one, 61), steps(three, 61), steps(again, 61);
+    assert_int_equal(singe_sim_save(one, &a, &na), SINGE_OK);
+    assert_int_equal(singe_sim_save(three, &b, &nb), SINGE_OK);
+    assert_int_equal(na, nb);
+    assert_memory_equal(a, b, na);
+    singe_sim_free_bytes(three, b, nb);
+    assert_int_equal(singe_sim_save(again, &b, &nb), SINGE_OK);
+    assert_int_equal(na, nb);
+    assert_memory_equal(a, b, na);
+    singe_sim_free_bytes(again, b, nb), singe_sim_free_bytes(one, a, na);
+    singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(again);
+}
+
+// ---- the search against brute force
+
+typedef struct Searched {
+    Memory memory;
+    SheetSource source;
+    Shell shell;
+    State state;
+    TouchPlan *plan;
+} Searched;
+
+/// A crumpled sheet of n x n cells: its vertices moved by noise of a wavelength of some cells.
+static Searched *searched(uint32_t n) {
+    Searched *s = calloc(1, sizeof *s);
+    uint32_t row = n + 1, next = 1;
+    float *x = malloc(3 * row * row * sizeof *x), cell = 2e-3f;
+    uint32_t *cells = malloc(4 * n * n * sizeof *cells);
+    for (uint32_t v = 0; v < row * row; v++) {
+        float i = (float)(v % row), j = (float)(v / row);
+        next = next * 1664525u + 1013904223u;
+        x[3 * v] = cell * (i + 4 * sinf(0.5f * j) + 3 * sinf(0.9f * i)), x[3 * v + 1] = cell * (j + 5 * sinf(0.6f * i));
+        x[3 * v + 2] = cell * (4 * sinf(0.4f * i + 0.7f * j) + 0.3f * (float)(next >> 8) / 16777216);
+    }
+    for (uint32_t c = 0; c < n * n; c++) {
+        uint32_t v = c / n * row + c % n, corner[4] = {v, v + 1, v + row + 1, v + row};
+        memcpy(cells + 4 * c, corner, sizeof corner);
+    }
+    s->memory = memory_make((SingeAllocator){0});
+    SingeSheetDef def = singe_default_sheet();
+    def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
+    assert_int_equal(sheet_source_create(&s->memory, &def, &s->source, NULL), SINGE_OK);
+    assert_int_equal(shell_create(&s->memory, &s->source, 1, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(state_create(&s->memory, &s->shell, &s->state), SINGE_OK);
+    SingeContactDef contact = singe_default_contact();
+    assert_int_equal(touch_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
+    for (uint32_t v = 0; v < row * row; v++)
+        for (int k = 0; k < 3; k++) s->state.dynamics.velocity[v][k] = 0.5f * sinf((float)(v * (uint32_t)(k + 3)));
+    assert_int_equal(touch_open(s->plan, &s->shell, &s->state, NULL, &s->state.dynamics), SINGE_OK);
+    free(x), free(cells);
+    return s;
+}
+
+static void searched_free(Searched *s) {
+    touch_plan_free(&s->memory, s->plan);
+    state_free(&s->memory, &s->state);
+    shell_free(&s->memory, &s->shell);
+    sheet_source_free(&s->memory, &s->source);
+    assert_int_equal(s->memory.held, 0);
+    free(s);
+}
+
+static float at_most(float a, Quad b) { return fminf(a, sqrtf(quad_dot(b, b))); }
+
+/// Distance of two cells: the least of all their features', or of those that they own.
+static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned) {
+    const TouchPlan *plan = s->plan;
+    Quad p[5], q[5], origin = quad_load(plan->place[s->shell.cells[a][0]]);
+    float least = INFINITY, weight[3], u, t;
+    touch_nodes(s->shell.cells[a], (const float(*)[4])plan->place, origin, p);
+    touch_nodes(s->shell.cells[b], (const float(*)[4])plan->place, origin, q);
+    for (int i = 0; i < 5; i++)
+        for (int j = 0; j < 4; j++) {
+            const uint8_t *k = touch_triangle[j];
+            Quad first = touch_from_triangle(p[i], q[k[0]], q[k[1]], q[k[2]], weight);
+            Quad second = touch_from_triangle(q[i], p[k[0]], p[k[1]], p[k[2]], weight);
+            if (!owned || touch_owns_node(plan, a, i)) least = at_most(least, first);
+            if (!owned || touch_owns_node(plan, b, i)) least = at_most(least, second);
+        }
+    for (int i = 0; i < 8; i++)
+        for (int j = 0; j < 8; j++) {
+            Quad apart = touch_from_segment(p[touch_edge[i][0]], p[touch_edge[i][1]], q[touch_edge[j][0]],
+                                            q[touch_edge[j][1]], &u, &t);
+            if (!owned || (touch_owns_edge(plan, a, i) && touch_owns_edge(plan, b, j))) least = at_most(least, apart);
+        }
+    return least;
+}
+
+static void the_search_finds_all(void **unused) {
+    (void)unused;
+    Searched *s = searched(30);
+    const TouchPlan *plan = s->plan;
+    uint32_t n = plan->cell_count, near = 0;
+    uint8_t *listed = calloc((size_t)n * n, 1);
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
+        listed[pair->a * n + pair->b] = 1;
+    }
+    for (uint32_t a = 0; a < n; a++)
+        for (uint32_t b = a + 1; b < n; b++) {
+            float distance = cell_distance(s, a, b, false);
+            if (distance >= plan->reach) continue;
+            near++;
+            assert_true(listed[a * n + b] || listed[b * n + a]);
+        }
+    assert_true(near > 4 * n);
+    // no listed pair is said to be farther apart than it is; those that are near are measured
+    uint32_t measured = 0;
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
+        float distance = cell_distance(s, pair->a, pair->b, true);
+        assert_true(pair->distance <= distance + 1e-6f);
+        measured += fabsf(pair->distance - distance) < 1e-6f;
+    }
+    assert_true(measured > n / 2);
+    free(listed);
+    searched_free(s);
+}
+
+/// All features of listed pairs at once against one after another.
+static void features_are_measured(void **unused) {
+    (void)unused;
+    Searched *s = searched(20);
+    const TouchPlan *plan = s->plan;
+    const float(*x)[4] = (const float(*)[4])plan->place;
+    uint32_t found = 0;
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
+        Quad origin = quad_load(x[s->shell.cells[pair->a][0]]);
+        TouchCell a, b;
+        TouchNear near[TOUCH_NEAR];
+        touch_cell_place(plan, &s->shell, pair->a, x, origin, &a);
+        touch_cell_place(plan, &s->shell, pair->b, x, origin, &b);
+        float nearest, least = cell_distance(s, pair->a, pair->b, true);
+        assert_true(touch_cells_apart(&a, &b) <= least + 1e-6f);
+        TouchFar far = {plan->reach, plan->reach, plan->reach, true};
+        int count = touch_features(&s->shell, pair, &a, &b, &far, near, &nearest);
+        assert_true(fabsf(nearest - fminf(least, plan->reach)) < 1e-6f);
+        for (int i = 0; i < count; i++) {
+            const TouchNear *n = &near[i];
+            float weight[3], u, v;
+            Quad apart;
+            if (n->kind == TOUCH_EDGES) {
+                const uint8_t *e = touch_edge[n->first], *f = touch_edge[n->second];
+                apart = touch_from_segment(a.node[e[0]], a.node[e[1]], b.node[f[0]], b.node[f[1]], &u, &v);
+            } else {
+                const TouchCell *own = n->kind == TOUCH_NODE_OF_A ? &a : &b, *other = own == &a ? &b : &a;
+                const uint8_t *t = touch_triangle[n->second];
+                apart = touch_from_triangle(own->node[n->first], other->node[t[0]], other->node[t[1]],
+                                            other->node[t[2]], weight);
+                if (own == &b) apart = -apart;
+                u = weight[1], v = weight[2];
+            }
+            Quad off = apart - n->apart;
+            assert_true(quad_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
+            assert_true(fabsf(u - n->u) < 1e-3f && fabsf(v - n->v) < 1e-3f);
+        }
+        found += (uint32_t)count;
+    }
+    assert_true(found > 1000);
+    searched_free(s);
+}
+
+/// Whether the regions that two cells pass over on their way from the step's start meet.
+static bool ways_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32_t b) {
+    for (int k = 0; k < 3; k++) {
+        float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int i = 0; i < 8; i++) {
+            uint32_t v = s->shell.cells[i < 4 ? a : b][i & 3];
+            low[i >> 2] = fminf(low[i >> 2], fminf(s->plan->start[v][k], x[v][k]));
+            high[i >> 2] = fmaxf(high[i >> 2], fmaxf(s->plan->start[v][k], x[v][k]));
+        }
+        if (low[0] > high[1] || low[1] > high[0]) return false;
+    }
+    return true;
+}
+
+/// Cells that are thrown out of their boxes, and some `far` (m) beyond all others, against brute force.
+static void check_strays(float far) {
+    Searched *s = searched(30);
+    TouchPlan *plan = s->plan;
+    uint32_t n = plan->cell_count, count = 0, met = 0;
+    float(*x)[4] = malloc(plan->vertex_count * sizeof *x);
+    memcpy(x, plan->start, plan->vertex_count * sizeof *x);
+    for (uint32_t v = 0; v < plan->vertex_count; v += 17)
+        for (int k = 0; k < 3; k++) x[v][k] += 4e-3f * sinf((float)(v * (uint32_t)(k + 2))); // two cells far
+    for (int k = 0; k < 3; k++) x[17 * 20][k] += far;
+    for (uint32_t c = 0; c < n; c++) {
+        plan->strayed[c] = 0;
+        for (int i = 0; i < 4; i++) plan->strayed[c] |= s->shell.cells[c][i] % 17 == 0;
+        if (plan->strayed[c]) plan->stray[count++] = c;
+    }
+    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
+    uint8_t *listed = calloc((size_t)n * n, 1);
+    for (uint32_t k = 0; k < plan->pair_count; k++) {
+        const TouchPair *pair = &plan->pairs[k];
+        assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
+        listed[pair->a * n + pair->b] = 1;
+    }
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t b = 0, a = plan->stray[k]; b < n; b++) {
+            if (a == b || !ways_meet(s, (const float(*)[4])x, a, b)) continue;
+            met++;
+            assert_true(listed[a * n + b] || listed[b * n + a]);
+        }
+    assert_true(count > n / 8 && met > 10 * count && plan->pair_count > plan->listed_count + count / 8);
+    free(listed), free(x);
+    searched_free(s);
+}
+
+static void strays_are_found(void **unused) {
+    (void)unused;
+    check_strays(0);
+    check_strays(1e4f); // through more cubes than can be counted
+}
+
+/// Cells of which some are thousands of cubes long, and what has no place at all.
+static void the_grid_has_bounds(void **unused) {
+    (void)unused;
+    Searched *s = searched(30);
+    TouchPlan *plan = s->plan;
+    uint32_t n = plan->cell_count, listed = plan->listed_count;
+    plan->place[500][0] += 200;
+    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_true(plan->listed_count >= listed / 2);
+    uint8_t *seen = calloc((size_t)n * n, 1);
+    for (uint32_t k = 0; k < plan->listed_count; k++) {
+        uint8_t *at = &seen[plan->pairs[k].a * n + plan->pairs[k].b];
+        assert_int_equal(*at, 0); // once
+        *at = 1;
+    }
+    plan->place[500][1] = NAN, plan->speed[77][2] = INFINITY;
+    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, 3, (const float(*)[4])plan->place), SINGE_OK);
+    free(seen);
+    searched_free(s);
+}
+
+static void the_search_is_linear(void **unused) {
+    (void)unused;
+    Searched *small = searched(40), *large = searched(80);
+    double pairs = (double)large->plan->listed_count / small->plan->listed_count;
+    double entries = (double)large->plan->entry_count / small->plan->entry_count;
+    assert_true(pairs < 5 && entries < 5); // four times the cells
+    assert_int_equal(large->plan->counters.dropped, 0);
+    searched_free(small), searched_free(large);
+}
+
+static void bad_values_are_refused(void **unused) {
+    (void)unused;
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    SingeError error;
+    def.contact.thickness = 0;
+    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "thickness"));
+    def = singe_default_sim(), def.contact.friction = NAN;
+    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "friction"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
+        cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
+        cmocka_unit_test(crossing_input_is_left_alone),
+        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_in_one_place_are_left_alone),
+        cmocka_unit_test(any_number_of_threads),
+        cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
+        cmocka_unit_test(strays_are_found),            cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(the_grid_has_bounds),
+        cmocka_unit_test(bad_values_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,286 @@
+// Sheets that lie thicker on each other than the lists of contact have room for.
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "count_crossings.h"
+#include "collision/collision_plan.h"
+#include "dynamics/dynamics_plan.h"
+#include "sim/sim_internal.h"
+
+// ---- a list
+
+enum { BLOCKS = 90 };
+
+/// Items of a block: none, one, some chunks and their edges.
+static uint32_t block_items(int block) {
+    const uint32_t items[] = {0, 1, TOUCH_CHUNK - 1, TOUCH_CHUNK, TOUCH_CHUNK + 1, 5 * TOUCH_CHUNK, 3, 0, 200};
+    return items[block % 9];
+}
+
+static void write_items(void *unused, TouchList *list, int block) {
+    (void)unused;
+    TouchWriter writer = touch_list_begin(list, block);
+    for (uint32_t k = 0; k < block_items(block); k++) {
+        uint32_t *item = touch_list_add(&writer);
+        if (item) *item = (uint32_t)block << 16 | k;
+    }
+    touch_list_end(&writer);
+}
+
+static void read_item(void *context, const void *item, uint32_t number) {
+    memcpy((uint32_t *)context + number, item, sizeof(uint32_t));
+}
+
+/// Writes the list, and makes it larger where that is told; checks that the first items are there, and no others.
+static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
+    Memory memory = memory_make((SingeAllocator){0});
+    TouchList list;
+    uint64_t all = 0;
+    for (int b = 0; b < BLOCKS; b++) all += block_items(b);
+    assert_true(touch_list_create(&memory, &list, sizeof(uint32_t), capacity, BLOCKS));
+    for (int turn = 0; turn < 2; turn++) { // the second turn finds what the first has left
+        uint64_t count = touch_list_write(&list, pool, BLOCKS, UINT32_MAX / 2, write_items, NULL);
+        assert_int_equal(count, all);
+        if (grown && turn == 0) assert_true(touch_list_grow(&memory, &list, grown, BLOCKS + 7));
+        uint32_t kept = touch_list_settle(&list, pool, BLOCKS, count, list.capacity, write_items, NULL);
+        assert_int_equal(kept, all < list.capacity ? all : list.capacity);
+        uint32_t *read = malloc((all + 1) * sizeof *read), number = 0;
+        memset(read, 0xff, (all + 1) * sizeof *read);
+        touch_list_read(&list, pool, BLOCKS, kept, read_item, read);
+        for (uint32_t b = 0; b < BLOCKS; b++)
+            for (uint32_t k = 0; k < block_items((int)b); k++, number++)
+                assert_int_equal(read[number], number < kept ? b << 16 | k : UINT32_MAX);
+        free(read);
+    }
+    touch_list_free(&memory, &list);
+    assert_int_equal(memory.held, 0);
+}
+
+static void a_list_keeps_what_comes_first(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    for (int threads = 1; threads <= 4; threads++) {
+        Pool *pool;
+        assert_int_equal(pool_create(&memory, (SingeTasks){0}, threads, &pool), SINGE_OK);
+        const uint32_t capacities[] = {0, 1, 63, 64, 65, 127, 128, 1000, 5000, 100000};
+        for (size_t k = 0; k < sizeof capacities / sizeof *capacities; k++) {
+            check_list(capacities[k], 0, pool);
+            check_list(capacities[k], capacities[k] + 1, pool);
+            check_list(capacities[k], 200000, pool);
+        }
+        pool_destroy(&memory, pool);
+    }
+}
+
+/// A block stops counting where no list could have room: what crowds without bounds is given up early.
+static void a_block_counts_up_to_the_most(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    TouchList list;
+    assert_true(touch_list_create(&memory, &list, sizeof(uint32_t), 100, BLOCKS));
+    uint64_t count = touch_list_write(&list, NULL, BLOCKS, 10, write_items, NULL), expected = 0;
+    for (int b = 0; b < BLOCKS; b++) expected += block_items(b) < 11 ? block_items(b) : 11;
+    assert_int_equal(count, expected);
+    touch_list_free(&memory, &list);
+}
+
+// ---- scenes
+
+typedef struct Crowd {
+    int sheets, cells; ///< cells: along a side
+    float apart;       ///< m
+    bool soup;         ///< cells on their own, anywhere
+} Crowd;
+
+static const Crowd stack = {8, 6, 0.5e-3f, false}, soup = {1, 12, 0, true};
+
+static void add_soup(SingeSim *sim, uint32_t count) {
+    TestMesh mesh = {.vertex_count = 4 * count, .cell_count = count};
+    mesh.positions = malloc(12 * count * sizeof *mesh.positions);
+    mesh.cells = malloc(4 * count * sizeof *mesh.cells);
+    uint32_t next = 7;
+    for (uint32_t v = 0; v < 4 * count; v++) {
+        mesh.cells[v] = v;
+        for (uint32_t k = 0; k < 3; k++) {
+            next = next * 1664525u + 1013904223u;
+            float side = k == 0 ? (v % 4 == 1 || v % 4 == 2) : k == 1 ? v % 4 > 1 : 0;
+            mesh.positions[3 * v + k] = 0.02f * side + 0.005f * sinf((float)(v / 4 * (5 * k + 7))) +
+                                        0.01f * (float)(next >> 8) / 16777216 + (k == 2 ? 0.05f : 0);
+        }
+    }
+    SingeSheetDef def = test_sheet(&mesh);
+    SingeSheetId id;
+    test_ok(sim, singe_sim_add_sheet(sim, &def, &id));
+    test_mesh_free(&mesh);
+}
+
+static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *allocator) {
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    def.thread_count = threads, def.contact.enabled = true;
+    def.time_step = 1.0f / 96;
+    if (allocator) def.allocator = *allocator;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    for (int s = 0; s < crowd->sheets && !crowd->soup; s++) {
+        TestMesh mesh = test_grid((uint32_t)crowd->cells, (uint32_t)crowd->cells, 5e-3f, 5e-3f);
+        test_mesh_move(&mesh, 1e-3f * sinf((float)s), 1e-3f * cosf((float)(3 * s)), 1e-3f + crowd->apart * (float)s);
+        SingeSheetDef sheet = test_sheet(&mesh);
+        SingeSheetId id;
+        test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
+        test_mesh_free(&mesh);
+    }
+    if (crowd->soup) add_soup(sim, (uint32_t)(crowd->cells * crowd->cells));
+    test_ok(sim, singe_sim_commit(sim));
+    SingeColliderDef ground = singe_default_collider();
+    SingePoseKey key = test_key(0, 0, 0, 0);
+    SingeColliderId id;
+    ground.path_count = 1, ground.path = &key;
+    test_ok(sim, singe_sim_add_collider(sim, &ground, &id));
+    return sim;
+}
+
+static const TouchPlan *touch(const SingeSim *sim) { return sim->dynamics->touch; }
+
+/// Gives a simulation lists of other sizes.
+static void resize(SingeSim *sim, const TouchSizes *sizes) {
+    touch_plan_free(&sim->memory, sim->dynamics->touch);
+    assert_int_equal(touch_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step, sizes,
+                                             &sim->dynamics->touch),
+                     SINGE_OK);
+}
+
+static long crossings(SingeSim *sim) {
+    SingeSurface surface = {0};
+    test_ok(sim, singe_sim_surface(sim, &surface));
+    long count = crossings_count(&surface);
+    singe_surface_free(&surface);
+    return count;
+}
+
+/// No room to begin with: everything has to grow.
+static TouchSizes tiny(const SingeSim *sim) {
+    TouchSizes sizes = touch_sizes(&sim->shell);
+    sizes.entries = 8 * sim->shell.cell_count, sizes.pairs = sim->shell.cell_count, sizes.pushes = 1;
+    return sizes;
+}
+
+// ---- tests
+
+/// Lists of the usual size grow: in a stack those of pushes, in a soup, which crosses from the start, those of pairs.
+static void check_growth(const Crowd *scene, bool pairs) {
+    SingeSim *one = crowd(scene, 1, NULL), *three = crowd(scene, 3, NULL), *resumed;
+    test_steps(one, 6), test_steps(three, 6);
+    // a run that goes on begins with small lists again
+    test_ok(one, singe_sim_clone(one, &resumed));
+    for (int k = 0; k < 3; k++) {
+        test_steps(one, 3), test_steps(three, 3), test_steps(resumed, 3);
+        assert_true(scene->soup || crossings(one) == 0);
+    }
+    const TouchSizes *sizes = &touch(one)->sizes;
+    print_message("%u pairs where %u are usual, %u pushes where %u are\n", touch(one)->pair_capacity, sizes->pairs,
+                  touch(one)->push_capacity, sizes->pushes);
+    assert_true(pairs ? touch(one)->pair_capacity > sizes->pairs : touch(one)->push_capacity > sizes->pushes);
+    assert_int_equal(singe_sim_timers(one).contact_dropped, 0);
+    test_assert_same(one, three);
+    test_assert_same(one, resumed);
+    singe_sim_destroy(one), singe_sim_destroy(three), singe_sim_destroy(resumed);
+}
+
+static void crowds_grow_the_lists(void **state) {
+    (void)state;
+    check_growth(&stack, false);
+    check_growth(&soup, true);
+}
+
+static void what_lists_grow_to_decides_nothing(void **state) {
+    (void)state;
+    const Crowd *scenes[] = {&stack, &soup};
+    for (int k = 0; k < 2; k++) {
+        SingeSim *usual = crowd(scenes[k], 1, NULL), *small = crowd(scenes[k], 1, NULL);
+        SingeSim *threads = crowd(scenes[k], 3, NULL);
+        TouchSizes sizes = tiny(small), same = touch_sizes(&usual->shell);
+        same.entries = sizes.entries; // the order of pairs follows the grid
+        resize(small, &sizes), resize(threads, &sizes), resize(usual, &same);
+        test_steps(usual, 8), test_steps(small, 8), test_steps(threads, 8);
+        assert_true(touch(small)->pair_capacity > sizes.pairs);
+        assert_int_equal(singe_sim_timers(small).contact_dropped, 0);
+        test_assert_same(usual, small);
+        test_assert_same(usual, threads);
+        singe_sim_destroy(usual), singe_sim_destroy(small), singe_sim_destroy(threads);
+    }
+}
+
+/// Where a list may not grow, what is lost is counted, and is the same for any number of threads.
+static void what_is_dropped_is_counted(void **state) {
+    (void)state;
+    const struct {
+        const Crowd *scene;
+        bool pairs, pushes;
+    } cases[] = {{&stack, true, false}, {&stack, false, true}, {&stack, true, true}, {&soup, true, false}};
+    for (int full = 0; full < 4; full++) {
+        SingeSim *sims[3];
+        for (int k = 0; k < 3; k++) {
+            sims[k] = crowd(cases[full].scene, k + 1, NULL);
+            TouchSizes sizes = tiny(sims[k]);
+            uint32_t cells = sims[k]->shell.cell_count;
+            if (cases[full].pairs) sizes.pair_most = sizes.pairs = sizes.pair_budget = cells + cells / 2;
+            if (cases[full].pushes) sizes.push_most = sizes.pushes = cells / 3;
+            resize(sims[k], &sizes);
+            test_steps(sims[k], 10);
+        }
+        SingeTimers timers = singe_sim_timers(sims[0]);
+        print_message("%llu dropped\n", (unsigned long long)timers.contact_dropped);
+        assert_true(timers.contact_dropped > 10);
+        for (int k = 1; k < 3; k++) {
+            assert_int_equal(singe_sim_timers(sims[k]).contact_dropped, timers.contact_dropped);
+            test_assert_same(sims[0], sims[k]);
+        }
+        for (int k = 0; k < 3; k++) singe_sim_destroy(sims[k]);
+    }
+}
+
+/// A step that has no memory to grow fails and can be repeated.
+static void no_memory_to_grow(void **state) {
+    (void)state;
+    int failures = 0;
+    for (long fail = 1; fail < 40; fail++) {
+        TestAllocator hook = {0};
+        SingeAllocator allocator = test_allocator(&hook);
+        SingeSim *sim = crowd(&stack, 1, &allocator);
+        TouchSizes sizes = tiny(sim);
+        resize(sim, &sizes);
+        hook.fail_at = hook.calls + fail, hook.once = true;
+        SingeResult result = SINGE_OK;
+        for (int step = 0; step < 8; step++) {
+            float before[3];
+            uint32_t last = singe_sim_view(sim).particle_count - 1;
+            memcpy(before, singe_sim_view(sim).position[last], sizeof before);
+            result = singe_sim_step(sim);
+            if (!result) continue;
+            test_refused(sim, SINGE_ERROR_MEMORY, result);
+            assert_string_equal(singe_sim_error(sim)->stage, "contact");
+            assert_memory_equal(before, singe_sim_view(sim).position[last], sizeof before);
+            failures++;
+        }
+        assert_int_equal(crossings(sim), 0);
+        assert_int_equal(singe_sim_timers(sim).contact_dropped, 0);
+        bool over = hook.calls < hook.fail_at;
+        singe_sim_destroy(sim);
+        test_allocator_check(&hook);
+        if (over) break;
+    }
+    print_message("%d steps failed\n", failures);
+    assert_true(failures > 8);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_list_keeps_what_comes_first),      cmocka_unit_test(a_block_counts_up_to_the_most),
+        cmocka_unit_test(crowds_grow_the_lists),              cmocka_unit_test(what_lists_grow_to_decides_nothing),
+        cmocka_unit_test(what_is_dropped_is_counted),         cmocka_unit_test(no_memory_to_grow),
+    };
+    return cmocka_run_group_tests_name("touch_crowd", tests, NULL, NULL);
+}

@@ -1,0 +1,101 @@
+// Memory: what is held is counted, sizes that overflow are refused, failure leaves arrays as they were.
+#include "support/support.h"
+
+#include "common/memory.h"
+
+static void counts_what_is_held(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    Memory memory = memory_make(test_allocator(&hook));
+    double *array;
+    assert_non_null(NEW(&memory, array, 10));
+    for (int i = 0; i < 10; i++) assert_true(array[i] == 0);
+    assert_int_equal(memory.held, 80);
+    assert_int_equal(hook.bytes, 80);
+    array[9] = 5;
+    assert_true(memory_grow(&memory, &array, 10, 100, sizeof *array));
+    assert_true(array[9] == 5);
+    assert_int_equal(memory.held, 800);
+    assert_true(memory_grow(&memory, &array, 100, 3, sizeof *array));
+    assert_int_equal(memory.held, 24);
+    FREE(&memory, array, 3);
+    assert_null(array);
+    FREE(&memory, array, 3);
+    assert_int_equal(memory.held, 0);
+    assert_int_equal(hook.blocks, 0);
+    assert_int_equal(hook.frees, 1);
+    assert_int_equal(hook.faults, 0);
+}
+
+static void nothing_can_be_freed(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    Memory memory = memory_make(test_allocator(&hook));
+    int *array;
+    assert_non_null(NEW(&memory, array, 0));
+    assert_true(memory_grow(&memory, &array, 0, 4, sizeof *array));
+    assert_true(memory_grow(&memory, &array, 4, 0, sizeof *array));
+    FREE(&memory, array, 0);
+    void *block = memory_new(&memory, 7, 0);
+    assert_non_null(block);
+    memory_free(&memory, &block, 7, 0);
+    assert_int_equal(memory.held, 0);
+    assert_int_equal(hook.blocks, 0);
+    assert_int_equal(hook.faults, 0);
+}
+
+static void overflow_is_refused(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    Memory memory = memory_make(test_allocator(&hook));
+    assert_null(memory_new(&memory, SIZE_MAX / 8 + 1, 8)); // wraps to 0
+    assert_null(memory_new(&memory, SIZE_MAX / 8 + 2, 8)); // wraps to 8
+    assert_null(memory_new(&memory, SIZE_MAX, SIZE_MAX));
+    assert_int_equal(hook.calls, 0);
+    uint64_t *array;
+    assert_non_null(NEW(&memory, array, 2));
+    array[1] = 77;
+    uint64_t *before = array;
+    assert_false(memory_grow(&memory, &array, 2, SIZE_MAX / 8 + 2, sizeof *array));
+    assert_ptr_equal(array, before);
+    assert_int_equal(array[1], 77);
+    assert_int_equal(memory.held, 16);
+    FREE(&memory, array, 2);
+}
+
+static void failure_changes_nothing(void **state) {
+    (void)state;
+    TestAllocator hook = {.fail_at = 2};
+    Memory memory = memory_make(test_allocator(&hook));
+    int *array, *other;
+    assert_non_null(NEW(&memory, array, 4));
+    array[3] = 9;
+    assert_false(memory_grow(&memory, &array, 4, 8, sizeof *array));
+    assert_int_equal(array[3], 9);
+    assert_null(NEW(&memory, other, 1));
+    assert_int_equal(memory.held, 16);
+    FREE(&memory, array, 4);
+    assert_int_equal(hook.blocks, 0);
+    assert_int_equal(memory.held, 0);
+}
+
+static void libc_serves_without_a_hook(void **state) {
+    (void)state;
+    Memory memory = memory_make((SingeAllocator){0});
+    int *array;
+    assert_non_null(NEW(&memory, array, 1000));
+    assert_true(memory_grow(&memory, &array, 1000, 2000, sizeof *array));
+    assert_int_equal(array[999], 0);
+    assert_int_equal(memory.held, 8000);
+    FREE(&memory, array, 2000);
+    assert_int_equal(memory.held, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counts_what_is_held),        cmocka_unit_test(nothing_can_be_freed),
+        cmocka_unit_test(overflow_is_refused),        cmocka_unit_test(failure_changes_nothing),
+        cmocka_unit_test(libc_serves_without_a_hook),
+    };
+    return cmocka_run_group_tests_name("common_memory", tests, NULL, NULL);
+}

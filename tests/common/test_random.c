@@ -1,0 +1,100 @@
+// Value noise: its range, its smoothness, the same on every machine.
+#include "support/support.h"
+
+#include "common/random.h"
+
+#include <math.h>
+
+static float coordinate(uint32_t *random) {
+    *random = *random * 1664525u + 1013904223u;
+    return ((float)(*random >> 8) / 16777216.0f - 0.5f) * 200;
+}
+
+static void range_and_spread(void **state) {
+    (void)state;
+    uint32_t random = 3;
+    double mean = 0;
+    float least = 1, most = 0;
+    for (int i = 0; i < 100000; i++) {
+        float x = coordinate(&random), y = coordinate(&random), z = coordinate(&random);
+        float n = random_noise(x, y, z, 7);
+        assert_true(n >= 0 && n <= 1);
+        mean += (double)n / 100000;
+        least = fminf(least, n), most = fmaxf(most, n);
+    }
+    assert_true(fabs(mean - 0.5) < 0.01);
+    assert_true(least < 0.05f && most > 0.95f);
+}
+
+static void fractal_range(void **state) {
+    (void)state;
+    uint32_t random = 5;
+    for (int octaves = 1; octaves <= 8; octaves++) {
+        SingeNoise noise = {0.5f, octaves, 11};
+        float least = 1, most = 0;
+        for (int i = 0; i < 20000; i++) {
+            float n = random_fractal(&noise, coordinate(&random), coordinate(&random), coordinate(&random));
+            assert_true(n >= 0 && n <= 1);
+            least = fminf(least, n), most = fmaxf(most, n);
+        }
+        assert_true(least < 0.1f && most > 0.9f);
+    }
+}
+
+/// |n(x + e) - n(x)| <= e max|dn/dx|; the blend's slope is at most 15/8, corner values differ by at most 1.
+static void continuity(void **state) {
+    (void)state;
+    uint32_t random = 9;
+    const float e = 1.0f / 1024;
+    for (int i = 0; i < 50000; i++) {
+        float x = coordinate(&random), y = coordinate(&random), z = coordinate(&random);
+        if (i % 3 == 0) x = floorf(x) - e / 2; // across the lattice
+        float n = random_noise(x, y, z, 1);
+        assert_true(fabsf(random_noise(x + e, y, z, 1) - n) <= 1.876f * e + 2e-5f);
+        assert_true(fabsf(random_noise(x, y + e, z, 1) - n) <= 1.876f * e + 2e-5f);
+        assert_true(fabsf(random_noise(x, y, z + e, 1) - n) <= 1.876f * e + 2e-5f);
+    }
+}
+
+static void lattice_values(void **state) {
+    (void)state;
+    for (int x = -3; x < 3; x++)
+        for (int y = -3; y < 3; y++)
+            assert_true(random_noise((float)x, (float)y, -2, 5) ==
+                        random_unit(random_hash((uint32_t)x, (uint32_t)y, (uint32_t)-2, 5)));
+}
+
+/// Numbers noted once: they may not change, or saved scenes would.
+static void noted_values(void **state) {
+    (void)state;
+    assert_int_equal(random_hash(0, 0, 0, 0), 2456602052u);
+    assert_int_equal(random_hash(1, 2, 3, 4), 2523784609u);
+    assert_true(random_unit(UINT32_MAX) < 1);
+    assert_true(random_unit(0) == 0);
+}
+
+static void seeds_differ(void **state) {
+    (void)state;
+    int equal = 0;
+    for (uint32_t seed = 0; seed < 1000; seed++)
+        equal += random_noise(0.3f, 0.4f, 0.5f, seed) == random_noise(0.3f, 0.4f, 0.5f, seed + 1);
+    assert_true(equal < 3);
+}
+
+static void any_coordinate_is_defined(void **state) {
+    (void)state;
+    static const float places[] = {1e9f, -1e9f, 3e9f, -3e9f, 1e20f, -1e38f, INFINITY, -INFINITY, NAN};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        float n = random_noise(places[i], 0.5f, places[i], 1);
+        assert_true(n >= 0 && n <= 1);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(range_and_spread), cmocka_unit_test(fractal_range), cmocka_unit_test(continuity),
+        cmocka_unit_test(lattice_values), cmocka_unit_test(noted_values), cmocka_unit_test(seeds_differ),
+        cmocka_unit_test(any_coordinate_is_defined),
+    };
+    return cmocka_run_group_tests_name("common_random", tests, NULL, NULL);
+}

@@ -1,0 +1,105 @@
+#include "sample_sheets.h"
+
+#include "dynamics/dynamics_plan.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <setjmp.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x) {
+    uint32_t columns = wrap_x ? nx : nx + 1;
+    Quads quads = {columns * (ny + 1), nx * ny, NULL, NULL};
+    quads.positions = malloc(3 * quads.vertex_count * sizeof(float));
+    quads.cells = malloc(4 * quads.cell_count * sizeof(uint32_t));
+    float radius = sx * (float)nx / (2 * 3.14159265f);
+    for (uint32_t j = 0; j <= ny; j++)
+        for (uint32_t i = 0; i < columns; i++) {
+            float *p = quads.positions + 3 * (j * columns + i), angle = 2 * 3.14159265f * (float)i / (float)nx;
+            p[0] = wrap_x ? radius * cosf(angle) : sx * (float)i;
+            p[1] = sy * (float)j;
+            p[2] = wrap_x ? -radius * sinf(angle) : 0;
+        }
+    for (uint32_t j = 0; j < ny; j++)
+        for (uint32_t i = 0; i < nx; i++) {
+            uint32_t *c = quads.cells + 4 * (j * nx + i), right = (i + 1) % columns;
+            c[0] = j * columns + i, c[1] = j * columns + right;
+            c[2] = (j + 1) * columns + right, c[3] = (j + 1) * columns + i;
+        }
+    return quads;
+}
+
+void quads_free(Quads *quads) {
+    free(quads->positions);
+    free(quads->cells);
+}
+
+void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
+    *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
+    bench->settings = (DynamicsSettings){
+        .gravity = {0, 0, -9.81f}, .air_density = 1.2f, .solver = singe_default_solver(), .thread_count = threads,
+        .time_step = 1.0f / 480};
+    SingeSheetDef def = singe_default_sheet();
+    def.vertex_count = quads.vertex_count, def.positions = quads.positions;
+    def.cell_count = quads.cell_count, def.cells = quads.cells;
+    if (material) def.material = *material;
+    float *uv = malloc(2 * quads.vertex_count * sizeof *uv), *along = malloc(quads.vertex_count * sizeof *along);
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < 2 * quads.vertex_count; i++) {
+        float x = quads.positions[3 * (i / 2) + i % 2];
+        low[i % 2] = fminf(low[i % 2], x), high[i % 2] = fmaxf(high[i % 2], x);
+    }
+    for (uint32_t i = 0; i < 2 * quads.vertex_count; i++) {
+        uv[i] = (quads.positions[3 * (i / 2) + i % 2] - low[i % 2]) / fmaxf(high[i % 2] - low[i % 2], 1e-6f);
+        if (i % 2 == 0) along[i / 2] = uv[i];
+    }
+    SingeAttribute attribute = {"along", along};
+    def.uv = uv, def.attribute_count = 1, def.attributes = &attribute;
+    assert_int_equal(sheet_source_create(&bench->memory, &def, &bench->source, &bench->error), SINGE_OK);
+    assert_int_equal(shell_create(&bench->memory, &bench->source, 1, &bench->shell, &bench->error), SINGE_OK);
+    assert_int_equal(state_create(&bench->memory, &bench->shell, &bench->state), SINGE_OK);
+    assert_int_equal(dynamics_plan_create(&bench->memory, &bench->shell, &bench->settings, &bench->plan), SINGE_OK);
+    assert_int_equal(pool_create(&bench->memory, (SingeTasks){0}, threads, &bench->pool), SINGE_OK);
+    quads_free(&quads);
+    free(uv), free(along);
+}
+
+void bench_close(Bench *bench) {
+    pool_destroy(&bench->memory, bench->pool);
+    dynamics_plan_free(&bench->memory, &bench->shell, bench->plan);
+    state_free(&bench->memory, &bench->state);
+    shell_free(&bench->memory, &bench->shell);
+    sheet_source_free(&bench->memory, &bench->source);
+    assert_int_equal(bench->memory.held, 0);
+}
+
+void bench_step(Bench *bench, float h) {
+    SingeResult result =
+        dynamics_step(bench->plan, &bench->shell, &bench->state, &bench->pins, &bench->colliders, &bench->wind,
+                      bench->pool, h, &bench->state.dynamics, &bench->counters, &bench->error);
+    assert_int_equal(result, SINGE_OK);
+    bench->state.time += (double)h;
+    bench->state.step++;
+}
+
+double bench_height(const Bench *bench, uint32_t cell) {
+    Vec mean = {0, 0, 0}, p[4];
+    for (int i = 0; i < 4; i++) {
+        p[i] = vec_load(bench->state.dynamics.position[bench->shell.cells[cell][i]]);
+        mean = vec_mad(mean, p[i], 0.25f);
+    }
+    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
+                           normal);
+}
+
+float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring) {
+    const SpringSet *springs = &bench->shell.springs[colour];
+    const StrandSet *set = &bench->plan->strands.sets[colour];
+    uint32_t s = 0;
+    while (springs->strand_first[s + 1] <= spring) s++;
+    return set->weight[set->strand_slot[s] + (spring - springs->strand_first[s]) * STRAND_LANES];
+}

@@ -1,0 +1,46 @@
+// Small sheets for the tests of the dynamics, built below the public API so that single stages can run.
+#ifndef TESTS_DYNAMICS_SAMPLE_SHEETS_H
+#define TESTS_DYNAMICS_SAMPLE_SHEETS_H
+
+#include "dynamics/dynamics.h"
+
+/// A shell with its state and plan, and empty surroundings.
+typedef struct Bench {
+    Memory memory;
+    SheetSource source;
+    Shell shell;
+    State state;
+    DynamicsPlan *plan;
+    DynamicsSettings settings;
+    PinList pins;
+    ColliderList colliders;
+    SingeWindDef wind;
+    Pool *pool;
+    DynamicsCounters counters;
+    SingeError error;
+} Bench;
+
+/// A mesh on the caller's side.
+typedef struct Quads {
+    uint32_t vertex_count, cell_count;
+    float *positions;
+    uint32_t *cells;
+} Quads;
+
+/// nx × ny cells of sx × sy m in the x-y plane from the origin; wrap_x closes it to a cylinder about y.
+Quads quads_grid(uint32_t nx, uint32_t ny, float sx, float sy, bool wrap_x);
+void quads_free(Quads *quads);
+
+/// Builds everything; frees the quads. Asserts success. u and v go from 0 to 1 along x and y, and so does the attribute
+/// "along" along x.
+void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads);
+void bench_close(Bench *bench);
+/// One step of h seconds; asserts success.
+void bench_step(Bench *bench, float h);
+/// m, of a cell's centre over its corners; negative where the cell is inverted.
+double bench_height(const Bench *bench, uint32_t cell);
+
+/// Weight of a spring in the strands' layout.
+float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring);
+
+#endif

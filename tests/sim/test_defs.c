@@ -1,0 +1,350 @@
+// Bad Defs, field by field, and Defs of older and newer headers.
+#include "scenes.h"
+
+#include <math.h>
+#include <string.h>
+
+/// The simulation's Def with one field changed is refused and the message names the field.
+#define SIM_BAD(field, value, word) \
+    do { \
+        SingeSimDef def_ = singe_default_sim(); \
+        def_.field = (value); \
+        SingeSim *sim_ = (SingeSim *)1; \
+        SingeError error_ = {0}; \
+        if (singe_sim_create(&def_, &sim_, &error_) != SINGE_ERROR_ARGUMENT) \
+            fail_msg(#field " = " #value " was taken"); \
+        assert_null(sim_); \
+        assert_int_equal(error_.code, SINGE_ERROR_ARGUMENT); \
+        if (!strstr(error_.message, (word))) fail_msg(#field ": %s", error_.message); \
+        assert_int_equal(singe_sim_create(&def_, &sim_, NULL), SINGE_ERROR_ARGUMENT); \
+    } while (0)
+
+static void bad_simulations(void **state) {
+    (void)state;
+    SIM_BAD(thread_count, 0, "thread_count");
+    SIM_BAD(thread_count, 65, "thread_count");
+    SIM_BAD(time_step, 0, "time_step");
+    SIM_BAD(time_step, NAN, "time_step");
+    SIM_BAD(time_step, INFINITY, "time_step");
+    SIM_BAD(pace, -1, "pace");
+    SIM_BAD(pace, NAN, "pace");
+    SIM_BAD(gravity[1], NAN, "gravity");
+    SIM_BAD(gravity[2], -INFINITY, "gravity");
+    SIM_BAD(ambient_temperature, 0, "ambient_temperature");
+    SIM_BAD(ambient_temperature, NAN, "ambient_temperature");
+    SIM_BAD(air_density, -1, "air_density");
+    SIM_BAD(surface_detail, -1, "surface_detail");
+    SIM_BAD(surface_detail, NAN, "surface_detail");
+    SIM_BAD(surface_raggedness, INFINITY, "surface_raggedness");
+    SIM_BAD(heat_tolerance, 0, "heat_tolerance");
+    SIM_BAD(heat_tolerance, NAN, "heat_tolerance");
+    SIM_BAD(wind.gust, -1, "gust");
+    SIM_BAD(wind.gust_time, 0, "gust_time");
+    SIM_BAD(wind.gust_size, 0, "gust_size");
+    SIM_BAD(wind.velocity[0], NAN, "velocity");
+    SIM_BAD(solver.substeps, -1, "substeps");
+    SIM_BAD(solver.substeps, 1001, "substeps");
+    SIM_BAD(solver.order[0], SINGE_RED, "order");
+    SIM_BAD(solver.order[3], (SingeColour)4, "order");
+    SIM_BAD(solver.regularisation[2], 0, "regularisation");
+    SIM_BAD(solver.regularisation[2], NAN, "regularisation");
+    SIM_BAD(solver.height_min, -1, "height_min");
+    SIM_BAD(solver.height_gain, 2, "height_gain");
+    SIM_BAD(struct_size, 0, "struct_size");
+    SIM_BAD(wind.struct_size, 0, "struct_size");
+    SIM_BAD(solver.struct_size, 0, "struct_size");
+    SIM_BAD(wind.struct_size, 1 << 20, "struct_size");
+    SIM_BAD(gas.struct_size, 0, "struct_size");
+    SIM_BAD(gas.cell_size, -1, "gas.cell_size");
+    SIM_BAD(gas.cell_size, NAN, "gas.cell_size");
+    SIM_BAD(gas.height, 0, "gas.height");
+    SIM_BAD(gas.conductance, -1, "gas.conductance");
+    SIM_BAD(gas.radiated, 0.96f, "gas.radiated"); // 0.95 is what scenes may say (scene_ranges)
+    SIM_BAD(gas.soot, NAN, "gas.soot");
+}
+
+static void *no_enqueue(void *context, SingeTaskFn *run, void *task, int count, int grain) {
+    (void)grain;
+    run(task, 0, count);
+    return context;
+}
+
+static void half_a_task_hook(void **state) {
+    (void)state;
+    SIM_BAD(tasks.enqueue, no_enqueue, "tasks");
+}
+
+static void limits_are_inclusive(void **state) {
+    (void)state;
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    SingeError error;
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) def.solver.regularisation[i] = 1e-6f;
+    def.pace = 1e-6f, def.heat_tolerance = 1e-9f, def.time_step = 1e-9f, def.solver.height_gain = 1;
+    def.solver.substeps = 1000;
+    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
+    singe_sim_destroy(sim);
+}
+
+static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 0.01f), NULL); }
+
+#define SOURCE_BAD(kind_, change)                                             \
+    do {                                                                      \
+        SingeSourceDef def = singe_default_source();                          \
+        def.kind = (kind_);                                                   \
+        def.path_count = 1, def.path = &key;                                  \
+        def.picture = (SingePicture){1, 1, &grey};                            \
+        SingeSourceId id = {1, 1};                                            \
+        change;                                                               \
+        test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &def, &id)); \
+        assert_string_equal(singe_sim_error(sim)->stage, "source");           \
+        assert_int_equal(id.generation, 0);                                   \
+    } while (0)
+
+static void bad_sources(void **state) {
+    (void)state;
+    SingeSim *sim = small_sim();
+    SingePoseKey key = test_key(0, 0, 0, 0), keys[2] = {key, key};
+    const float grey = 1, nan_grey = NAN;
+    SingeValueKey strengths[2] = {{0, 1}, {0, 1}};
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.struct_size = 0);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = 0);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.temperature = INFINITY);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.conductance = -1);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.radius = NAN);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.falloff = -1);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.path_count = 0);
+    SOURCE_BAD(SINGE_SOURCE_BALL, def.path = NULL);
+    SOURCE_BAD(SINGE_SOURCE_BALL, (def.path = keys, def.path_count = 2)); // not later than the one before
+    SOURCE_BAD(SINGE_SOURCE_SPOT, (keys[1].time = 1, def.path = keys, def.path_count = 2));
+    SOURCE_BAD(SINGE_SOURCE_SPOT, def.start = NAN);
+    SOURCE_BAD(SINGE_SOURCE_SPOT, def.end = NAN);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.width = 0);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.height = -1);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.values = NULL);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.values = &nan_grey);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.flux = NAN);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.strength_count = 2);
+    SOURCE_BAD(SINGE_SOURCE_PICTURE, (def.strength_count = 2, def.strength = strengths));
+    SOURCE_BAD((SingeSourceKind)17, (void)0);
+    SOURCE_BAD((SingeSourceKind)-1, (void)0);
+    test_steps(sim, 2);
+    singe_sim_destroy(sim);
+}
+
+#define PIN_BAD(result, change)                                          \
+    do {                                                                 \
+        SingePinDef def = singe_default_pin();                           \
+        def.sheet = (SingeSheetId){0, 1};                                \
+        def.point_count = 1, def.points = point;                         \
+        SingePinId id = {1, 1};                                          \
+        change;                                                          \
+        test_refused(sim, (result), singe_sim_add_pin(sim, &def, &id));  \
+        assert_string_equal(singe_sim_error(sim)->stage, "pin");         \
+        assert_int_equal(id.generation, 0);                              \
+    } while (0)
+
+static void bad_pins(void **state) {
+    (void)state;
+    SingeSim *sim = small_sim();
+    const float point[3] = {0, 0, 0}, bad_point[3] = {0, NAN, 0}, far_point[3] = {1e30f, 0, 0};
+    const uint32_t vertices[2] = {0, 25};
+    SingePoseKey key = test_key(NAN, 0, 0, 0);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.struct_size = 0);
+    PIN_BAD(SINGE_ERROR_HANDLE, def.sheet.index = 1);
+    PIN_BAD(SINGE_ERROR_HANDLE, def.sheet.generation = 0);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.point_count = 0);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = NULL);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = bad_point);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.points = far_point);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.radius = -1);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.radius = NAN);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.vertex_count = 2);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, (def.vertex_count = 2, def.vertices = vertices));
+    assert_int_equal(singe_sim_error(sim)->element, 1);
+    PIN_BAD(SINGE_ERROR_ARGUMENT, (def.path_count = 1, def.path = &key));
+    PIN_BAD(SINGE_ERROR_ARGUMENT, def.path_count = 1);
+    SingeView view = singe_sim_view(sim);
+    for (uint32_t i = 0; i < view.particle_count; i++) assert_int_equal(view.particle_flags[i], SINGE_ALIVE);
+    singe_sim_destroy(sim);
+}
+
+static void bad_colliders_and_wind(void **state) {
+    (void)state;
+    SingeSim *sim = small_sim();
+    SingeColliderDef def = singe_default_collider();
+    SingeColliderId id;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // no path
+    SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 0}};
+    def.path_count = 1, def.path = &key;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // no rotation
+    def.path = NULL;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
+    key.rotation[3] = 1;
+    def.path = &key, def.struct_size = 0;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id));
+    SingeWindDef wind = singe_default_wind();
+    wind.gust = -1;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
+    wind = singe_default_wind();
+    wind.struct_size = 0;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_wind(sim, &wind));
+    test_steps(sim, 1);
+    singe_sim_destroy(sim);
+}
+
+/// Fields beyond an older header's struct_size hold rubbish that must not be read.
+static void older_defs(void **state) {
+    (void)state;
+    SingeSim *sim;
+    SingeError error;
+    SingeSimDef def = singe_default_sim();
+    def.struct_size = offsetof(SingeSimDef, heat_tolerance);
+    def.heat_tolerance = NAN, def.wind.struct_size = 0, def.solver.substeps = -1;
+    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    SingeSheetDef sheet = test_sheet(&mesh);
+    sheet.struct_size = offsetof(SingeSheetDef, drop_pieces_below);
+    sheet.drop_pieces_below = NAN;
+    SingeSheetId sheet_id;
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
+    sheet.struct_size = offsetof(SingeSheetDef, material);
+    memset(&sheet.material, 0xFF, sizeof sheet.material);
+    test_mesh_move(&mesh, 1, 0, 0);
+    test_ok(sim, singe_sim_add_sheet(sim, &sheet, &sheet_id));
+    test_ok(sim, singe_sim_commit(sim));
+    SingePoseKey key = test_key(0, 0, 0, -1);
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId source_id;
+    source.path_count = 1, source.path = &key;
+    source.struct_size = offsetof(SingeSourceDef, picture);
+    source.picture.width = -1, source.callback = (SingeFluxFn *)1;
+    test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    const uint32_t vertex = 0;
+    pin.sheet = sheet_id, pin.vertex_count = 1, pin.vertices = &vertex;
+    pin.struct_size = offsetof(SingePinDef, path_count);
+    pin.path_count = 99, pin.path = NULL;
+    test_ok(sim, singe_sim_add_pin(sim, &pin, &pin_id));
+    SingeWindDef wind = singe_default_wind();
+    wind.struct_size = offsetof(SingeWindDef, gust_time);
+    wind.gust = 1, wind.gust_time = NAN;
+    test_ok(sim, singe_sim_set_wind(sim, &wind));
+    test_steps(sim, 3);
+    singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
+}
+
+/// An older header's wind inside the simulation's Def is smaller, and what comes after it lies earlier.
+static void older_inner_defs(void **state) {
+    (void)state;
+    SingeSimDef def = singe_default_sim();
+    def.wind.gust = 0.25f;
+    def.wind.struct_size = offsetof(SingeWindDef, gust_size);
+    def.solver.substeps = 5;
+    _Alignas(max_align_t) unsigned char bytes[sizeof def];
+    memset(bytes, 0xFF, sizeof bytes);
+    size_t head = offsetof(SingeSimDef, wind), inner = (def.wind.struct_size + 7) / 8 * 8;
+    def.wind.struct_size = inner; // an old struct's size is a multiple of its alignment
+    memcpy(bytes, &def, head);
+    memcpy(bytes + head, &def.wind, inner);
+    memcpy(bytes + head + inner, &def.solver, sizeof def.solver);
+    size_t size = head + inner + sizeof def.solver;
+    memcpy(bytes, &size, sizeof size);
+    SingeSim *old, *new;
+    SingeError error;
+    SingeSimDef *given = (SingeSimDef *)(void *)bytes;
+    assert_int_equal(singe_sim_create(given, &old, &error), SINGE_OK);
+    def.wind.struct_size = sizeof def.wind;
+    assert_int_equal(singe_sim_create(&def, &new, &error), SINGE_OK);
+    TestMesh mesh = test_grid(6, 6, 0.01f, 0.01f);
+    SingeSheetDef sheet = test_sheet(&mesh);
+    SingeSim *both[2] = {old, new};
+    for (int i = 0; i < 2; i++) {
+        SingeSheetId id;
+        test_ok(both[i], singe_sim_add_sheet(both[i], &sheet, &id));
+        test_ok(both[i], singe_sim_commit(both[i]));
+        test_steps(both[i], 5);
+    }
+    test_assert_same(old, new);
+    singe_sim_destroy(old);
+    singe_sim_destroy(new);
+    test_mesh_free(&mesh);
+}
+
+/// The same of a sheet's material: the fields after it are found behind the smaller one.
+static void older_material(void **state) {
+    (void)state;
+    TestMesh mesh = test_grid(4, 4, 0.01f, 0.01f);
+    SingeSheetDef def = test_sheet(&mesh);
+    def.velocity[1] = 3;
+    def.material.damping.value = NAN; // not known to the old header
+    size_t head = offsetof(SingeSheetDef, material), tail = offsetof(SingeSheetDef, velocity);
+    size_t inner = offsetof(SingeMaterialDef, damping) / 8 * 8;
+    def.material.struct_size = inner;
+    _Alignas(max_align_t) unsigned char bytes[sizeof def];
+    memset(bytes, 0xFF, sizeof bytes);
+    memcpy(bytes, &def, head);
+    memcpy(bytes + head, &def.material, inner);
+    memcpy(bytes + head + inner, (char *)&def + tail, sizeof def - tail);
+    size_t size = head + inner + sizeof def - tail;
+    memcpy(bytes, &size, sizeof size);
+    SingeSimDef standard = singe_default_sim();
+    SingeSim *sim;
+    SingeSheetId id;
+    assert_int_equal(singe_sim_create(&standard, &sim, NULL), SINGE_OK);
+    test_ok(sim, singe_sim_add_sheet(sim, (SingeSheetDef *)(void *)bytes, &id));
+    test_ok(sim, singe_sim_commit(sim));
+    assert_true(singe_sim_view(sim).velocity[0][1] == 3);
+    singe_sim_destroy(sim);
+    test_mesh_free(&mesh);
+}
+
+static void newer_defs(void **state) {
+    (void)state;
+    struct {
+        SingeWindDef wind;
+        double unknown[4];
+    } wind = {singe_default_wind(), {NAN, 1, 2, 3}};
+    wind.wind.struct_size = sizeof wind;
+    SingeSim *sim = small_sim();
+    test_ok(sim, singe_sim_set_wind(sim, &wind.wind));
+    test_steps(sim, 1);
+    singe_sim_destroy(sim);
+}
+
+/// The simulation copies what it is given.
+static void defs_are_copied(void **state) {
+    (void)state;
+    SingeSim *a = small_sim(), *b = small_sim();
+    for (int i = 0; i < 2; i++) {
+        SingePoseKey keys[2] = {test_key(0, 0, 0, 0), test_key(0.1f, 0.04f, 0, 0)};
+        float grey[4] = {0, 1, 0.5f, 0.2f};
+        SingeSourceDef def = singe_default_source();
+        SingeSourceId id;
+        def.kind = SINGE_SOURCE_BALL, def.path_count = 2, def.path = keys;
+        test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
+        def.kind = SINGE_SOURCE_PICTURE, def.picture = (SingePicture){2, 2, grey};
+        test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
+        if (i == 0) continue;
+        memset(keys, 0xFF, sizeof keys);
+        memset(grey, 0xFF, sizeof grey);
+        memset(&def, 0xFF, sizeof def);
+    }
+    test_steps(a, 10);
+    test_steps(b, 10);
+    test_assert_same(a, b);
+    singe_sim_destroy(a);
+    singe_sim_destroy(b);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_simulations), cmocka_unit_test(half_a_task_hook), cmocka_unit_test(limits_are_inclusive),
+        cmocka_unit_test(bad_sources), cmocka_unit_test(bad_pins), cmocka_unit_test(bad_colliders_and_wind),
+        cmocka_unit_test(older_defs), cmocka_unit_test(older_inner_defs), cmocka_unit_test(older_material),
+        cmocka_unit_test(newer_defs), cmocka_unit_test(defs_are_copied),
+    };
+    return cmocka_run_group_tests_name("sim_defs", tests, NULL, NULL);
+}

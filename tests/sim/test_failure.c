@@ -1,0 +1,243 @@
+// Failed steps leave the last good state; failed allocations leave nothing behind; steps allocate nothing.
+#include "scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void poison(void *context, const struct SingeView *view, float *flux, float *conductance,
+                   float *conductance_temperature) {
+    (void)conductance, (void)conductance_temperature;
+    uint32_t particle = *(uint32_t *)context;
+    if (particle < view->particle_count) flux[particle] = NAN;
+}
+
+static void a_failed_step_changes_nothing(void **state) {
+    (void)state;
+    Scene scene = scene_make(NULL, 12), twin = scene_make(NULL, 12);
+    SingeSim *sim = scene.sim;
+    test_steps(sim, 15);
+    test_steps(twin.sim, 15);
+    uint32_t particle = 30;
+    SingeSourceDef def = singe_default_source();
+    def.kind = SINGE_SOURCE_CALLBACK, def.callback = poison, def.callback_context = &particle;
+    SingeSourceId id;
+    test_ok(sim, singe_sim_add_source(sim, &def, &id));
+    TestBytes before = test_save(sim);
+    SingeTimers timers = singe_sim_timers(sim);
+    for (int i = 0; i < 3; i++) {
+        test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
+        assert_string_equal(singe_sim_error(sim)->stage, "heat");
+        assert_true(singe_sim_error(sim)->element >= 0);
+        size_t events = 1;
+        singe_sim_events(sim, &events);
+        assert_int_equal(events, 0);
+    }
+    TestBytes after = test_save(sim);
+    assert_int_equal(before.size, after.size);
+    assert_memory_equal(before.data, after.data, before.size);
+    assert_int_equal(singe_sim_timers(sim).steps, timers.steps);
+    assert_int_equal(singe_sim_timers(sim).contacts, timers.contacts);
+    free(before.data), free(after.data);
+    // usable again without the source, and as if nothing had been
+    test_ok(sim, singe_sim_remove_source(sim, id));
+    test_ok(twin.sim, singe_sim_add_source(twin.sim, &def, &id)); // keeps the lists and generations alike
+    test_ok(twin.sim, singe_sim_remove_source(twin.sim, id));
+    test_steps(sim, 30);
+    test_steps(twin.sim, 30);
+    test_assert_same(sim, twin.sim);
+    singe_sim_destroy(sim);
+    singe_sim_destroy(twin.sim);
+}
+
+/// A pin that drags a particle out of the world: the dynamics fails after the other stages are done, and
+/// what they did is undone.
+static void a_failure_late_in_the_step(void **state) {
+    (void)state;
+    Scene scene = scene_make(NULL, 10);
+    SingeSim *sim = scene.sim;
+    test_steps(sim, 30);
+    float now = (float)singe_sim_view(sim).time;
+    SingePoseKey path[2] = {test_key(now, 0, 0, 0), test_key(now + 1e-3f, 1e8f, 0, 0)}, still = test_key(0, 0, 0, 0);
+    SingeSim *copy;
+    test_ok(sim, singe_sim_clone(sim, &copy));
+    test_ok(sim, singe_sim_move_pin(sim, scene.points, 2, path));
+    SingeTimers timers = singe_sim_timers(sim);
+    test_refused(sim, SINGE_ERROR_DIVERGED, singe_sim_step(sim));
+    assert_string_equal(singe_sim_error(sim)->stage, "dynamics");
+    SingeTimers now_timers = singe_sim_timers(sim);
+    assert_memory_equal(&now_timers, &timers, sizeof timers);
+    test_ok(sim, singe_sim_move_pin(sim, scene.points, 1, &still));
+    test_ok(copy, singe_sim_move_pin(copy, scene.points, 2, path));
+    test_ok(copy, singe_sim_move_pin(copy, scene.points, 1, &still));
+    test_assert_same(sim, copy);
+    test_steps(sim, 20);
+    test_steps(copy, 20);
+    test_assert_same(sim, copy);
+    singe_sim_destroy(copy);
+    singe_sim_destroy(sim);
+}
+
+static void steps_allocate_nothing(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    SingeSimDef def = scene_def();
+    def.allocator = test_allocator(&hook);
+    Scene scene = scene_make(&def, 14);
+    long calls = hook.calls, frees = hook.frees;
+    size_t events = 0;
+    for (int i = 0; i < 100; i++) {
+        size_t count;
+        test_ok(scene.sim, singe_sim_step(scene.sim));
+        singe_sim_events(scene.sim, &count);
+        events += count;
+        singe_sim_stats(scene.sim);
+        assert_int_equal(hook.calls, calls);
+        assert_int_equal(hook.frees, frees);
+    }
+    SingeStats stats = singe_sim_stats(scene.sim);
+    assert_true(events > 20 && stats.mass_removed > 0 && singe_sim_timers(scene.sim).contacts > 0);
+    singe_sim_destroy(scene.sim);
+    assert_int_equal(hook.blocks, 0);
+}
+
+static SingeResult whole_life(const SingeSimDef *def, Scene *scene, SingeSurface *surface) {
+#define LIFE(call)                 \
+    do {                           \
+        SingeResult result_ = (call);  \
+        if (result_) return result_;   \
+    } while (0)
+    LIFE(scene_build(def, 3, scene));
+    for (int i = 0; i < 5; i++) LIFE(singe_sim_step(scene->sim));
+    LIFE(singe_sim_surface(scene->sim, surface));
+    SingePoseKey key = test_key(0, 0, 0, 1);
+    LIFE(singe_sim_move_pin(scene->sim, scene->points, 1, &key));
+    LIFE(singe_sim_move_collider(scene->sim, scene->box, 1, &key));
+    LIFE(singe_sim_remove_collider(scene->sim, scene->sphere));
+    for (int i = 0; i < 4; i++) {
+        SingeColliderDef collider = singe_default_collider();
+        SingeColliderId id;
+        collider.path_count = 1, collider.path = &key;
+        LIFE(singe_sim_add_collider(scene->sim, &collider, &id));
+    }
+    uint8_t *bytes;
+    size_t size;
+    LIFE(singe_sim_save(scene->sim, &bytes, &size));
+    SingeSim *loaded = NULL;
+    SingeError error = {0};
+    SingeResult result = singe_sim_load(def, bytes, size, &loaded, &error);
+    singe_sim_free_bytes(scene->sim, bytes, size);
+    if (result) {
+        assert_null(loaded);
+        assert_int_equal(error.code, result);
+        return result;
+    }
+    singe_sim_destroy(loaded);
+    return singe_sim_step(scene->sim);
+#undef LIFE
+}
+
+static long allocations(void) {
+    TestAllocator hook = {0};
+    SingeSimDef def = scene_def();
+    def.allocator = test_allocator(&hook);
+    Scene scene;
+    SingeSurface surface = {.allocator = def.allocator};
+    test_ok(scene.sim, whole_life(&def, &scene, &surface));
+    singe_surface_free(&surface);
+    singe_sim_destroy(scene.sim);
+    assert_int_equal(hook.blocks, 0);
+    assert_int_equal(hook.bytes, 0);
+    assert_int_equal(hook.faults, 0);
+    return hook.calls;
+}
+
+/// Every call for memory fails once, and once with all after it.
+static void every_allocation_fails_once(void **state) {
+    (void)state;
+    long calls = allocations();
+    assert_true(calls > 50);
+    for (long n = 1; n <= 2 * calls; n++) {
+        TestAllocator hook = {.fail_at = (n + 1) / 2, .once = n & 1};
+        SingeSimDef def = scene_def();
+        def.allocator = test_allocator(&hook);
+        Scene scene;
+        SingeSurface surface = {.allocator = def.allocator};
+        SingeResult result = whole_life(&def, &scene, &surface);
+        if (result != SINGE_ERROR_MEMORY)
+            fail_msg("call %ld of %ld: %s", hook.fail_at, calls, singe_result_name(result));
+        singe_surface_free(&surface);
+        singe_sim_destroy(scene.sim);
+        if (hook.blocks || hook.bytes || hook.faults)
+            fail_msg("call %ld: %ld blocks, %zu bytes left, %ld faults", hook.fail_at, hook.blocks, hook.bytes,
+                     hook.faults);
+    }
+}
+
+/// What failed for want of memory can be tried again on the same simulation.
+static void failed_calls_can_be_repeated(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    SingeSimDef def = scene_def();
+    def.allocator = test_allocator(&hook);
+    SingeSim *sim;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    TestMesh mesh = test_grid(5, 5, 0.01f, 0.01f);
+    SingeSheetDef sheet = test_sheet(&mesh);
+    SingeSheetId sheet_id;
+    SingePoseKey key = test_key(0, 0, 0, 0);
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId source_id;
+    const float grey = 1;
+    source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){1, 1, &grey};
+    SingeColliderDef collider = singe_default_collider();
+    SingeColliderId collider_id;
+    collider.path_count = 1, collider.path = &key;
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    const float point[3] = {0, 0, 0};
+    pin.point_count = 1, pin.points = point, pin.path_count = 1, pin.path = &key;
+#define REPEAT(call)                                                                          \
+    for (long n = 1;; n++) {                                                                  \
+        hook.fail_at = hook.calls + n, hook.once = true;                                      \
+        size_t held_ = hook.bytes;                                                            \
+        long faults_ = hook.faults;                                                           \
+        SingeResult result_ = (call);                                                         \
+        hook.fail_at = 0;                                                                     \
+        assert_int_equal(hook.faults, faults_);                                               \
+        if (result_ == SINGE_OK) break;                                                       \
+        assert_int_equal(result_, SINGE_ERROR_MEMORY);                                        \
+        assert_int_equal(singe_sim_error(sim)->code, SINGE_ERROR_MEMORY);                     \
+        if (hook.bytes > held_ + 8192) fail_msg(#call " kept %zu bytes", hook.bytes - held_); \
+    }
+    REPEAT(singe_sim_add_sheet(sim, &sheet, &sheet_id));
+    REPEAT(singe_sim_commit(sim));
+    pin.sheet = sheet_id;
+    REPEAT(singe_sim_add_source(sim, &source, &source_id));
+    REPEAT(singe_sim_add_collider(sim, &collider, &collider_id));
+    REPEAT(singe_sim_add_pin(sim, &pin, &pin_id));
+    uint8_t *bytes;
+    size_t size;
+    REPEAT(singe_sim_save(sim, &bytes, &size));
+    singe_sim_free_bytes(sim, bytes, size);
+    SingeSim *copy;
+    REPEAT(singe_sim_clone(sim, &copy));
+    singe_sim_destroy(copy);
+#undef REPEAT
+    assert_int_equal(source_id.index, 0); // failed tries used up no slots
+    assert_int_equal(collider_id.index, 0);
+    assert_int_equal(pin_id.index, 0);
+    test_steps(sim, 3);
+    singe_sim_destroy(sim);
+    assert_int_equal(hook.blocks, 0);
+    test_mesh_free(&mesh);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_failed_step_changes_nothing), cmocka_unit_test(a_failure_late_in_the_step),
+        cmocka_unit_test(steps_allocate_nothing), cmocka_unit_test(every_allocation_fails_once),
+        cmocka_unit_test(failed_calls_can_be_repeated),
+    };
+    return cmocka_run_group_tests_name("sim_failure", tests, NULL, NULL);
+}

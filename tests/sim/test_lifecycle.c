@@ -1,0 +1,316 @@
+// Create, add, commit, step, read: what is allowed when, and how particles are numbered.
+#include "scenes.h"
+
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static SingeSim *create(void) {
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    SingeError error;
+    assert_int_equal(singe_sim_create(&def, &sim, &error), SINGE_OK);
+    return sim;
+}
+
+static void before_the_commit(void **state) {
+    (void)state;
+    SingeSim *sim = create(), *copy = sim;
+    assert_int_equal(singe_sim_error(sim)->code, SINGE_OK);
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
+    SingeSourceDef source = singe_default_source();
+    SingeSourceId source_id = {1, 1};
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_source(sim, &source, &source_id));
+    assert_int_equal(source_id.generation, 0);
+    SingeColliderDef collider = singe_default_collider();
+    SingeColliderId collider_id;
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_collider(sim, &collider, &collider_id));
+    SingePinDef pin = singe_default_pin();
+    SingePinId pin_id;
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_pin(sim, &pin, &pin_id));
+    test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){0, 1}));
+    uint8_t *bytes = (uint8_t *)1;
+    size_t size = 1;
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_save(sim, &bytes, &size));
+    assert_null(bytes);
+    assert_int_equal(size, 0);
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_clone(sim, &copy));
+    assert_null(copy);
+    SingeSurface surface = {0};
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_surface(sim, &surface));
+    SingeStats stats = singe_sim_stats(sim);
+    assert_int_equal(stats.particles, 0);
+    size_t count = 1;
+    singe_sim_events(sim, &count);
+    assert_int_equal(count, 0);
+    SingeWindDef wind = singe_default_wind();
+    test_ok(sim, singe_sim_set_wind(sim, &wind));
+    singe_sim_destroy(sim);
+    singe_sim_destroy(NULL);
+}
+
+static void after_the_commit(void **state) {
+    (void)state;
+    SingeSim *sim = test_sim(NULL, test_grid(3, 3, 0.01f, 0.01f), NULL);
+    TestMesh mesh = test_grid(1, 1, 1, 1);
+    SingeSheetDef sheet = test_sheet(&mesh);
+    SingeSheetId id = {7, 7};
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_sheet(sim, &sheet, &id));
+    assert_int_equal(id.generation, 0);
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
+    test_ok(sim, singe_sim_step(sim));
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_sheet(sim, &sheet, &id));
+    test_mesh_free(&mesh);
+    singe_sim_destroy(sim);
+}
+
+/// A sheet that is refused leaves the simulation as it was; so does a commit that is refused.
+static void refused_sheets(void **state) {
+    (void)state;
+    SingeSim *sim = create();
+    TestMesh good = test_grid(2, 2, 0.01f, 0.01f), bad = test_grid(2, 2, 0.01f, 0.01f);
+    SingeSheetDef sheet = test_sheet(&bad);
+    SingeSheetId id;
+    bad.cells[5] = 99;
+    test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_sheet(sim, &sheet, &id));
+    assert_int_equal(singe_sim_error(sim)->element, 1);
+    bad.cells[5] = 2;
+    bad.positions[3] = NAN;
+    test_refused(sim, SINGE_ERROR_MESH, singe_sim_add_sheet(sim, &sheet, &id));
+    bad.positions[3] = 0.01f;
+    sheet.material.thickness = singe_param(-1);
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_sheet(sim, &sheet, &id));
+    SingeSheetDef fine = test_sheet(&good);
+    test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
+    assert_int_equal(id.index, 0);
+    assert_int_equal(id.generation, 1);
+    test_ok(sim, singe_sim_commit(sim));
+    assert_int_equal(singe_sim_view(sim).cell_count, 4);
+    test_steps(sim, 2);
+    singe_sim_destroy(sim);
+
+    sim = create(); // the third cell on one edge is found at the commit
+    TestMesh fan = test_grid(1, 2, 0.01f, 0.01f);
+    for (int i = 0; i < 2; i++) test_mesh_add_vertex(&fan, 0.01f * (float)i, 0.005f, 0.02f);
+    uint32_t cells[12];
+    memcpy(cells, fan.cells, sizeof fan.cells[0] * 8);
+    memcpy(cells + 8, (uint32_t[]){2, 3, 7, 6}, 4 * sizeof *cells);
+    SingeSheetDef branching = test_sheet(&fan);
+    branching.cell_count = 3, branching.cells = cells;
+    SingeResult added = singe_sim_add_sheet(sim, &branching, &id);
+    test_refused(sim, SINGE_ERROR_MESH, added ? added : singe_sim_commit(sim));
+    test_refused(sim, SINGE_ERROR_STATE, singe_sim_step(sim));
+    singe_sim_destroy(sim);
+    sim = create(); // a front that no cell comes near to is found there too, and a commit can be tried again
+    fine.material.mass_rate = singe_param(1e12f);
+    test_ok(sim, singe_sim_add_sheet(sim, &fine, &id));
+    for (int k = 0; k < 2; k++) {
+        test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_commit(sim));
+        assert_non_null(strstr(singe_sim_error(sim)->message, "thickening"));
+    }
+    singe_sim_destroy(sim);
+    test_mesh_free(&fan);
+    test_mesh_free(&good);
+    test_mesh_free(&bad);
+}
+
+static void particles_are_numbered_as_documented(void **state) {
+    (void)state;
+    SingeSim *sim = create();
+    TestMesh first = test_grid(2, 3, 0.01f, 0.02f), second = test_grid(1, 1, 0.03f, 0.03f);
+    test_mesh_add_vertex(&first, 5, 5, 5);
+    test_mesh_move(&second, 1, 0, 0);
+    SingeSheetDef a = test_sheet(&first), b = test_sheet(&second);
+    b.velocity[0] = 2;
+    SingeSheetId id;
+    test_ok(sim, singe_sim_add_sheet(sim, &a, &id));
+    test_ok(sim, singe_sim_add_sheet(sim, &b, &id));
+    assert_int_equal(id.index, 1);
+    test_ok(sim, singe_sim_commit(sim));
+    SingeView view = singe_sim_view(sim);
+    assert_int_equal(view.vertex_count, 13 + 4);
+    assert_int_equal(view.cell_count, 6 + 1);
+    assert_int_equal(view.particle_count, 24);
+    for (uint32_t v = 0; v < 13; v++) assert_memory_equal(view.position[v], first.positions + 3 * v, 12);
+    for (uint32_t v = 0; v < 4; v++) {
+        assert_memory_equal(view.position[13 + v], second.positions + 3 * v, 12);
+        assert_memory_equal(view.uv[13 + v], second.uv + 2 * v, 8);
+        assert_true(view.velocity[13 + v][0] == 2);
+    }
+    for (int k = 0; k < 4; k++) assert_int_equal(view.cells[6][k], 13 + second.cells[k]);
+    // the centre of the last cell: above its middle by the thickness, in front
+    const float *centre = view.position[23];
+    assert_true(fabsf(centre[0] - 1.015f) < 1e-6f && fabsf(centre[1] - 0.015f) < 1e-6f &&
+                fabsf(centre[2] - singe_default_material().thickness.value) < 1e-6f);
+    assert_true(fabsf(view.uv[23][0] - 0.5f) < 1e-6f);
+    // the unused vertex is there, but never lives
+    assert_int_equal(view.particle_flags[12] & SINGE_ALIVE, 0);
+    assert_int_equal(view.piece[12], -1);
+    assert_true(view.area[12] == 0);
+    assert_int_equal(singe_sim_stats(sim).particles, 23);
+    assert_int_equal(singe_sim_stats(sim).pieces, 2);
+    assert_int_equal(view.piece[0], 0);
+    assert_int_equal(view.piece[13], 1);
+    float still[3];
+    memcpy(still, view.position[12], sizeof still);
+    test_steps(sim, 5);
+    assert_memory_equal(view.position[12], still, sizeof still);
+    SingeCensus census = singe_sim_census(sim);
+    assert_int_equal(census.particles, 23);
+    assert_int_equal(census.cells, 7);
+    assert_int_equal(census.springs[SINGE_RED], 28);
+    assert_int_equal(census.springs[SINGE_YELLOW], 14);
+    assert_int_equal(census.springs[SINGE_BLUE], 17 + 4);
+    assert_int_equal(census.springs[SINGE_GREEN], 7);
+    singe_sim_destroy(sim);
+    test_mesh_free(&first);
+    test_mesh_free(&second);
+}
+
+typedef struct Heard {
+    int lines[3];
+    char last[3][256];
+} Heard;
+
+static void hear(void *context, SingeLogLevel level, const char *line) {
+    Heard *heard = context;
+    heard->lines[level]++;
+    snprintf(heard->last[level], sizeof heard->last[level], "%s", line);
+}
+
+/// The log's lines are the same where the host's decimal point is a comma.
+static void the_log_has_no_locale(void **state) {
+    (void)state;
+    if (!test_comma_locale()) skip();
+    Heard heard = {0};
+    SingeSimDef def = singe_default_sim();
+    def.log = (SingeLog){hear, &heard};
+    def.time_step = 0.1f;
+    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+    singe_sim_destroy(sim);
+    setlocale(LC_ALL, "C");
+    assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
+}
+
+/// What was made is told at the commit; a step too long for the cells is warned of.
+static void the_log_hears_of_the_commit(void **state) {
+    (void)state;
+    for (int slow = 0; slow < 2; slow++) {
+        Heard heard = {0};
+        SingeSimDef def = singe_default_sim();
+        def.log = (SingeLog){hear, &heard};
+        if (slow) def.time_step = 0.1f;
+        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        assert_int_equal(heard.lines[SINGE_LOG_INFO], 2);
+        assert_non_null(strstr(heard.last[SINGE_LOG_INFO], "cells of 5 mm"));
+        assert_int_equal(heard.lines[SINGE_LOG_WARNING], slow);
+        if (slow) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
+        test_steps(sim, 1);
+        assert_int_equal(heard.lines[SINGE_LOG_INFO] + heard.lines[SINGE_LOG_WARNING], 2 + slow);
+        singe_sim_destroy(sim);
+    }
+}
+
+/// A sheet that begins farther than a cell behind a plane is warned of in the first step, and one that lies on it not.
+static void the_log_hears_of_what_begins_inside(void **state) {
+    (void)state;
+    for (int deep = 0; deep < 2; deep++) {
+        Heard heard = {0};
+        SingeSimDef def = singe_default_sim();
+        def.log = (SingeLog){hear, &heard};
+        SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.005f, 0.005f), NULL);
+        SingeColliderDef plane = singe_default_collider();
+        SingePoseKey key = {.position = {0, 0, deep ? 0.0041f : 0.0039f}, .rotation = {0, 0, 0, 1}};
+        SingeColliderId id;
+        plane.path_count = 1, plane.path = &key, plane.offset = 1e-3f;
+        test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
+        test_steps(sim, 2);
+        assert_int_equal(heard.lines[SINGE_LOG_WARNING], deep);
+        const char *told = "100 % of the sheets begin inside it, up to 0.0051 m";
+        if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], told));
+        singe_sim_destroy(sim);
+    }
+}
+
+static void timers_and_time_grow(void **state) {
+    (void)state;
+    Scene scene = scene_make(NULL, 10);
+    SingeTimers last = singe_sim_timers(scene.sim);
+    assert_int_equal(last.steps, 0);
+    for (int i = 1; i <= 40; i++) {
+        test_ok(scene.sim, singe_sim_step(scene.sim));
+        SingeTimers now = singe_sim_timers(scene.sim);
+        SingeView view = singe_sim_view(scene.sim);
+        assert_int_equal(now.steps, i);
+        assert_int_equal(view.step, i);
+        assert_true(view.time == i * (double)(1.0f / 240));
+        assert_true(now.strands_projected > last.strands_projected);
+        assert_true(now.heat_iterations >= last.heat_iterations && now.contacts >= last.contacts);
+        for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) assert_true(now.seconds[stage] >= last.seconds[stage]);
+        last = now;
+    }
+    assert_true(last.heat_iterations > 40 && last.contacts > 0);
+    for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++)
+        assert_true(last.seconds[stage] > 0 && last.seconds[stage] < 60);
+    singe_sim_destroy(scene.sim);
+}
+
+static void count_warnings(void *context, SingeLogLevel level, const char *line) {
+    *(int *)context += level == SINGE_LOG_WARNING && strstr(line, "iterations") != NULL;
+}
+
+/// Steps too long for the solver of the heat equation are taken all the same, and one line tells of it.
+static void warns_once_of_conduction_cut_short(void **state) {
+    (void)state;
+    int warnings = 0;
+    SingeSimDef def = singe_default_sim();
+    def.log = (SingeLog){count_warnings, &warnings};
+    SingeMaterialDef material = singe_default_material();
+    material.convection = material.emissivity = singe_param(0);
+    SingeSim *sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
+    test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
+    test_steps(sim, 2);
+    assert_int_equal(warnings, 0);
+    singe_sim_destroy(sim);
+    def.pace = 1e5f;
+    sim = test_sim(&def, test_grid(600, 1, 0.002f, 0.002f), &material);
+    test_spot(sim, 0, 0, 0, 0.1f, 400, 50);
+    test_steps(sim, 3);
+    assert_int_equal(warnings, 1);
+    singe_sim_destroy(sim);
+}
+
+static void every_byte_is_counted_and_freed(void **state) {
+    (void)state;
+    TestAllocator hook = {0};
+    SingeSimDef def = scene_def();
+    def.allocator = test_allocator(&hook);
+    Scene scene = scene_make(&def, 8);
+    assert_int_equal(singe_sim_census(scene.sim).memory, hook.bytes);
+    test_steps(scene.sim, 3);
+    SingeSurface surface = {0};
+    size_t before = hook.bytes;
+    test_ok(scene.sim, singe_sim_surface(scene.sim, &surface));
+    assert_true(surface.triangle_count > 0);
+    singe_surface_free(&surface);
+    assert_int_equal(hook.bytes, before);
+    assert_int_equal(singe_sim_census(scene.sim).memory, hook.bytes);
+    singe_sim_destroy(scene.sim);
+    assert_int_equal(hook.blocks, 0);
+    assert_int_equal(hook.bytes, 0);
+    assert_int_equal(hook.faults, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
+        cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
+        cmocka_unit_test(the_log_hears_of_the_commit),
+        cmocka_unit_test(the_log_has_no_locale),
+        cmocka_unit_test(the_log_hears_of_what_begins_inside),
+        cmocka_unit_test(warns_once_of_conduction_cut_short), cmocka_unit_test(every_byte_is_counted_and_freed),
+    };
+    return cmocka_run_group_tests_name("sim_lifecycle", tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+// The numbers: ledgers over a whole burning run, and each statistic against the view.
+#include "common/random.h"
+#include "scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void ledgers_close(void **state) {
+    (void)state;
+    Scene scene = scene_make(NULL, 20);
+    double worst_heat = 0, worst_mass = 0;
+    for (int i = 0; i < 250; i++) {
+        test_ok(scene.sim, singe_sim_step(scene.sim));
+        SingeStats stats = singe_sim_stats(scene.sim);
+        worst_heat = fmax(worst_heat, stats.ledger_error);
+        worst_mass = fmax(worst_mass, stats.mass_ledger_error);
+        double heat = stats.heat_in + stats.heat_of_combustion - stats.heat_lost - stats.heat_stored;
+        assert_true(fabs(heat) <= 1e-5 * fmax(stats.heat_in, stats.heat_of_combustion));
+    }
+    assert_true(singe_sim_stats(scene.sim).ledgers_close);
+    print_message("ledger errors: heat %.1e, mass %.1e\n", worst_heat, worst_mass);
+    assert_true(worst_heat < 1e-5);
+    assert_true(worst_mass < 1e-6);
+    SingeStats stats = singe_sim_stats(scene.sim);
+    assert_true(stats.heat_of_combustion > 0 && stats.heat_lost > 0 && stats.mass_removed > 0 &&
+                stats.burnt_fraction > 0.3);
+    singe_sim_destroy(scene.sim);
+}
+
+/// Cells as bad as they come burn away, and nothing is ever colder than the air.
+static void bad_cells_burn_and_stay_above_the_air(void **state) {
+    (void)state;
+    for (uint32_t seed = 0; seed < 2; seed++) {
+        SingeSimDef def = scene_def();
+        def.solver.tearing = seed == 1;
+        SingeMaterialDef material = scene_quick_material();
+        TestMesh mesh = test_grid(20, 20, 0.01f, 0.01f);
+        for (uint32_t v = 0; v < mesh.vertex_count; v++)
+            for (uint32_t k = 0; k < 2; k++)
+                mesh.positions[3 * v + k] += 0.0084f * (random_unit(random_hash(v, k, seed, 9)) - 0.5f);
+        SingeSim *sim = test_sim(&def, mesh, &material);
+        test_spot(sim, 0.1f, 0.1f, 0, 0.05f, 1500, 1000);
+        for (int step = 0; step < 160; step++) {
+            test_ok(sim, singe_sim_step(sim));
+            SingeView view = singe_sim_view(sim);
+            for (uint32_t i = 0; i < view.particle_count; i++)
+                if (!(view.temperature[i] > def.ambient_temperature - 0.1f))
+                    fail_msg("step %d: particle %u has %g K", step, i, (double)view.temperature[i]);
+        }
+        SingeStats stats = singe_sim_stats(sim);
+        assert_true(stats.particles < 800 && stats.ledgers_close); // of 841
+        singe_sim_destroy(sim);
+    }
+}
+
+/// Steps so short that a float hardly notices what they bring: said, not hidden.
+static void ledgers_that_do_not_close_are_told(void **state) {
+    (void)state;
+    SingeSimDef def = scene_def();
+    def.pace = 1e-6f;
+    SingeMaterialDef material = scene_quick_material();
+    material.temperature = singe_param(400);
+    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
+    test_steps(sim, 40);
+    SingeStats stats = singe_sim_stats(sim);
+    print_message("pace 1e-6: ledger error %.2g\n", stats.ledger_error);
+    assert_true(stats.ledger_error > SINGE_LEDGER_BOUND && !stats.ledgers_close);
+    assert_true(fabs(stats.heat_stored) < 1e-3); // next to nothing has happened
+    singe_sim_destroy(sim);
+}
+
+/// Heat of combustion: eta C dm of every particle, summed by hand over a run.
+static void combustion_is_eta_times_mass(void **state) {
+    (void)state;
+    SingeSimDef def = scene_def();
+    SingeMaterialDef material = scene_quick_material();
+    material.ablate = false;
+    SingeSim *sim = test_sim(&def, test_grid(8, 8, 0.01f, 0.01f), &material);
+    test_spot(sim, 0.04f, 0.04f, 0, 0.02f, 1500, 1000);
+    test_steps(sim, 100);
+    SingeStats stats = singe_sim_stats(sim);
+    double expected = stats.mass_burnt * (double)material.specific_heat.value * 1500;
+    // the mass of a step becomes heat in the next one
+    assert_true(stats.heat_of_combustion > 0.9 * expected && stats.heat_of_combustion < 1.0001 * expected);
+    singe_sim_destroy(sim);
+}
+
+static int ascending(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static void statistics_match_the_view(void **state) {
+    (void)state;
+    Scene scene = scene_make(NULL, 12);
+    const float mass_loss = scene_quick_material().mass_loss.value;
+    for (int round = 0; round < 6; round++) {
+        test_steps(scene.sim, 20);
+        SingeView view = singe_sim_view(scene.sim);
+        SingeStats stats = singe_sim_stats(scene.sim);
+        uint32_t n = 0, springs = 0, cells = 0, particles = 0;
+        float *strain = malloc(view.spring_count[SINGE_BLUE] * sizeof *strain), hottest = 0;
+        assert_non_null(strain);
+        double sum = 0;
+        for (uint32_t k = 0; k < view.spring_count[SINGE_BLUE]; k++) {
+            const uint32_t *ends = view.springs[SINGE_BLUE][k];
+            if (!(view.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
+            if (view.particle_flags[ends[0]] & view.particle_flags[ends[1]] & SINGE_PINNED) continue; // held
+            if (view.mass[ends[0]] < mass_loss && view.mass[ends[1]] < mass_loss) continue; // not drawn
+            const float *a = view.position[ends[0]], *b = view.position[ends[1]];
+            float d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+            strain[n] = fabsf(sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / view.spring_length[SINGE_BLUE][k] - 1);
+            sum += (double)strain[n++];
+        }
+        qsort(strain, n, sizeof *strain, ascending);
+        assert_true(fabs(stats.strain_mean - sum / n) < 1e-6);
+        assert_true(fabs(stats.strain_max - (double)strain[n - 1]) < 1e-6);
+        assert_true(fabs(stats.strain_p99 - (double)strain[(size_t)(0.99 * (n - 1))]) < 1e-6);
+        free(strain);
+        for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
+            for (uint32_t k = 0; k < view.spring_count[c]; k++) springs += view.spring_flags[c][k] & SINGE_ALIVE;
+        for (uint32_t c = 0; c < view.cell_count; c++) cells += view.cell_flags[c] & SINGE_ALIVE;
+        for (uint32_t i = 0; i < view.particle_count; i++)
+            if (view.particle_flags[i] & SINGE_ALIVE) particles++, hottest = fmaxf(hottest, view.temperature[i]);
+        assert_int_equal(stats.springs, springs);
+        assert_int_equal(stats.cells, cells);
+        assert_int_equal(stats.particles, particles);
+        assert_true(stats.temperature_max == hottest);
+    }
+    singe_sim_destroy(scene.sim);
+}
+
+static void a_sheet_at_rest(void **state) {
+    (void)state;
+    SingeSim *sim = test_sim(NULL, test_grid(7, 5, 0.02f, 0.01f), NULL);
+    SingeStats stats = singe_sim_stats(sim);
+    double kilograms = 0.08 * 7 * 5 * 0.02 * 0.01;
+    assert_true(fabs(stats.mass_initial / kilograms - 1) < 1e-5);
+    assert_true(stats.mass == stats.mass_initial && stats.mass_burnt == 0 && stats.mass_removed == 0 &&
+                stats.burnt_fraction == 0);
+    assert_true(stats.strain_max < 1e-6 && stats.heat_stored == 0 && stats.ledger_error == 0 &&
+                stats.mass_ledger_error < 1e-12);
+    assert_int_equal(stats.inverted_cells, 0);
+    assert_int_equal(stats.pieces, 1);
+    assert_true(fabsf(stats.temperature_max - 293.15f) < 1e-3f);
+    assert_true(stats.thickening >= 1);
+    test_steps(sim, 12);
+    double speed = singe_sim_stats(sim).speed_rms_unburnt; // falls freely, less a little air
+    assert_true(speed > 0.1 && speed < 9.81 * 12 / 480 + 1e-6);
+    singe_sim_destroy(sim);
+}
+
+/// Heating without fire: what went in is stored or lost, and all of it is gone after long cooling.
+static void heat_without_fire(void **state) {
+    (void)state;
+    SingeSimDef def = scene_def();
+    SingeMaterialDef material = singe_default_material();
+    material.thickening = 1;
+    SingeSim *sim = test_sim(&def, test_grid(6, 6, 0.01f, 0.01f), &material);
+    SingeSourceId spot = test_spot(sim, 0.03f, 0.03f, 0, 0.05f, 450, 200);
+    test_steps(sim, 30);
+    SingeStats hot = singe_sim_stats(sim);
+    assert_true(hot.heat_in > 0 && hot.heat_stored > 0.1 * hot.heat_in && hot.heat_of_combustion == 0);
+    test_ok(sim, singe_sim_remove_source(sim, spot));
+    test_steps(sim, 240 * 30);
+    SingeStats cold = singe_sim_stats(sim);
+    assert_true(cold.heat_in == hot.heat_in);
+    assert_true(fabs(cold.heat_stored) < 2e-3 * cold.heat_in);
+    assert_true(cold.ledger_error < 1e-5);
+    singe_sim_destroy(sim);
+}
+
+/// Office paper through all four stages: the front's speed, from the pattern of times and from two gates.
+static void a_front_runs_along_a_strip(void **state) {
+    (void)state;
+    const float size = 0.002f, length = 0.1f;
+    SingeSimDef def = singe_default_sim();
+    def.gravity[2] = 0;
+    def.pace = 4;
+    SingeSim *sim = test_sim(&def, test_grid(50, 4, size, size), NULL);
+    SingeSourceId spot = test_spot(sim, 0, 0.004f, 0, 0.006f, 1100, 200);
+    double gate[2] = {0, 0}; // s, when the middle line had ignited up to 40 % and 90 %
+    uint32_t hit[2] = {0, 0};
+    SingeView view = singe_sim_view(sim);
+    for (uint32_t i = 0; i < view.particle_count; i++)
+        for (int k = 0; k < 2; k++) {
+            float d[2] = {view.rest_position[i][0] - (k ? 0.9f : 0.4f) * length, view.rest_position[i][1] - 0.004f};
+            if (fabsf(d[0]) + fabsf(d[1]) < 1e-5f) hit[k] = i;
+        }
+    for (int step = 0; step < 480 * 6 && gate[1] == 0; step++) {
+        test_ok(sim, singe_sim_step(sim));
+        if (step == 240) test_ok(sim, singe_sim_remove_source(sim, spot));
+        view = singe_sim_view(sim);
+        for (int k = 0; k < 2; k++)
+            if (view.time_ignited[hit[k]] >= 0) gate[k] = (double)view.time_ignited[hit[k]];
+    }
+    assert_true(gate[1] > gate[0] && gate[0] > 0);
+    double speed = 0.5 * (double)length / ((gate[1] - gate[0]) * (double)def.pace);
+    double measured = singe_sim_stats(sim).front_speed;
+    print_message("front: %.2f mm/s between gates, %.2f mm/s by its times\n", 1e3 * speed, 1e3 * measured);
+    assert_true(fabs(measured / speed - 1) < 0.05);
+    assert_true(speed > 4.4e-3 && speed < 7.0e-3);
+    singe_sim_destroy(sim);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ledgers_close),
+        cmocka_unit_test(ledgers_that_do_not_close_are_told),
+        cmocka_unit_test(bad_cells_burn_and_stay_above_the_air),
+        cmocka_unit_test(a_front_runs_along_a_strip),
+        cmocka_unit_test(combustion_is_eta_times_mass),
+        cmocka_unit_test(statistics_match_the_view),
+        cmocka_unit_test(a_sheet_at_rest),
+        cmocka_unit_test(heat_without_fire),
+    };
+    return cmocka_run_group_tests_name("sim_stats", tests, NULL, NULL);
+}

@@ -1,0 +1,367 @@
+// The surface refined near the front as a mesh: no cracks, linear fields, bent and crumpled sheets, memory.
+#include "drawing.h"
+
+#include "drawn_mesh.h"
+#include "common/random.h"
+#include "shell/split.h"
+#include "support/support.h"
+
+#include <string.h>
+
+/// Levels of about -0.1 to 0.15, smooth over some cells or not at all.
+static void set_random_levels(Drawing *d, uint32_t seed) {
+    const float scale = 0.4f / d->sheet->shell.sheets[0].cell_size;
+    for (uint32_t i = 0; i < d->sheet->shell.particle_count; i++) {
+        const float *p = d->sheet->shell.rest_position[i];
+        float wave = random_noise(scale * p[0], scale * p[1], 0, seed) - 0.4f;
+        float rough = random_unit(random_hash(i, seed, 0, 0)) - 0.4f;
+        set_level(d, i, 0.25f * (seed & 1 ? wave : rough));
+    }
+}
+
+static bool covers(const SingeSurface *s, uint32_t t, double x, double y) {
+    const uint32_t *corner = s->triangles[t];
+    for (int i = 0; i < 3; i++) {
+        const float *a = s->position[corner[i]], *b = s->position[corner[(i + 1) % 3]];
+        double ax = (double)a[0], ay = (double)a[1];
+        if (((double)b[0] - ax) * (y - ay) - ((double)b[1] - ay) * (x - ax) < 0) return false;
+    }
+    return true;
+}
+
+/// The surface goes on right behind an edge of it: a crack. Not asked of edges so short that the place may lie behind
+/// another one.
+static bool covered_behind(const SingeSurface *s, uint32_t a, uint32_t b) {
+    const float *p = s->position[a], *q = s->position[b];
+    double x = (double)q[0] - (double)p[0], y = (double)q[1] - (double)p[1], step = 1e-5 / hypot(x, y);
+    if (step > 1e-3) return false;
+    double px = 0.5 * ((double)p[0] + (double)q[0]) + step * y, py = 0.5 * ((double)p[1] + (double)q[1]) - step * x;
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+        if (covers(s, t, px, py)) return true;
+    return false;
+}
+
+/// Every edge is walked once in each direction, or once where the surface ends: there lies nothing behind it.
+static void expect_no_cracks(const SingeSurface *s) {
+    size_t count = 3 * (size_t)s->triangle_count;
+    Edge *edges = drawn_edges(s);
+    for (size_t k = 0; k < count; k++) {
+        Edge back = {edges[k].b, edges[k].a};
+        assert_true(k == 0 || compare_edges(&edges[k - 1], &edges[k]) != 0);
+        if (!bsearch(&back, edges, count, sizeof *edges, compare_edges))
+            assert_false(covered_behind(s, back.b, back.a));
+    }
+    free(edges);
+}
+
+static void random_levels_leave_no_cracks(void **unused) {
+    (void)unused;
+    const float details[] = {0.05f, 0.12f, 0.2f, 0.36f, 0.9f};
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        Drawing *d = fine_drawing(12, 9, 1, details[seed % 5], seed % 3 ? 0.4f : 0);
+        State *state = &d->sheet->state;
+        set_random_levels(d, seed);
+        draw_fine(d); // nothing has been removed yet: the surface ends where the level does
+        assert_true(d->surface.triangle_count > 200);
+        expect_no_cracks(&d->surface);
+        assert_true(area_of(&d->surface) > 1);
+        ablate(d);
+        draw_fine(d);
+        expect_no_cracks(&d->surface);
+        for (uint32_t t = 0; t < d->surface.triangle_count; t++) { // nothing is drawn where nothing is
+            float x = 0, y = 0;
+            for (int i = 0; i < 3; i++) {
+                const float *p = d->surface.position[d->surface.triangles[t][i]];
+                x += p[0] / 3, y += p[1] / 3;
+            }
+            assert_true(state->ablate.cell_flags[(int)y * 12 + (int)x] & SINGE_ALIVE);
+        }
+        drawing_free(d);
+    }
+}
+
+static void linear_fields_are_exact(void **unused) {
+    (void)unused;
+    const Linear levels[] = {{0.1, 0.05, -0.333}, {-0.07, 0.11, 0.031}, {0.02, -0.13, 0.217}, {0.09, 0, -0.3141}};
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
+        Drawing *d = fine_drawing(7, 5, 1, 0.15f, 0);
+        const SingeSurface *s = &d->surface;
+        set_linear_fields(d, levels[k]);
+        draw_fine(d);
+        expect_linear_fields(d, levels[k], 1e-4);
+        double least = 1;
+        for (uint32_t v = 0; v < s->vertex_count; v++) least = fmin(least, value_at(levels[k], s->position[v]));
+        assert_float_equal(least, 0, 2e-6); // cut at the level, wherever that is
+        drawing_free(d);
+    }
+}
+
+/// A sheet bent to a cylinder is drawn as one, by the limit surface's own radius: less by side^2/(6 R).
+static void bent_sheets_are_drawn_round(void **unused) {
+    (void)unused;
+    Drawing *d = fine_drawing(12, 9, 1, 0.1f, 0);
+    const float radius = 3, sagitta = 1 / (8 * radius), drawn = (4 + 2 * cosf(1 / radius)) / 6 * radius;
+    set_linear_fields(d, (Linear){0.03, 0.07, -0.4});
+    for (uint32_t i = 0; i < d->sheet->shell.vertex_count; i++) {
+        float *p = d->sheet->state.dynamics.position[i], angle = d->sheet->shell.rest_position[i][0] / radius;
+        p[0] = radius * sinf(angle), p[2] = radius * cosf(angle);
+    }
+    draw_fine(d);
+    const SingeSurface *s = &d->surface;
+    assert_true(s->fine_triangle_count > 1000);
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (s->rest_position[v][0] < 1 || s->rest_position[v][0] > 11) continue; // at the border it lies farther out
+        float distance = hypotf(s->position[v][0], s->position[v][2]);
+        assert_float_equal(distance, drawn, 0.01 * (double)sagitta); // flat cells are off by up to 2
+        float outwards = (s->normal[v][0] * s->position[v][0] + s->normal[v][2] * s->position[v][2]) / distance;
+        assert_true(outwards > 0.9999f);
+    }
+    drawing_free(d);
+}
+
+static Vec doubled_normal(const SingeSurface *s, uint32_t t) {
+    Vec p = vec_load(s->position[s->triangles[t][0]]), q = vec_load(s->position[s->triangles[t][1]]);
+    return vec_cross(vec_sub(q, p), vec_sub(vec_load(s->position[s->triangles[t][2]]), p));
+}
+
+/// Far from the origin floats lie 0.5 um apart, wherever the level cuts fine sides.
+static void no_triangle_is_lost_to_rounding(void **unused) {
+    (void)unused;
+    const Vec normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
+    for (uint32_t seed = 0; seed < 12; seed++) {
+        Drawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
+        set_random_levels(d, seed);
+        for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
+            const float *rest = d->sheet->shell.rest_position[v];
+            Vec p = vec_mad(vec_mad(vec(5, -6, -7), along, rest[0]), up, rest[1]);
+            vec_store(d->sheet->state.dynamics.position[v], p);
+        }
+        draw_fine(d);
+        const SingeSurface *s = &d->surface;
+        float thinnest = 1;
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            float longest = 0;
+            for (int i = 0; i < 3; i++) {
+                const uint32_t *at = s->triangles[t];
+                Vec side = vec_sub(vec_load(s->position[at[(i + 1) % 3]]), vec_load(s->position[at[i]]));
+                longest = fmaxf(longest, vec_length(side));
+            }
+            thinnest = fminf(thinnest, fabsf(vec_dot(doubled_normal(s, t), normal)) / longest);
+        }
+        assert_true(s->fine_triangle_count > 500);
+        assert_true(thinnest > 5e-6f);
+        drawing_free(d);
+    }
+}
+
+/// However crumpled the sheet is, its fine triangles face as they would on flat cells, and leave these by `leaves_most`.
+static void crumpled_sheets_are_not_turned_over(void **unused) {
+    (void)unused;
+    for (uint32_t seed = 0; seed < 8; seed++) {
+        Drawing *round = fine_drawing(12, 9, 1, 0.1f, 0), *straight = fine_drawing(12, 9, 1, 0.1f, 0);
+        float room[130]; // another surface everywhere: as finely drawn, and as flat as can be
+        for (int v = 0; v < 130; v++) room[v] = 1e-9f;
+        for (uint32_t v = 0; v < round->sheet->shell.vertex_count; v++) {
+            float *p = round->sheet->state.dynamics.position[v];
+            p[0] *= seed < 4 ? 1 : 2.5f; // sides of different lengths
+            for (int k = 0; k < 3; k++)
+                p[k] += (float)(seed % 4 + 1) * 0.4f * (random_unit(random_hash(v, seed, (uint32_t)k, 3)) - 0.5f);
+            memcpy(straight->sheet->state.dynamics.position[v], p, 3 * sizeof *p);
+        }
+        set_random_levels(round, seed), set_random_levels(straight, seed);
+        straight->detail.room = room, round->detail.leaves_most = seed & 1 ? 0.06f : 0;
+        draw_fine(round), draw_fine(straight);
+        const SingeSurface *s = &round->surface, *plain = &straight->surface;
+        assert_int_equal(s->triangle_count, plain->triangle_count);
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            assert_true(vec_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
+            for (int i = 0; i < 3; i++) { // no step between triangles
+                uint32_t a = s->triangles[t][i], b = s->triangles[t][(i + 1) % 3];
+                Vec side = vec_sub(vec_load(s->position[b]), vec_load(s->position[a]));
+                Vec was = vec_sub(vec_load(plain->position[b]), vec_load(plain->position[a]));
+                assert_true(vec_length(vec_sub(side, was)) < 0.9f * vec_length(was));
+            }
+        }
+        float farthest = 0;
+        for (uint32_t v = 0; v < s->vertex_count; v++)
+            farthest = fmaxf(farthest, vec_length(vec_sub(vec_load(s->position[v]), vec_load(plain->position[v]))));
+        assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
+        drawing_free(round), drawing_free(straight);
+    }
+}
+
+/// Tears the sheet along y = row from its border on, up to `length` cells far; the lips stay at one place.
+static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
+    BurningSheet *b = d->sheet;
+    for (uint32_t i = 0; i < length; i++) {
+        ShellSplit split = {.vertex = corner_at(b, i, row)};
+        Fan fan;
+        split_fan(&b->shell, split.vertex, &fan);
+        for (int k = 0; k < fan.count; k++) split.cells |= (uint32_t)(fan.cell[k] >= row * b->nx) << k;
+        assert_true(split_is_possible(&b->shell, &fan, &split));
+        uint32_t spare = split_vertex(&b->shell, &fan, &split).spare;
+        memcpy(b->state.dynamics.position[spare], b->state.dynamics.position[split.vertex], 16);
+        b->state.burn.mass[spare] = b->state.burn.mass[split.vertex];
+        b->state.ablate.particle_flags[spare] = SINGE_ALIVE;
+        b->shell.split_count++;
+    }
+}
+
+/// The level cuts either lip otherwise; what is drawn of the one ends before the other.
+static void lips_at_one_place_are_drawn_apart(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        Drawing *d = drawing_of(burning_spare_sheets(1, 12, 9, 1, &material, 0, 8));
+        d->detail = (SurfaceDetail){.size = 0.1f, .raggedness = 0.4f, .seed = seed};
+        set_random_levels(d, seed);
+        tear_along(d, 4, 7);
+        draw_fine(d);
+        const SingeSurface *s = &d->surface;
+        int ends[2] = {0, 0};
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            float middle = 0;
+            for (int i = 0; i < 3; i++) middle += s->rest_position[s->triangles[t][i]][1] / 3;
+            for (int i = 0; i < 3; i++) {
+                const float *rest = s->rest_position[s->triangles[t][i]], *p = s->position[s->triangles[t][i]];
+                if (fabsf(rest[1] - 4) > 0.4f || rest[0] > 6.9f) continue;
+                assert_true(middle > 4 ? p[1] > 4 + 5e-5f : p[1] < 4 - 5e-5f);
+                ends[middle > 4]++;
+            }
+        }
+        assert_true(ends[0] > 5 && ends[1] > 5);
+        drawing_free(d);
+    }
+}
+
+/// A cell's triangles that have been pulled apart are left out once springs of it have burnt, and not before.
+static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
+    (void)unused;
+    Drawing *d = fine_drawing(6, 6, 1, 0.2f, 0);
+    const uint32_t cell = cell_at(d->sheet, 2, 2), corner = d->sheet->shell.cells[cell][0];
+    const float room[49] = {0};
+    d->detail.room = room; // flat cells, which are not split for their bends
+    set_linear_fields(d, (Linear){0.03, 0.07, -0.05});
+    draw_fine(d);
+    uint32_t whole = d->surface.triangle_count;
+    d->sheet->state.dynamics.position[corner][0] -= 3;
+    draw_fine(d);
+    assert_int_equal(d->surface.triangle_count, whole);
+    for (int k = 0; k < 4; k++) {
+        uint32_t other = d->sheet->shell.fan[d->sheet->shell.fan_first[corner] + (uint32_t)k];
+        d->sheet->state.ablate.spring_flags[SINGE_BLUE][d->sheet->shell.cell_springs[other].blue[0]] = 0;
+    }
+    draw_fine(d);
+    assert_true(d->surface.triangle_count <= whole - 8);
+    for (uint32_t t = 0; t < d->surface.triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = d->surface.triangles[t][i], b = d->surface.triangles[t][(i + 1) % 3];
+            Vec now = vec_sub(vec_load(d->surface.position[b]), vec_load(d->surface.position[a]));
+            Vec rest = vec_sub(vec_load(d->surface.rest_position[b]), vec_load(d->surface.rest_position[a]));
+            assert_true(vec_length(now) < 2 * vec_length(rest));
+        }
+    drawing_free(d);
+}
+
+static void whole_sheets_are_drawn_coarsely(void **unused) {
+    (void)unused;
+    Drawing *d = fine_drawing(4, 3, 0.01f, 1e-4f, 1e-3f);
+    draw_fine(d);
+    assert_int_equal(d->surface.triangle_count, 48);
+    assert_int_equal(d->surface.vertex_count, 20 + 12);
+    for (uint32_t v = 0; v < 32; v++) assert_float_equal(d->surface.mass[v], 1, 0);
+    d->sheet->state.burn.time_ignited[0] = 3; // never ignited ends do not count
+    draw_fine(d);
+    for (uint32_t v = 0; v < 32; v++)
+        assert_float_equal(d->surface.time_ignited[v], d->surface.source_vertex[v] == 0 ? 3 : -1, 0);
+    drawing_free(d);
+}
+
+static void threads_draw_the_same(void **unused) {
+    (void)unused;
+    Drawing *one = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f), *four = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
+    assert_int_equal(pool_create(&four->sheet->memory, (SingeTasks){0}, 4, &four->pool), SINGE_OK);
+    burn_rings(one, 0.02f), burn_rings(four, 0.02f);
+    draw_fine(one), draw_fine(four);
+    const SingeSurface *a = &one->surface, *b = &four->surface;
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->triangle_count, b->triangle_count);
+    assert_memory_equal(a->triangles, b->triangles, a->triangle_count * sizeof *a->triangles);
+    assert_memory_equal(a->position, b->position, a->vertex_count * sizeof *a->position);
+    assert_memory_equal(a->mass, b->mass, a->vertex_count * sizeof *a->mass);
+    assert_memory_equal(a->temperature, b->temperature, a->vertex_count * sizeof *a->temperature);
+    drawing_free(one), drawing_free(four);
+}
+
+/// A place of the sheet at a fraction of its cells.
+static FinePlace place_at(uint32_t n, uint32_t cells) {
+    FinePlace place = {random_hash(n, 1, 0, 0) % cells, (uint8_t)(random_hash(n, 2, 0, 0) & 3), {0}};
+    float x = random_unit(random_hash(n, 3, 0, 0)), y = (1 - x) * random_unit(random_hash(n, 4, 0, 0));
+    place.weight[0] = x, place.weight[1] = y, place.weight[2] = 1 - x - y;
+    return place;
+}
+
+/// A walk ends where it would in the plane, across cells that are turned against each other.
+static void walks_cross_cells(void **unused) {
+    (void)unused;
+    Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
+    const Shell *shell = &d->sheet->shell;
+    for (uint32_t n = 0; n < 2000; n++) {
+        FinePlace from = place_at(n, shell->cell_count);
+        float x = random_unit(random_hash(n, 5, 0, 0)) - 0.5f, y = random_unit(random_hash(n, 6, 0, 0)) - 0.5f;
+        FinePlace to = fine_walk(shell, from, x, y);
+        float at[2][2] = {{0}};
+        for (int k = 0; k < 2; k++) {
+            const FinePlace *place = k ? &to : &from;
+            const uint32_t *c = shell->cells[place->cell];
+            for (int i = 0; i < 2; i++)
+                at[k][i] = place->weight[0] * shell->rest_position[c[place->side]][i] +
+                           place->weight[1] * shell->rest_position[c[(place->side + 1) & 3]][i] +
+                           place->weight[2] * shell->rest_position[shell_centre(shell, place->cell)][i];
+        }
+        assert_float_equal(at[1][0], fminf(fmaxf(at[0][0] + x, 0), 5), 1e-5);
+        assert_float_equal(at[1][1], fminf(fmaxf(at[0][1] + y, 0), 4), 1e-5);
+        for (int i = 0; i < 3; i++) assert_true(to.weight[i] >= -1e-6f);
+    }
+    drawing_free(d);
+}
+
+static void survives_lack_of_memory(void **unused) {
+    (void)unused;
+    Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
+    const BurningSheet *b = d->sheet;
+    SingeResult result = SINGE_ERROR_MEMORY;
+    burn_rings(d, 0.02f);
+    int failures = 0;
+    for (int n = 0; result; n++) {
+        TestAllocator allocator = {.fail_at = n + 1};
+        Memory memory = memory_make(test_allocator(&allocator));
+        SingeSurface surface = {.allocator = test_allocator(&allocator)};
+        result = ablate_surface_fine(d->plan, &b->shell, &b->state, &d->detail, &memory, NULL, &surface, NULL);
+        assert_int_equal(memory.held, 0);
+        assert_true(result == SINGE_OK || result == SINGE_ERROR_MEMORY);
+        failures += result != SINGE_OK;
+        if (result) assert_int_equal(surface.vertex_count + surface.triangle_count + surface.vertex_capacity, 0);
+        singe_surface_free(&surface);
+        test_allocator_check(&allocator);
+    }
+    assert_true(failures > 30);
+    drawing_free(d);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_levels_leave_no_cracks),
+        cmocka_unit_test(linear_fields_are_exact),
+        cmocka_unit_test(bent_sheets_are_drawn_round),
+        cmocka_unit_test(no_triangle_is_lost_to_rounding),
+        cmocka_unit_test(crumpled_sheets_are_not_turned_over),
+        cmocka_unit_test(lips_at_one_place_are_drawn_apart),
+        cmocka_unit_test(what_a_lost_corner_pulls_apart_is_left_out),
+        cmocka_unit_test(whole_sheets_are_drawn_coarsely),
+        cmocka_unit_test(threads_draw_the_same),
+        cmocka_unit_test(walks_cross_cells),
+        cmocka_unit_test(survives_lack_of_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

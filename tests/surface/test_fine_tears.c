@@ -1,0 +1,66 @@
+// Lips of a tear part without crossing each other, however crumpled the sheet is there.
+#include "ablate/burning_sheet.h"
+#include "shell/cross.h"
+#include "tear/tear_plan.h"
+
+enum { TRIALS = 4000, MIDDLE = 4 }; // the vertex in the middle of 2 by 2 cells
+
+static float any(uint32_t *random) {
+    *random = *random * 1664525u + 1013904223u;
+    return (float)(*random >> 8) / 16777216.0f - 0.5f;
+}
+
+static bool any_cross(const BurningSheet *b) {
+    const float(*x)[4] = (const float(*)[4])b->state.dynamics.position;
+    bool cross = false;
+    for (uint32_t c = 0; c < 4; c++)
+        for (uint32_t d = 0; d < c; d++) cross |= cross_cells(&b->shell, x, c, d);
+    return cross;
+}
+
+/// Where the middle lip would go if nothing were in its way: a little towards the mean of its cells' corners.
+static Vec mean_way(const BurningSheet *b, uint32_t vertex) {
+    const Shell *shell = &b->shell;
+    uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
+    Vec place = vec_load(b->state.dynamics.position[MIDDLE]), sum = {0, 0, 0};
+    for (uint32_t f = first; f < last; f++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t corner = shell->cells[shell->fan[f]][i];
+            sum = vec_add(sum, corner == vertex ? place : vec_load(b->state.dynamics.position[corner]));
+        }
+    return vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
+}
+
+static void lips_do_not_cross(void **unused) {
+    (void)unused;
+    SingeMaterialDef material = plain_material();
+    uint32_t random = 3, torn = 0, otherwise = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        BurningSheet *b = burning_spare_sheets(1, 2, 2, 1, &material, 0, 6);
+        for (uint32_t v = 0; v < 9; v++)
+            for (int k = 0; k < 3; k++) b->state.dynamics.position[v][k] += 3 * any(&random);
+        Vec before = vec_load(b->state.dynamics.position[MIDDLE]);
+        ShellSplit split = {.vertex = MIDDLE, .cells = trial % 2 ? 3 : 5};
+        Fan fan;
+        SplitResult result;
+        split_fan(&b->shell, MIDDLE, &fan);
+        if (!any_cross(b) && split_is_possible(&b->shell, &fan, &split)) {
+            tear_split(&b->shell, &b->state, &fan, &split, &result);
+            Vec after = vec_load(b->state.dynamics.position[MIDDLE]);
+            vec_store(b->state.dynamics.position[MIDDLE], before);
+            Vec way = vec_sub(vec_mad(before, mean_way(b, MIDDLE), 0.002f), after);
+            vec_store(b->state.dynamics.position[MIDDLE], after);
+            otherwise += vec_length(way) > 1e-5f;
+            torn++;
+            assert_false(any_cross(b));
+            assert_true(vec_length(vec_sub(after, vec_load(b->state.dynamics.position[result.spare]))) > 1e-4f);
+        }
+        burning_sheet_free(b);
+    }
+    assert_true(torn > 300 && otherwise > 3);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lips_do_not_cross)};
+    return cmocka_run_group_tests_name("tear_lips", tests, NULL, NULL);
+}
