@@ -21,7 +21,7 @@ bool cache_column_is_integer(int column) { return column >= CACHE_PIECE; }
 float cache_value(const CacheFrame *frame, int column, uint32_t vertex) {
     float value = 0;
     if (!frame->there[column]) return value;
-    const uint32_t bits = load_u32_little(frame->rows + vertex * frame->row + frame->place[column]);
+    const uint32_t bits = load_u32_little(frame->rows + vertex * frame->row + frame->offset[column]);
     memcpy(&value, &bits, sizeof value);
     return value;
 }
@@ -33,14 +33,14 @@ static bool is_named(const PlyProperty *property, const char *name) {
 }
 
 /// Where the promised properties are in a vertex.
-static SingeResult place_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
+static SingeResult offset_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
     for (size_t i = 0; i < vertices->property_count; i++) {
         const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
         if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
         for (int c = 0; c < CACHE_COLUMNS; c++) {
             const PlyType type = cache_column_is_integer(c) ? PLY_INT32 : PLY_FLOAT32;
             if (property->type != type || !is_named(property, names[c])) continue;
-            frame->there[c] = true, frame->place[c] = frame->row;
+            frame->there[c] = true, frame->offset[c] = frame->row;
         }
         frame->row += ply_type_size(property->type);
     }
@@ -70,7 +70,7 @@ static SingeResult check_header(const Ply *ply, CacheFrame *frame) {
         !text_word_is(list->name, list->name_end, "vertex_indices"))
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a cache: its faces are no \"list uchar int vertex_indices\"");
     frame->vertex_count = vertices->count, frame->triangle_count = faces->count;
-    TRY(place_columns(ply, vertices, frame));
+    TRY(offset_columns(ply, vertices, frame));
     read_time(ply, frame);
     const uint64_t needed = (uint64_t)frame->row * vertices->count + (uint64_t)FACE_SIZE * faces->count;
     const uint64_t actual = (uint64_t)(ply->text.end - ply->text.at);

@@ -18,7 +18,7 @@ typedef struct CacheFrame {
     float (*rest)[3];            ///< [vertex_count], 0 where there are none
     uint32_t (*triangles)[3];    ///< [triangle_count] as in the file: they may be out of range
     Bytes bytes;
-    size_t row, place[CACHE_COLUMNS]; ///< bytes of a vertex, and where in it a property is
+    size_t row, offset[CACHE_COLUMNS]; ///< bytes of a vertex, and where in it a property is
     const uint8_t *rows;
 } CacheFrame;
 

@@ -17,7 +17,7 @@ typedef struct Box {
 } Box;
 
 typedef struct Placed {
-    uint64_t place; ///< along the curve
+    uint64_t position; ///< along the curve
     uint32_t triangle;
 } Placed;
 
@@ -67,18 +67,18 @@ static uint64_t spread(uint64_t bits) {
     return (bits | bits << 2) & 0x1249249249249249u;
 }
 
-static uint64_t morton_place(const Box *box, const Box *all, double scale) {
-    uint64_t place = 0;
+static uint64_t morton_position(const Box *box, const Box *all, double scale) {
+    uint64_t position = 0;
     for (int k = 0; k < 3; k++) {
-        double middle = 0.5 * ((double)box->low[k] + (double)box->high[k]);
-        place |= spread((uint64_t)((middle - (double)all->low[k]) * scale)) << k;
+        double centroid = 0.5 * ((double)box->low[k] + (double)box->high[k]);
+        position |= spread((uint64_t)((centroid - (double)all->low[k]) * scale)) << k;
     }
-    return place;
+    return position;
 }
 
-static int by_place(const void *a, const void *b) {
+static int by_position(const void *a, const void *b) {
     const Placed *x = a, *y = b;
-    if (x->place != y->place) return x->place < y->place ? -1 : 1;
+    if (x->position != y->position) return x->position < y->position ? -1 : 1;
     return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
@@ -97,9 +97,9 @@ static void put_in_order(Tree *tree) {
     const double scale = side > 0 ? ((1 << MORTON_BITS) - 1) / side : 0;
     for (uint32_t t = 0; t < tree->count; t++) {
         Box box = triangle_box(tree, t);
-        tree->order[t] = (Placed){morton_place(&box, &all, scale), t};
+        tree->order[t] = (Placed){morton_position(&box, &all, scale), t};
     }
-    qsort(tree->order, tree->count, sizeof *tree->order, by_place);
+    qsort(tree->order, tree->count, sizeof *tree->order, by_position);
 }
 
 static uint32_t leaf_begin(const Tree *tree, uint32_t leaf) {

@@ -10,7 +10,7 @@
 #include "analysis/crossings.h"
 #include "analysis/exact.h"
 
-enum { TOLD = 3 };
+enum { REPORTED = 3 };
 static const double fold_cosine = -0.984807753; // triangles that enclose less than 10 degrees
 
 static void findings_say(const Findings *findings, bool fault, const char *format, ...) SINGE_PRINTF(3, 4);
@@ -28,11 +28,11 @@ void findings_add(Findings *findings, Fault fault, const char *format, ...) {
     char text[300];
     va_list list;
     findings->count[fault]++;
-    if (findings->told[fault]++ >= TOLD) return;
+    if (findings->reported[fault]++ >= REPORTED) return;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    const char *more = findings->told[fault] == TOLD ? "; further ones of this kind are only counted" : "";
+    const char *more = findings->reported[fault] == REPORTED ? "; further ones of this kind are only counted" : "";
     findings_say(findings, true, "%s: %s%s", findings->file, text, more);
 }
 
@@ -117,7 +117,7 @@ static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
 /// Counts a pair that crosses from the start, and tells of it when it is one of the first.
 static void add_from_start(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
     const float *p = frame->position[frame->triangles[a][0]];
-    if (findings->from_start++ < TOLD && findings->begins)
+    if (findings->from_start++ < REPORTED && findings->begins)
         findings_say(findings, false, "%s: triangles %u and %u cross from the start near (%.4g, %.4g, %.4g) m",
                      findings->file, a, b, (double)p[0], (double)p[1], (double)p[2]);
 }
@@ -283,8 +283,8 @@ static bool check_edges(const CacheFrame *frame, const uint32_t *sound, uint32_t
 
 bool check_start(const CacheFrame *frame, Findings *findings) {
     Findings quiet = *findings;
-    for (int f = 0; f < FAULT_COUNT; f++) quiet.told[f] = TOLD;
-    quiet.begins = true, quiet.from_start = TOLD;
+    for (int f = 0; f < FAULT_COUNT; f++) quiet.reported[f] = REPORTED;
+    quiet.begins = true, quiet.from_start = REPORTED;
     const bool good = check_surface(frame, &quiet);
     findings->initial = quiet.initial;
     return good;

@@ -31,7 +31,7 @@ typedef struct Findings {
     Initial initial;          ///< what did, to be freed
     uint64_t from_start;      ///< crossings of what did; no fault
     uint64_t folded;          ///< edges whose triangles lie on one another; no fault
-    int told[FAULT_COUNT];    ///< messages so far
+    int reported[FAULT_COUNT];    ///< messages so far
 } Findings;
 
 /// Counts a fault, and tells of it when it is one of the first of its kind.

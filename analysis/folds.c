@@ -15,10 +15,10 @@
 
 #include "analysis/rest_raster.h"
 
-enum { SAMPLES_A_CELL = 8, WINDOW = 24, LINE = 48, MIDDLE = LINE - WINDOW, SHEETS_MOST = UINT16_MAX };
+enum { SAMPLES_A_CELL = 8, WINDOW = 24, LINE = 48, CENTROID = LINE - WINDOW, SHEETS_MAX = UINT16_MAX };
 
-static const double turn_least = 0.1745, far_off = 3; ///< rad in a cell; cells
-static const float burnt_least = 0.02f;
+static const double turn_min = 0.1745, far_off = 3; ///< rad in a cell; cells
+static const float burnt_min = 0.02f;
 
 /// Length of the sheet's cells, m: its area at rest over the vertices of the input that are drawn.
 static double cell_length(const SingeSurface *surface, int32_t sheet) {
@@ -65,7 +65,7 @@ static bool fold_at(const Work *work, int p, double cell, double along[2]) {
     }
     double across = 0.5 * atan2(2 * xy, xx - yy), bend = sqrt(0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy));
     along[0] = -sin(across), along[1] = cos(across);
-    return bend * cell > turn_least;
+    return bend * cell > turn_min;
 }
 
 /// N at a place between pixels. False where one of them does not count.
@@ -90,7 +90,7 @@ static void add_line(const Work *work, int i, int j, const double along[2], doub
         double s = (n - 0.5 * (LINE - 1)) * step;
         if (!normal_at(work, i + s * along[0], j + s * along[1], normal[n])) return;
     }
-    for (int n = 0; n < MIDDLE; n++)
+    for (int n = 0; n < CENTROID; n++)
         for (int k = 0; k < 3; k++) {
             double mean = 0, total = 0;
             for (int m = 0; m <= WINDOW; m++) {
@@ -99,7 +99,7 @@ static void add_line(const Work *work, int i, int j, const double along[2], doub
             }
             power += pow(normal[n + WINDOW / 2][k] - mean / total, 2);
         }
-    folds->power += power / MIDDLE, folds->count += 1;
+    folds->power += power / CENTROID, folds->count += 1;
 }
 
 /// Distance to what has burnt and to where the sheet ends, less `far_off` cells. What is not covered counts as burnt from
@@ -108,7 +108,7 @@ static void find_distances(RestRaster *raster, float *distance, double cell) {
     const int pixels = raster->width * raster->height;
     for (int p = 0; p < pixels; p++)
         if (!(raster->cover[p] > 0)) raster->cover[p] = raster->burn[p] = 1;
-    rest_raster_distance(raster, burnt_least, distance);
+    rest_raster_distance(raster, burnt_min, distance);
     for (int p = 0; p < pixels; p++) distance[p] -= (float)(far_off * cell);
 }
 
@@ -136,10 +136,10 @@ static bool add_sheet(const SingeSurface *surface, int32_t sheet, Folds *folds) 
 }
 
 bool folds_add(const SingeSurface *surface, Folds *folds) {
-    bool *there = calloc(SHEETS_MOST, sizeof *there), good = there != NULL;
+    bool *there = calloc(SHEETS_MAX, sizeof *there), good = there != NULL;
     for (uint32_t v = 0; good && v < surface->vertex_count; v++)
-        if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MOST) there[surface->sheet[v]] = true;
-    for (int32_t sheet = 0; good && sheet < SHEETS_MOST; sheet++)
+        if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MAX) there[surface->sheet[v]] = true;
+    for (int32_t sheet = 0; good && sheet < SHEETS_MAX; sheet++)
         if (there[sheet]) good = add_sheet(surface, sheet, folds);
     free(there);
     return good;

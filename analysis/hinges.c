@@ -41,17 +41,17 @@ static int compare_points(const float a[3], const float b[3]) {
     return 0;
 }
 
-static int compare_places(const Side *a, const Side *b) {
+static int compare_positions(const Side *a, const Side *b) {
     const int first = compare_points(a->at[0], b->at[0]);
     return first ? first : compare_points(a->at[1], b->at[1]);
 }
 
 static bool is_same_edge(const Side *a, const Side *b) { return a->ends[0] == b->ends[0] && a->ends[1] == b->ends[1]; }
 
-static int by_place(const void *a, const void *b) {
+static int by_position(const void *a, const void *b) {
     const Side *x = a, *y = b;
-    const int place = compare_places(x, y);
-    if (place) return place;
+    const int position = compare_positions(x, y);
+    if (position) return position;
     for (int k = 0; k < 2; k++)
         if (x->ends[k] != y->ends[k]) return x->ends[k] < y->ends[k] ? -1 : 1;
     return (x->triangle > y->triangle) - (x->triangle < y->triangle);
@@ -72,7 +72,7 @@ static void join(Hinges *hinges, const Side *a, const Side *b) {
 }
 
 /// Joins the triangles of edges at one place: two of the same vertices, then two that have nobody else, as at a seam.
-static void join_place(Hinges *hinges, const Side *sides, size_t count) {
+static void join_position(Hinges *hinges, const Side *sides, size_t count) {
     const Side *alone[2];
     size_t loose = 0;
     for (size_t i = 0, end; i < count; i = end) {
@@ -89,10 +89,10 @@ static bool join_all(Hinges *hinges) {
     if (!sides) return false;
     for (uint32_t t = 0; t < hinges->count; t++)
         for (uint8_t k = 0; k < 3; k++) sides[3 * (size_t)t + k] = side_of(hinges, t, k), hinges->across[t][k] = NONE;
-    qsort(sides, count, sizeof *sides, by_place);
+    qsort(sides, count, sizeof *sides, by_position);
     for (size_t i = 0, end; i < count; i = end) {
-        for (end = i + 1; end < count && compare_places(&sides[i], &sides[end]) == 0;) end++;
-        join_place(hinges, &sides[i], end - i);
+        for (end = i + 1; end < count && compare_positions(&sides[i], &sides[end]) == 0;) end++;
+        join_position(hinges, &sides[i], end - i);
     }
     free(sides);
     return true;
@@ -128,8 +128,8 @@ static bool share_length(const float *p, const float *q, const float *r, const f
     if (!exact_collinear(p, q, r) || !exact_collinear(p, q, s)) return false;
     const int k = p[0] != q[0] ? 0 : p[1] != q[1] ? 1 : 2;
     const float low = p[k] < q[k] ? p[k] : q[k], high = p[k] < q[k] ? q[k] : p[k];
-    const float least = r[k] < s[k] ? r[k] : s[k], most = r[k] < s[k] ? s[k] : r[k];
-    return low < most && least < high;
+    const float min = r[k] < s[k] ? r[k] : s[k], max = r[k] < s[k] ? s[k] : r[k];
+    return low < max && min < high;
 }
 
 /// Whether, turning about p q, c is met strictly on the way from a to b.

@@ -18,38 +18,38 @@ static bool has_rest(const CacheFrame *frame) {
     return frame->there[CACHE_REST] && frame->there[CACHE_REST + 1] && frame->there[CACHE_REST + 2];
 }
 
-static InitialPlace place_of(const CacheFrame *frame, uint32_t triangle) {
+static InitialTriangle position_of(const CacheFrame *frame, uint32_t triangle) {
     const uint32_t *t = frame->triangles[triangle];
     const float bits = cache_value(frame, CACHE_SHEET, t[0]);
-    InitialPlace place = {{0}, 0, 0};
-    memcpy(&place.sheet, &bits, sizeof place.sheet);
+    InitialTriangle entry = {{0}, 0, 0};
+    memcpy(&entry.sheet, &bits, sizeof entry.sheet);
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) place.at[k] += frame->rest[t[i]][k] / 3;
-        place.reach = fmaxf(place.reach, reach_of_side * distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+        for (int k = 0; k < 3; k++) entry.at[k] += frame->rest[t[i]][k] / 3;
+        entry.reach = fmaxf(entry.reach, reach_of_side * distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
-    return place;
+    return entry;
 }
 
 static int by_x(const void *a, const void *b) {
-    const InitialPlace *p = a, *q = b;
+    const InitialTriangle *p = a, *q = b;
     return (p->at[0] > q->at[0]) - (p->at[0] < q->at[0]);
 }
 
 bool initial_take(Initial *initial, const CacheFrame *frame, const uint32_t (*pairs)[2], size_t count) {
     if (!has_rest(frame)) return true;
-    initial->places = malloc((2 * count + 1) * sizeof *initial->places);
-    if (!initial->places) return false;
+    initial->triangles = malloc((2 * count + 1) * sizeof *initial->triangles);
+    if (!initial->triangles) return false;
     initial->count = 2 * count;
     for (size_t i = 0; i < 2 * count; i++) {
-        initial->places[i] = place_of(frame, pairs[i / 2][i % 2]);
-        initial->reach = fmaxf(initial->reach, initial->places[i].reach);
+        initial->triangles[i] = position_of(frame, pairs[i / 2][i % 2]);
+        initial->reach = fmaxf(initial->reach, initial->triangles[i].reach);
     }
-    qsort(initial->places, initial->count, sizeof *initial->places, by_x);
+    qsort(initial->triangles, initial->count, sizeof *initial->triangles, by_x);
     return true;
 }
 
 void initial_free(Initial *initial) {
-    free(initial->places);
+    free(initial->triangles);
     *initial = (Initial){0};
 }
 
@@ -70,22 +70,22 @@ bool initial_count(const SingeSurface *surface, uint64_t *pairs, float at[3]) {
     return good;
 }
 
-static bool is_near(const Initial *initial, const InitialPlace *place) {
+static bool is_near(const Initial *initial, const InitialTriangle *entry) {
     size_t from = 0, to = initial->count;
     while (from < to) {
-        size_t middle = from + (to - from) / 2;
-        if (initial->places[middle].at[0] < place->at[0] - initial->reach) from = middle + 1;
-        else to = middle;
+        size_t centroid = from + (to - from) / 2;
+        if (initial->triangles[centroid].at[0] < entry->at[0] - initial->reach) from = centroid + 1;
+        else to = centroid;
     }
-    for (; from < initial->count && initial->places[from].at[0] <= place->at[0] + initial->reach; from++) {
-        const InitialPlace *other = &initial->places[from];
-        if (other->sheet == place->sheet && distance(other->at, place->at) <= other->reach) return true;
+    for (; from < initial->count && initial->triangles[from].at[0] <= entry->at[0] + initial->reach; from++) {
+        const InitialTriangle *other = &initial->triangles[from];
+        if (other->sheet == entry->sheet && distance(other->at, entry->at) <= other->reach) return true;
     }
     return false;
 }
 
 bool initial_has(const Initial *initial, const CacheFrame *frame, uint32_t a, uint32_t b) {
     if (!initial->count || !has_rest(frame)) return false;
-    const InitialPlace one = place_of(frame, a), other = place_of(frame, b);
+    const InitialTriangle one = position_of(frame, a), other = position_of(frame, b);
     return is_near(initial, &one) && is_near(initial, &other);
 }

@@ -6,14 +6,14 @@
 #include "analysis/crossings.h"
 #include "singe/sim.h"
 
-typedef struct InitialPlace {
+typedef struct InitialTriangle {
     float at[3];   ///< m, the triangle's middle at rest
     float reach;   ///< m
     int32_t sheet;
-} InitialPlace;
+} InitialTriangle;
 
 typedef struct Initial {
-    InitialPlace *places; ///< in ascending order of x
+    InitialTriangle *triangles; ///< in ascending order of x
     size_t count;
     float reach;          ///< m, the largest
 } Initial;

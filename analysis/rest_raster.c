@@ -8,7 +8,7 @@
 static const double turned = 0.39269908169872414;
 
 /// More pixels a side than this, and they are made larger.
-enum { SIDE_MOST = 4096 };
+enum { SIDE_MAX = 4096 };
 
 /// The plane of the raster: pixel (x, y) is origin + spacing (x e1 + y e2).
 typedef struct Plane {
@@ -84,7 +84,7 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
     return true;
 }
 
-static void place(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
+static void position(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
     double d[3];
     for (int k = 0; k < 3; k++) d[k] = (double)surface->rest_position[v][k] - plane->origin[k];
     *x = dot(d, plane->e1), *y = dot(d, plane->e2);
@@ -95,11 +95,11 @@ static void fit(const SingeSurface *surface, int32_t sheet, double spacing, Plan
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         if (surface->sheet[v] != sheet) continue;
-        place(surface, plane, v, &at[0], &at[1]);
+        position(surface, plane, v, &at[0], &at[1]);
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
     }
     double side = fmax(high[0] - low[0], high[1] - low[1]);
-    raster->spacing = fmax(spacing, side / (SIDE_MOST - 2));
+    raster->spacing = fmax(spacing, side / (SIDE_MAX - 2));
     raster->width = (int)((high[0] - low[0]) / raster->spacing) + 2;
     raster->height = (int)((high[1] - low[1]) / raster->spacing) + 2;
     for (int k = 0; k < 3; k++) plane->origin[k] += low[0] * plane->e1[k] + low[1] * plane->e2[k];
@@ -121,7 +121,7 @@ static void set_pixel(const SingeSurface *surface, const uint32_t *t, const doub
 static void fill_triangle(const SingeSurface *surface, const Plane *plane, const uint32_t *t, RestRaster *raster) {
     double x[3], y[3];
     for (int i = 0; i < 3; i++) {
-        place(surface, plane, t[i], &x[i], &y[i]);
+        position(surface, plane, t[i], &x[i], &y[i]);
         x[i] /= raster->spacing, y[i] /= raster->spacing;
     }
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -162,7 +162,7 @@ void rest_raster_free(RestRaster *raster) {
 
 // ---- filters
 
-enum { REACH_MOST = 64 };
+enum { REACH_MAX = 64 };
 
 /// One pass along rows (step 1) or columns (step width) of `count` lines of `length` pixels.
 static void blur(const float *from, float *to, int lines, int line_step, int length, int step, const float *kernel,
@@ -183,10 +183,10 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
                         float *smooth) {
     const int width = raster->width, height = raster->height;
     const size_t pixels = (size_t)width * (size_t)height;
-    float kernel[REACH_MOST + 1], *covered = scratch + pixels;
+    float kernel[REACH_MAX + 1], *covered = scratch + pixels;
     const double pixel = deviation / raster->spacing;
     int reach = (int)ceil(3 * pixel);
-    reach = reach < REACH_MOST ? reach : REACH_MOST;
+    reach = reach < REACH_MAX ? reach : REACH_MAX;
     double total = 1;
     for (int k = 1; k <= reach; k++) total += 2 * exp(-0.5 * k * k / (pixel * pixel));
     for (int k = 0; k <= reach; k++) kernel[k] = (float)(exp(-0.5 * k * k / (pixel * pixel)) / total);
@@ -203,12 +203,12 @@ static void nearer(float *distance, size_t p, size_t other, float step) {
     if (distance[other] + step < distance[p]) distance[p] = distance[other] + step;
 }
 
-void rest_raster_distance(const RestRaster *raster, float least, float *distance) {
+void rest_raster_distance(const RestRaster *raster, float min, float *distance) {
     const int width = raster->width, height = raster->height;
     const float side = (float)raster->spacing, across = 1.4142135f * side;
     const size_t w = (size_t)width;
     for (size_t p = 0; p < w * (size_t)height; p++)
-        distance[p] = raster->cover[p] > 0 && raster->burn[p] > least ? 0 : INFINITY;
+        distance[p] = raster->cover[p] > 0 && raster->burn[p] > min ? 0 : INFINITY;
     for (int j = 0; j < height; j++)
         for (int i = 0; i < width; i++) {
             size_t p = (size_t)j * w + (size_t)i;

@@ -28,6 +28,6 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
                         float *smooth);
 
 /// Distance in m of every pixel to the nearest one with burn above `least`; at most a tenth off.
-void rest_raster_distance(const RestRaster *raster, float least, float *distance);
+void rest_raster_distance(const RestRaster *raster, float min, float *distance);
 
 #endif

@@ -119,7 +119,7 @@ static bool find_plane(Piece *piece) {
 // ---- samples
 
 typedef struct Sample {
-    double rest[3], place[3], normal[3]; ///< m, m, unit
+    double rest[3], position[3], normal[3]; ///< m, m, unit
     double rest_area, area, mass;        ///< m2, m2, fraction
 } Sample;
 
@@ -168,7 +168,7 @@ static bool take_sample(Work *work, const Sample *sample) {
     band->rest_area += sample->rest_area, band->area += sample->area;
     band->mass += sample->mass * sample->rest_area;
     for (int k = 0; k < 3; k++)
-        band->height += (sample->place[k] - piece->origin[k]) * piece->normal[k] * sample->rest_area;
+        band->height += (sample->position[k] - piece->origin[k]) * piece->normal[k] * sample->rest_area;
     band->slope[angle_bin(degrees_between(sample->normal, piece->normal))] += sample->rest_area;
 
     if (distance <= normal_depth)
@@ -195,13 +195,13 @@ static int samples_along(const SingeSurface *surface, const uint32_t *t) {
 static bool sample_at(const SingeSurface *surface, const uint32_t *t, const double *weight, Sample *sample) {
     sample->mass = 0;
     memset(sample->rest, 0, sizeof sample->rest);
-    memset(sample->place, 0, sizeof sample->place);
+    memset(sample->position, 0, sizeof sample->position);
     memset(sample->normal, 0, sizeof sample->normal);
     for (int i = 0; i < 3; i++) {
         sample->mass += weight[i] * (double)surface->mass[t[i]];
         for (int k = 0; k < 3; k++) {
             sample->rest[k] += weight[i] * (double)surface->rest_position[t[i]][k];
-            sample->place[k] += weight[i] * (double)surface->position[t[i]][k];
+            sample->position[k] += weight[i] * (double)surface->position[t[i]][k];
             sample->normal[k] += weight[i] * (double)surface->normal[t[i]][k];
         }
     }

@@ -11,7 +11,7 @@
 static const double point_spacing = 0.25e-3, grid_cell = 5e-3;
 
 /// Burn progress above which an open edge is a burnt one. Where sheets are removed it is .8 and more.
-static const float burnt_least = 0.4f;
+static const float burnt_min = 0.4f;
 
 enum { GRID_SIDE_MAX = 128 };
 
@@ -20,7 +20,7 @@ static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] 
 // ---- open edges
 
 typedef struct Corner {
-    float place[3]; ///< at rest
+    float position[3]; ///< at rest
     uint32_t vertex;
 } Corner;
 
@@ -29,8 +29,8 @@ typedef struct Edge {
     uint32_t low, high, from, to;
 } Edge;
 
-static int by_place(const void *a, const void *b) {
-    const float *x = ((const Corner *)a)->place, *y = ((const Corner *)b)->place;
+static int by_position(const void *a, const void *b) {
+    const float *x = ((const Corner *)a)->position, *y = ((const Corner *)b)->position;
     for (int k = 0; k < 3; k++)
         if (x[k] < y[k] || x[k] > y[k]) return x[k] < y[k] ? -1 : 1;
     return 0;
@@ -43,17 +43,17 @@ static int by_ends(const void *a, const void *b) {
 }
 
 /// Gives vertices at the same place at rest the same number. False when out of memory.
-static bool number_places(const SingeSurface *surface, uint32_t *number) {
+static bool number_positions(const SingeSurface *surface, uint32_t *number) {
     Corner *corners = malloc(((size_t)surface->vertex_count + 1) * sizeof *corners);
     if (!corners) return false;
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
-        memcpy(corners[v].place, surface->rest_position[v], sizeof corners[v].place);
+        memcpy(corners[v].position, surface->rest_position[v], sizeof corners[v].position);
         corners[v].vertex = v;
     }
-    qsort(corners, surface->vertex_count, sizeof *corners, by_place);
+    qsort(corners, surface->vertex_count, sizeof *corners, by_position);
 
     for (uint32_t i = 0; i < surface->vertex_count; i++) {
-        bool same = i && by_place(&corners[i], &corners[i - 1]) == 0;
+        bool same = i && by_position(&corners[i], &corners[i - 1]) == 0;
         number[corners[i].vertex] = same ? number[corners[i - 1].vertex] : corners[i].vertex;
     }
     free(corners);
@@ -64,7 +64,7 @@ static bool number_places(const SingeSurface *surface, uint32_t *number) {
 static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *count) {
     Edge *edges = malloc((3 * (size_t)surface->triangle_count + 1) * sizeof *edges);
     uint32_t *number = malloc(((size_t)surface->vertex_count + 1) * sizeof *number);
-    if (!edges || !number || !number_places(surface, number)) {
+    if (!edges || !number || !number_positions(surface, number)) {
         free(edges);
         free(number);
         return NULL;
@@ -87,7 +87,7 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
         size_t end = i + 1;
         while (end < all && by_ends(&edges[i], &edges[end]) == 0) end++;
         const float *burn = surface->burn;
-        if (end == i + 1 && burn[edges[i].from] > burnt_least && burn[edges[i].to] > burnt_least)
+        if (end == i + 1 && burn[edges[i].from] > burnt_min && burn[edges[i].to] > burnt_min)
             edges[(*count)++] = edges[i];
         i = end;
     }
@@ -97,7 +97,7 @@ static Edge *find_edges(const SingeSurface *surface, int32_t piece, size_t *coun
 // ---- points along the rim, in a grid
 
 void rim_points_free(RimPoints *points) {
-    free(points->place);
+    free(points->position);
     free(points->near);
     free(points->normal);
     free(points->first);
@@ -113,40 +113,40 @@ static int steps_along(const SingeSurface *surface, const Edge *edge) {
     return steps < 1 ? 1 : steps > 1000 ? 1000 : (int)steps;
 }
 
-static void place_points(const SingeSurface *surface, const Edge *edges, size_t count, RimPoints *points) {
+static void position_points(const SingeSurface *surface, const Edge *edges, size_t count, RimPoints *points) {
     for (size_t e = 0; e < count; e++) {
         const int steps = steps_along(surface, &edges[e]);
         for (int i = 0; i < steps; i++, points->count++)
             for (int k = 0; k < 3; k++) {
                 double from = (double)surface->rest_position[edges[e].from][k];
                 double to = (double)surface->rest_position[edges[e].to][k];
-                points->place[points->count][k] = from + (i + 0.5) / steps * (to - from);
+                points->position[points->count][k] = from + (i + 0.5) / steps * (to - from);
             }
     }
 }
 
 /// The cell of a place along an axis; may lie outside.
-static int cell_along(const RimPoints *points, double place, int axis) {
-    return (int)floor((place - points->low[axis]) / points->cell);
+static int cell_along(const RimPoints *points, double position, int axis) {
+    return (int)floor((position - points->low[axis]) / points->cell);
 }
 
 static size_t cell_at(const RimPoints *points, const int *at) {
     return ((size_t)at[2] * (size_t)points->size[1] + (size_t)at[1]) * (size_t)points->size[0] + (size_t)at[0];
 }
 
-static size_t cell_of(const RimPoints *points, const double *place) {
+static size_t cell_of(const RimPoints *points, const double *position) {
     int at[3];
-    for (int k = 0; k < 3; k++) at[k] = cell_along(points, place[k], k);
+    for (int k = 0; k < 3; k++) at[k] = cell_along(points, position[k], k);
     return cell_at(points, at);
 }
 
 static bool sort_points(RimPoints *points) {
     double high[3], side = 0;
     for (int k = 0; k < 3; k++) {
-        points->low[k] = high[k] = points->place[0][k];
+        points->low[k] = high[k] = points->position[0][k];
         for (size_t p = 1; p < points->count; p++) {
-            points->low[k] = fmin(points->low[k], points->place[p][k]);
-            high[k] = fmax(high[k], points->place[p][k]);
+            points->low[k] = fmin(points->low[k], points->position[p][k]);
+            high[k] = fmax(high[k], points->position[p][k]);
         }
         side = fmax(side, high[k] - points->low[k]);
     }
@@ -160,10 +160,10 @@ static bool sort_points(RimPoints *points) {
     points->first = calloc(cells + 2, sizeof *points->first);
     points->order = malloc(points->count * sizeof *points->order);
     if (!points->first || !points->order) return false;
-    for (size_t p = 0; p < points->count; p++) points->first[cell_of(points, points->place[p]) + 2]++;
+    for (size_t p = 0; p < points->count; p++) points->first[cell_of(points, points->position[p]) + 2]++;
     for (size_t c = 2; c < cells + 2; c++) points->first[c] += points->first[c - 1];
     for (size_t p = 0; p < points->count; p++)
-        points->order[points->first[cell_of(points, points->place[p]) + 1]++] = (uint32_t)p;
+        points->order[points->first[cell_of(points, points->position[p]) + 1]++] = (uint32_t)p;
     return true;
 }
 
@@ -173,11 +173,11 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
     for (size_t e = 0; edges && e < edge_count; e++) count += (size_t)steps_along(surface, &edges[e]);
     bool good = edges != NULL;
     if (good && count) {
-        points->place = malloc(count * sizeof *points->place);
+        points->position = malloc(count * sizeof *points->position);
         points->near = calloc(count, sizeof *points->near);
         points->normal = calloc(count, sizeof *points->normal);
-        good = points->place && points->near && points->normal;
-        if (good) place_points(surface, edges, edge_count, points);
+        good = points->position && points->near && points->normal;
+        if (good) position_points(surface, edges, edge_count, points);
         good = good && sort_points(points);
     }
     free(edges);
@@ -185,7 +185,7 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
 }
 
 /// Visits the points in the grid's cells that are `ring` cells from that of a place, to find one nearer than *square.
-static void look_at_ring(const RimPoints *points, const double *place, const int *centre, int ring, double *square,
+static void look_at_ring(const RimPoints *points, const double *position, const int *centre, int ring, double *square,
                          uint32_t *nearest) {
     int low[3], high[3];
     for (int k = 0; k < 3; k++) {
@@ -200,20 +200,20 @@ static void look_at_ring(const RimPoints *points, const double *place, const int
                 if (!whole && abs(at[0] - centre[0]) != ring) continue;
                 size_t c = cell_at(points, at);
                 for (uint32_t i = points->first[c]; i < points->first[c + 1]; i++) {
-                    const double *point = points->place[points->order[i]];
-                    double d[3] = {point[0] - place[0], point[1] - place[1], point[2] - place[2]}, found = dot(d, d);
+                    const double *point = points->position[points->order[i]];
+                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]}, found = dot(d, d);
                     if (found < *square) *square = found, *nearest = points->order[i];
                 }
             }
         }
 }
 
-double rim_points_distance(const RimPoints *points, const double place[3], double reach, uint32_t *nearest) {
+double rim_points_distance(const RimPoints *points, const double position[3], double reach, uint32_t *nearest) {
     const int rings = (int)ceil(reach / points->cell);
     double square = reach * reach;
     int centre[3];
     for (int k = 0; k < 3; k++) {
-        centre[k] = cell_along(points, place[k], k);
+        centre[k] = cell_along(points, position[k], k);
         if (centre[k] < -rings || centre[k] >= points->size[k] + rings) return INFINITY;
     }
 
@@ -221,7 +221,7 @@ double rim_points_distance(const RimPoints *points, const double place[3], doubl
     for (int ring = 0; ring <= rings; ring++) {
         if (ring > 0 && square <= pow((ring - 1) * points->cell, 2)) break; // nothing nearer can be that far
         double before = square;
-        look_at_ring(points, place, centre, ring, &square, nearest);
+        look_at_ring(points, position, centre, ring, &square, nearest);
         found = found || square < before;
     }
     return found ? sqrt(square) : (double)INFINITY;
@@ -230,7 +230,7 @@ double rim_points_distance(const RimPoints *points, const double place[3], doubl
 /// Adds to a point's normal what lies near the points of a cell.
 static void add_near(RimPoints *points, size_t p, size_t cell, double reach) {
     for (uint32_t i = points->first[cell]; i < points->first[cell + 1]; i++) {
-        const double *at = points->place[p], *other = points->place[points->order[i]];
+        const double *at = points->position[p], *other = points->position[points->order[i]];
         double d[3] = {other[0] - at[0], other[1] - at[1], other[2] - at[2]};
         if (dot(d, d) > reach * reach) continue;
         for (int k = 0; k < 3; k++) points->normal[p][k] += points->near[points->order[i]][k];
@@ -241,8 +241,8 @@ void rim_points_normals(RimPoints *points, double reach) {
     for (size_t p = 0; p < points->count; p++) {
         int low[3], high[3], at[3];
         for (int k = 0; k < 3; k++) {
-            low[k] = cell_along(points, points->place[p][k] - reach, k);
-            high[k] = cell_along(points, points->place[p][k] + reach, k);
+            low[k] = cell_along(points, points->position[p][k] - reach, k);
+            high[k] = cell_along(points, points->position[p][k] + reach, k);
             if (low[k] < 0) low[k] = 0;
             if (high[k] >= points->size[k]) high[k] = points->size[k] - 1;
         }

@@ -10,7 +10,7 @@
 /// Points in a grid. An empty one has count 0.
 typedef struct RimPoints {
     size_t count;
-    double (*place)[3];    ///< m, at rest
+    double (*position)[3];    ///< m, at rest
     double (*near)[3];     ///< normals of what is near the rim, summed by the caller for the nearest point
     double (*normal)[3];   ///< unit, of the rim; 0 where it is not known
     double low[3], cell;   ///< m, of the grid
@@ -25,7 +25,7 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
 void rim_points_free(RimPoints *points);
 
 /// m from a place at rest to the nearest point, or INFINITY from `reach` on.
-double rim_points_distance(const RimPoints *points, const double place[3], double reach, uint32_t *nearest);
+double rim_points_distance(const RimPoints *points, const double position[3], double reach, uint32_t *nearest);
 
 /// The rim's normal at each point, from `near` of all points within `reach` in m.
 void rim_points_normals(RimPoints *points, double reach);

@@ -5,18 +5,18 @@
 #include <string.h>
 
 /// How far the middle of a cell lies within the outline at least, in cells: less of it would be a sliver.
-static const double middle_inside = 0.25;
+static const double centroid_inside = 0.25;
 
 /// m, how far a point lies within the outline; below 0 it is outside.
 static double inside(const TurnedGrid *cut, const double p[2]) {
-    double from_middle = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
-    return cut->size / 2 - from_middle;
+    double from_centroid = cut->disc ? hypot(p[0], p[1]) : fmax(fabs(p[0]), fabs(p[1]));
+    return cut->size / 2 - from_centroid;
 }
 
 static void move_onto_outline(const TurnedGrid *cut, double p[2]) {
-    const double half = cut->size / 2, from_middle = hypot(p[0], p[1]);
+    const double half = cut->size / 2, from_centroid = hypot(p[0], p[1]);
     if (inside(cut, p) >= 0) return;
-    for (int k = 0; k < 2; k++) p[k] = cut->disc ? p[k] * half / from_middle : fmax(-half, fmin(half, p[k]));
+    for (int k = 0; k < 2; k++) p[k] = cut->disc ? p[k] * half / from_centroid : fmax(-half, fmin(half, p[k]));
 }
 
 static void turn_vertices(const TurnedGrid *cut, Mesh *mesh) {
@@ -29,10 +29,10 @@ static void turn_vertices(const TurnedGrid *cut, Mesh *mesh) {
 }
 
 static bool is_kept(const TurnedGrid *cut, const Mesh *mesh, const uint32_t *corner) {
-    double middle[2] = {0, 0};
+    double centroid[2] = {0, 0};
     for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 2; k++) middle[k] += 0.25 * (double)mesh->positions[3 * (size_t)corner[i] + (size_t)k];
-    return inside(cut, middle) > middle_inside * cut->size / cut->cells;
+        for (int k = 0; k < 2; k++) centroid[k] += 0.25 * (double)mesh->positions[3 * (size_t)corner[i] + (size_t)k];
+    return inside(cut, centroid) > centroid_inside * cut->size / cut->cells;
 }
 
 /// Leaves the cells within, and the vertices that they have; `number` has room for one of each vertex, all 0.

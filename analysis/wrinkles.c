@@ -23,12 +23,12 @@ static const double band_short = 3e-3, band_long = 15e-3;
 static const float around_burnt = 0.010f, far_from_burnt = 0.025f;
 
 /// Burn progress above which a place counts as burnt.
-static const float burnt_least = 0.05f;
+static const float burnt_min = 0.05f;
 
 /// Beside an edge a Gaussian sees less than its whole: where it sees less than this share it is not trusted.
-static const float covered_least = 0.6f;
+static const float covered_min = 0.6f;
 
-enum { SHEETS_MOST = UINT16_MAX };
+enum { SHEETS_MAX = UINT16_MAX };
 
 /// Room for the fields of one sheet.
 typedef struct Work {
@@ -66,7 +66,7 @@ static void add_creases(const RestRaster *raster, Work *work, Wrinkles *wrinkles
             int p = j * w + i;
             const float *cover = raster->cover;
             if (!(cover[p] * cover[p - 1] * cover[p + 1] * cover[p - w] * cover[p + w] > 0)) continue;
-            if (work->weight[p] < covered_least) continue;
+            if (work->weight[p] < covered_min) continue;
             double xx = 0, xy = 0, yy = 0;
             for (int k = 0; k < 3; k++) {
                 const float *n = work->smooth[k];
@@ -86,9 +86,9 @@ static void add_roughness(const RestRaster *raster, Work *work, Wrinkles *wrinkl
         rest_raster_smooth(raster, raster->normal[k], share * band_short, work->scratch, work->weight, work->rough[k]);
     for (int k = 0; k < 3; k++)
         rest_raster_smooth(raster, raster->normal[k], share * band_long, work->scratch, work->weight, work->smooth[k]);
-    rest_raster_distance(raster, burnt_least, work->distance);
+    rest_raster_distance(raster, burnt_min, work->distance);
     for (int p = 0; p < raster->width * raster->height; p++) {
-        if (!(raster->cover[p] > 0) || work->weight[p] < covered_least) continue;
+        if (!(raster->cover[p] > 0) || work->weight[p] < covered_min) continue;
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)work->rough[k][p] - (double)work->smooth[k][p], 2);
         if (work->distance[p] <= around_burnt)
@@ -113,10 +113,10 @@ static bool add_sheet(const SingeSurface *surface, int32_t sheet, Wrinkles *wrin
 }
 
 bool wrinkles_add(const SingeSurface *surface, Wrinkles *wrinkles) {
-    bool *there = calloc(SHEETS_MOST, sizeof *there), good = there != NULL;
+    bool *there = calloc(SHEETS_MAX, sizeof *there), good = there != NULL;
     for (uint32_t v = 0; good && v < surface->vertex_count; v++)
-        if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MOST) there[surface->sheet[v]] = true;
-    for (int32_t sheet = 0; good && sheet < SHEETS_MOST; sheet++)
+        if (surface->sheet[v] >= 0 && surface->sheet[v] < SHEETS_MAX) there[surface->sheet[v]] = true;
+    for (int32_t sheet = 0; good && sheet < SHEETS_MAX; sheet++)
         if (there[sheet]) good = add_sheet(surface, sheet, wrinkles);
     free(there);
     return good;

@@ -27,11 +27,11 @@ static Frame frame_around(const Curves *curves) {
                    (int)fmax(ceil(high[1]), floor(low[1]) + 1)};
 }
 
-static double place_x(const Frame *f, double power) {
+static double position_x(const Frame *f, double power) {
     return LEFT + (power - f->springs_low) / (f->springs_high - f->springs_low) * (WIDTH - LEFT - RIGHT);
 }
 
-static double place_y(const Frame *f, double power) {
+static double position_y(const Frame *f, double power) {
     return HEIGHT - BOTTOM - (power - f->ms_low) / (f->ms_high - f->ms_low) * (HEIGHT - TOP - BOTTOM);
 }
 
@@ -46,12 +46,12 @@ static void draw_number(FILE *file, double x, double y, const char *anchor, int 
 static void draw_grid(FILE *file, const Frame *f) {
     const double bottom = HEIGHT - BOTTOM, right = WIDTH - RIGHT;
     for (int p = f->springs_low; p <= f->springs_high; p++) {
-        double x = place_x(f, p);
+        double x = position_x(f, p);
         fprintf(file, "<path d=\"M%.1f %d V%.1f\" stroke=\"#dddddd\"/>\n", x, TOP, bottom);
         draw_number(file, x, bottom + 20, "middle", p);
     }
     for (int p = f->ms_low; p <= f->ms_high; p++) {
-        double y = place_y(f, p);
+        double y = position_y(f, p);
         fprintf(file, "<path d=\"M%d %.1f H%.1f\" stroke=\"#dddddd\"/>\n", LEFT, y, right);
         draw_number(file, LEFT - 8, y + 4, "end", p);
     }
@@ -74,12 +74,12 @@ static void draw_curve(FILE *file, const Frame *f, const Curve *curve, int index
     const double right = WIDTH - RIGHT + 16, y = TOP + 12 + 20 * index;
     fprintf(file, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"2\" d=\"", colour);
     for (int p = 0; p < curve->count; p++)
-        fprintf(file, "%s%.1f %.1f", p ? " L" : "M", place_x(f, log10(curve->springs[p])),
-                place_y(f, log10(curve->ms[p])));
+        fprintf(file, "%s%.1f %.1f", p ? " L" : "M", position_x(f, log10(curve->springs[p])),
+                position_y(f, log10(curve->ms[p])));
     fputs("\"/>\n", file);
     for (int p = 0; p < curve->count; p++)
         fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n",
-                place_x(f, log10(curve->springs[p])), place_y(f, log10(curve->ms[p])), colour);
+                position_x(f, log10(curve->springs[p])), position_y(f, log10(curve->ms[p])), colour);
     fprintf(file, "<path d=\"M%.1f %.1f h20\" stroke=\"%s\" stroke-width=\"2\"/>\n", right, y - 4, colour);
     fprintf(file, "<text x=\"%.1f\" y=\"%.1f\">", right + 26, y);
     write_text(file, curve->name);

@@ -59,31 +59,31 @@ static Curve *curve_named(Curves *curves, int first, const char *name) {
     return curve;
 }
 
-typedef struct Place {
+typedef struct Columns {
     int springs, ms, solver, threads; ///< of the columns; -1 where there is none
-} Place;
+} Columns;
 
 /// "strand, 2 threads, zen4" of a file zen4.csv.
-static void name_curve(char *name, size_t size, char **fields, const Place *place, const char *path) {
+static void name_curve(char *name, size_t size, char **fields, const Columns *columns, const char *path) {
     const char *base = strrchr(path, '/'), *end;
     base = base ? base + 1 : path;
     end = strrchr(base, '.');
     int length = end && end > base ? (int)(end - base) : (int)strlen(base);
-    const char *solver = place->solver >= 0 ? fields[place->solver] : "";
-    const char *threads = place->threads >= 0 ? fields[place->threads] : "";
+    const char *solver = columns->solver >= 0 ? fields[columns->solver] : "";
+    const char *threads = columns->threads >= 0 ? fields[columns->threads] : "";
     const char *word = !*threads ? "" : strcmp(threads, "1") == 0 ? " thread, " : " threads, ";
     snprintf(name, size, "%s%s%s%s%.*s", solver, *solver ? ", " : "", threads, word, length > 40 ? 40 : length, base);
 }
 
-static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Place *place, const char *path,
+static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Columns *columns, const char *path,
                             int line, SingeError *error) {
     char *springs_end, *ms_end, name[80];
-    if (place->springs >= count || place->ms >= count || place->solver >= count || place->threads >= count)
+    if (columns->springs >= count || columns->ms >= count || columns->solver >= count || columns->threads >= count)
         return fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
-    double springs = strtod(fields[place->springs], &springs_end), ms = strtod(fields[place->ms], &ms_end);
+    double springs = strtod(fields[columns->springs], &springs_end), ms = strtod(fields[columns->ms], &ms_end);
     if (*springs_end || *ms_end || !(springs > 0) || !(ms > 0) || !isfinite(springs) || !isfinite(ms))
         return fail(error, SINGE_ERROR_FORMAT, path, line, "springs and step_ms must be numbers above 0");
-    name_curve(name, sizeof name, fields, place, path);
+    name_curve(name, sizeof name, fields, columns, path);
     Curve *curve = curve_named(curves, first, name);
     if (!curve || curve->count == CURVE_POINTS_MAX)
         return fail(error, SINGE_ERROR_LIMIT, path, line, "more curves or points than can be drawn");
@@ -93,19 +93,19 @@ static SingeResult read_row(Curves *curves, int first, char **fields, int count,
 
 static SingeResult read_lines(Curves *curves, FILE *file, const char *path, SingeError *error) {
     char text[LINE_MAX_LENGTH], *fields[COLUMNS_MAX];
-    Place place = {-1, -1, -1, -1};
+    Columns columns = {-1, -1, -1, -1};
     const int first = curves->count;
     for (int line = 1; fgets(text, sizeof text, file); line++) {
         if (text[0] == '#' || text[0] == '\n') continue;
         int count = split(text, fields);
-        if (place.springs >= 0) {
-            SingeResult result = read_row(curves, first, fields, count, &place, path, line, error);
+        if (columns.springs >= 0) {
+            SingeResult result = read_row(curves, first, fields, count, &columns, path, line, error);
             if (result) return result;
             continue;
         }
-        place = (Place){find(fields, count, "springs"), find(fields, count, "step_ms"), find(fields, count, "solver"),
+        columns = (Columns){find(fields, count, "springs"), find(fields, count, "step_ms"), find(fields, count, "solver"),
                         find(fields, count, "threads")};
-        if (place.springs < 0 || place.ms < 0)
+        if (columns.springs < 0 || columns.ms < 0)
             return fail(error, SINGE_ERROR_FORMAT, path, line, "needs columns springs and step_ms");
     }
     return curves->count > first ? SINGE_OK : fail(error, SINGE_ERROR_FORMAT, path, 0, "holds no rows");

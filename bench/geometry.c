@@ -32,12 +32,12 @@ double geometry_height(const SingeView *view) {
 }
 
 double geometry_speed(const SingeView *view) {
-    double most = 0;
+    double max = 0;
     for (uint32_t i = 0; i < view->particle_count; i++) {
         double v = square(view->velocity[i]);
-        if (!(v <= most)) most = v; // NaN stays
+        if (!(v <= max)) max = v; // NaN stays
     }
-    return sqrt(most);
+    return sqrt(max);
 }
 
 double geometry_gyration(const SingeView *view) {
@@ -94,15 +94,15 @@ double geometry_inverted(const SingeView *view) {
     return count;
 }
 
-double geometry_reach(const SingeView *view, const float *place) {
-    double most = 0;
+double geometry_reach(const SingeView *view, const float *position) {
+    double max = 0;
     for (uint32_t i = 0; i < view->vertex_count; i++) {
-        double rest = distance(view->rest_position[i], place);
+        double rest = distance(view->rest_position[i], position);
         if (rest < 0.2) continue;
-        double ratio = distance(view->position[i], place) / rest;
-        if (!(ratio <= most)) most = ratio; // NaN stays
+        double ratio = distance(view->position[i], position) / rest;
+        if (!(ratio <= max)) max = ratio; // NaN stays
     }
-    return most;
+    return max;
 }
 
 void geometry_point(const SingeView *view, int cells, double u, double v, double *point) {

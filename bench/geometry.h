@@ -24,7 +24,7 @@ double geometry_inverted(const SingeView *view);
 
 /// The greatest ratio of a particle's distance from a place on the sheet to that at rest, of particles farther from
 /// it than 0.2 m at rest.
-double geometry_reach(const SingeView *view, const float *place);
+double geometry_reach(const SingeView *view, const float *position);
 
 /// The sheet's point at (u, v) in [0, 1] of the square, bilinear between vertices.
 void geometry_point(const SingeView *view, int cells, double u, double v, double *point);

@@ -62,15 +62,15 @@ void sheet_inert(SingeMaterialDef *material) {
 /// Hot all over from the start, it loses one hundredth of its mass within a second; by eq 5 and 6 the ratio of
 /// lengths ends at m_min/ash_density = `ratio`. It never burns through, for mass_loss is below m_min.
 static void material_shrinks(SingeMaterialDef *material, float ratio) {
-    const float least = 0.99f, excess = 100; // excess in K
+    const float min = 0.99f, excess = 100; // excess in K
     material->ignition_temperature = singe_param(500);
     material->temperature = singe_param(500 + excess);
     material->rate_ceiling = singe_param(excess);
-    material->mass_rate = singe_param((1 - least) / excess);
+    material->mass_rate = singe_param((1 - min) / excess);
     material->ash_exponent = singe_param(0);
-    material->mass_min = singe_param(least);
+    material->mass_min = singe_param(min);
     material->mass_loss = singe_param(0);
-    material->ash_density = singe_param(least / ratio);
+    material->ash_density = singe_param(min / ratio);
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
 }
 

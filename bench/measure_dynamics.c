@@ -11,7 +11,7 @@
 
 
 enum {
-    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_LEAST, PROJECTION_MEDIAN, PROJECTION_LEAST, SWEEPS, NS, GFLOPS,
+    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_MIN, PROJECTION_MEDIAN, PROJECTION_MIN, SWEEPS, NS, GFLOPS,
     GFLOPS_SHARE, GB, GB_SHARE, MEMORY, BLUE, ALL, COLUMNS
 };
 
@@ -20,9 +20,9 @@ static const BenchColumn columns[COLUMNS] = {
     [SOLVER] = {"solver", NULL, 11, NULL},
     [THREADS] = {"threads", "%.0f", 7, NULL},
     [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_LEAST] = {"least_ms", "%.4g", 8, NULL},
+    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
     [PROJECTION_MEDIAN] = {"projection_ms", "%.4g", 13, NULL},
-    [PROJECTION_LEAST] = {"least_proj_ms", "%.4g", 13, NULL},
+    [PROJECTION_MIN] = {"min_proj_ms", "%.4g", 13, NULL},
     [SWEEPS] = {"sweeps", "%.0f", 6, NULL},
     [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
     [GFLOPS] = {"gflops", "%.2f", 7, NULL},
@@ -56,16 +56,16 @@ static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Pea
         [SOLVER] = bench_text(options_solver_name(setup->solver.method)),
         [THREADS] = bench_number(setup->threads),
         [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
-        [STEP_LEAST] = bench_number(timing_least(timing, SINGE_STAGE_DYNAMICS)),
+        [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),
         [PROJECTION_MEDIAN] = bench_number(timing_median(timing, TIMED_PROJECTION)),
-        [PROJECTION_LEAST] = bench_number(timing_least(timing, TIMED_PROJECTION)),
+        [PROJECTION_MIN] = bench_number(timing_min(timing, TIMED_PROJECTION)),
         [SWEEPS] = bench_number(sweeps / timing->steps),
         [NS] = bench_number(1e9 * seconds / (sweeps * springs)),
         [GFLOPS] = bench_number(gflops),
         [GFLOPS_SHARE] = bench_number(100 * gflops / peaks->gflops),
         [GB] = bench_number(gb_s),
         [GB_SHARE] = bench_number(100 * gb_s / peaks_stream(peaks, working_set / setup->threads)),
-        [MEMORY] = bench_number((double)singe_sim_census(sim).memory / springs),
+        [MEMORY] = bench_number((double)singe_sim_counts(sim).memory / springs),
         [BLUE] = strain_percent(&strain[0]),
         [ALL] = strain_percent(&strain[1]),
     };

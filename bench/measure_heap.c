@@ -14,7 +14,7 @@ static const float ball = 0.1f;                 // m, radius of the closed mesh
 static const double seconds = 3, collapse_seconds = 0.3;
 
 enum {
-    CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MOST, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
+    CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MAX, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
     CONTACT_STEP, SEARCHES, PAIRS, PUSHES, STOPS, UNRESOLVED, STRAIN, INVERTED, SPEED, COLUMNS
 };
 
@@ -23,7 +23,7 @@ static const BenchColumn columns[COLUMNS] = {
     [SPRINGS] = {"springs", "%.0f", 8, NULL},
     [THREADS] = {"threads", "%.0f", 7, NULL},
     [FRAME_MEDIAN] = {"frame_ms", "%.4g", 8, NULL},
-    [FRAME_MOST] = {"most_ms", "%.4g", 8, NULL},
+    [FRAME_MAX] = {"max_ms", "%.4g", 8, NULL},
     [STEP_MEAN] = {"step_ms", "%.4g", 8, NULL},
     [HEAT] = {"heat_ms", "%.3g", 8, NULL},
     [BURN] = {"burn_ms", "%.3g", 8, NULL},
@@ -34,7 +34,7 @@ static const BenchColumn columns[COLUMNS] = {
     [CONTACT_STEP] = {"contact_100k_ms", "%.3g", 15, NULL}, // a step, for 100,000 springs
     [SEARCHES] = {"searches_step", "%.2f", 13, NULL},
     [PAIRS] = {"pairs_step", "%.0f", 10, NULL},
-    [PUSHES] = {"pushes_substep", "%.0f", 14, NULL},
+    [PUSHES] = {"repulsions_substep", "%.0f", 14, NULL},
     [STOPS] = {"stops_step", "%.1f", 10, NULL},
     [UNRESOLVED] = {"crossing", "%.0f", 8, NULL},
     [STRAIN] = {"strain_pct", "%.3g", 20, "max/p99/mean"},
@@ -145,16 +145,16 @@ static SingeResult build(const BenchOptions *options, int cells, bool closed, Si
 static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
                  int frames) {
     SingeTimers t = singe_sim_timers(sim);
-    SingeCensus census = singe_sim_census(sim);
+    SingeCounts counts = singe_sim_counts(sim);
     SingeStats stats = singe_sim_stats(sim);
     double springs = 0, a_frame = 1e3 / frames, steps = (double)t.steps;
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c];
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c];
     double mean = numbers_mean(frame_ms, frames), median = numbers_median(frame_ms, frames);
     row[CELLS] = bench_number(cells);
     row[SPRINGS] = bench_number(springs);
     row[THREADS] = bench_number(options->threads);
     row[FRAME_MEDIAN] = bench_number(median);
-    row[FRAME_MOST] = bench_number(frame_ms[frames - 1]);
+    row[FRAME_MAX] = bench_number(frame_ms[frames - 1]);
     row[STEP_MEAN] = bench_number(mean * frames / steps);
     row[HEAT] = bench_number(a_frame * t.seconds[SINGE_STAGE_HEAT]);
     row[BURN] = bench_number(a_frame * t.seconds[SINGE_STAGE_BURN]);
@@ -165,7 +165,7 @@ static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *s
     row[CONTACT_STEP] = bench_number(1e3 * t.contact_seconds / steps * 1e5 / springs);
     row[SEARCHES] = bench_number((double)t.contact_searches / steps);
     row[PAIRS] = bench_number((double)t.contact_pairs / steps);
-    row[PUSHES] = bench_number((double)t.contact_pushes / steps / (options->substeps ? options->substeps : 3));
+    row[PUSHES] = bench_number((double)t.contact_repulsions / steps / (options->substeps ? options->substeps : 3));
     row[STOPS] = bench_number((double)t.contact_stops / steps);
     row[UNRESOLVED] = bench_number((double)(t.contact_unresolved + t.contact_dropped));
     row[STRAIN] = (BenchValue){.number = {100 * stats.strain_max, 100 * stats.strain_p99, 100 * stats.strain_mean}};

@@ -19,7 +19,7 @@ static const BenchColumn columns[COLUMNS] = {
 };
 
 typedef struct Held {
-    size_t now, most;
+    size_t now, max;
 } Held;
 
 static void *resize(void *context, void *block, size_t old_size, size_t new_size) {
@@ -32,7 +32,7 @@ static void *resize(void *context, void *block, size_t old_size, size_t new_size
         free(block);
     }
     held->now += new_size - old_size;
-    if (held->now > held->most) held->most = held->now;
+    if (held->now > held->max) held->max = held->now;
     return moved;
 }
 
@@ -56,10 +56,10 @@ static SingeResult measure(const BenchOptions *options, double springs, BenchTab
     const SingeAllocator counting = {resize, &held};
     SingeSim *sim;
     SingeSurface surface = {.allocator = counting};
-    size_t with_contact;
+    size_t with_contact = 0;
     if (measure_contact(options, springs, &with_contact, error)) return error->code;
     if (burning_build(options, &counting, springs, 1, &sim, error)) return error->code;
-    size_t building = held.most;
+    size_t building = held.max;
     SingeResult result = singe_sim_step(sim);
     size_t simulation = held.now;
     if (!result) result = singe_sim_surface(sim, &surface);

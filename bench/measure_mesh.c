@@ -39,7 +39,7 @@ static const BenchColumn columns[COLUMNS] = {
 /// A triangulation, with the half-edge on the other side of each side, or UINT32_MAX.
 typedef struct Plane {
     uint32_t vertex_count, triangle_count;
-    float (*place)[3];
+    float (*position)[3];
     uint32_t (*corner)[3];
     uint32_t *twin;
 } Plane;
@@ -51,15 +51,15 @@ static uint32_t random_next(uint32_t *state) {
 static float random_share(uint32_t *state) { return (float)random_next(state) / 16777216.0f * 2 - 1; }
 
 static void plane_free(Plane *plane) {
-    free(plane->place);
+    free(plane->position);
     free(plane->corner);
     free(plane->twin);
 }
 
-static void place_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
+static void position_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
-            float x = (float)i, y = (float)j, *p = plane->place[j * (n + 1) + i];
+            float x = (float)i, y = (float)j, *p = plane->position[j * (n + 1) + i];
             float dx = random_share(state) / 3, dy = random_share(state) / 3;
             bool moved = kind == DELAUNAY || kind == MOVED;
             if (moved && i > 0 && i < n) x += dx;
@@ -69,7 +69,7 @@ static void place_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *s
         }
 }
 
-static void place_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
+static void position_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
     for (uint32_t c = 0; c < n * n; c++) {
         uint32_t i = c % n, j = c / n, at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1,
                                                (j + 1) * (n + 1) + i};
@@ -129,7 +129,7 @@ static bool flip(Plane *plane, uint32_t h) {
     if (g == UINT32_MAX || g < h) return false;
     uint32_t a = *corner_of(plane, h), b = *corner_of(plane, next3(h)), c = *corner_of(plane, last3(h));
     uint32_t d = *corner_of(plane, last3(g)), t = 3 * (h / 3), s = 3 * (g / 3);
-    if (!in_circle(plane->place[a], plane->place[b], plane->place[c], plane->place[d])) return false;
+    if (!in_circle(plane->position[a], plane->position[b], plane->position[c], plane->position[d])) return false;
     const uint32_t outer[4] = {plane->twin[last3(h)], plane->twin[next3(g)], plane->twin[last3(g)],
                                plane->twin[next3(h)]};
     const uint32_t first[3] = {c, a, d}, second[3] = {d, b, c};
@@ -153,14 +153,14 @@ static bool make_delaunay(Plane *plane) {
 /// Numbers vertices and triangles at random.
 static bool shuffle(Plane *plane, uint32_t *state) {
     uint32_t *to = malloc(plane->vertex_count * sizeof *to);
-    float (*place)[3] = malloc(plane->vertex_count * sizeof *place);
-    if (to && place) {
+    float (*position)[3] = malloc(plane->vertex_count * sizeof *position);
+    if (to && position) {
         for (uint32_t v = 0; v < plane->vertex_count; v++) {
             uint32_t other = random_next(state) % (v + 1);
             to[v] = to[other], to[other] = v;
         }
-        for (uint32_t v = 0; v < plane->vertex_count; v++) memcpy(place[to[v]], plane->place[v], sizeof *place);
-        memcpy(plane->place, place, plane->vertex_count * sizeof *place);
+        for (uint32_t v = 0; v < plane->vertex_count; v++) memcpy(position[to[v]], plane->position[v], sizeof *position);
+        memcpy(plane->position, position, plane->vertex_count * sizeof *position);
         for (uint32_t t = 0; t < plane->triangle_count; t++) {
             uint32_t other = random_next(state) % (t + 1), corner[3];
             for (int k = 0; k < 3; k++) plane->corner[t][k] = to[plane->corner[t][k]];
@@ -169,21 +169,21 @@ static bool shuffle(Plane *plane, uint32_t *state) {
             memcpy(plane->corner[other], corner, sizeof corner);
         }
     }
-    bool good = to && place;
+    bool good = to && position;
     free(to);
-    free(place);
+    free(position);
     return good;
 }
 
 static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     uint32_t state = 7;
     *plane = (Plane){.vertex_count = (n + 1) * (n + 1), .triangle_count = 2 * n * n};
-    plane->place = malloc(plane->vertex_count * sizeof *plane->place);
+    plane->position = malloc(plane->vertex_count * sizeof *plane->position);
     plane->corner = malloc(plane->triangle_count * sizeof *plane->corner);
     plane->twin = malloc(3 * (size_t)plane->triangle_count * sizeof *plane->twin);
-    if (!plane->place || !plane->corner || !plane->twin) return false;
-    place_vertices(plane, kind, n, &state);
-    place_triangles(plane, kind, n, &state);
+    if (!plane->position || !plane->corner || !plane->twin) return false;
+    position_vertices(plane, kind, n, &state);
+    position_triangles(plane, kind, n, &state);
     if (kind == SHUFFLED) return shuffle(plane, &state);
     return kind != DELAUNAY || make_delaunay(plane);
 }
@@ -196,7 +196,7 @@ static SingeResult make_quads(const Plane *plane, MeshQuads quads, Mesh *mesh, M
     if (!first) return SINGE_ERROR_MEMORY;
     for (uint32_t t = 0; t <= plane->triangle_count; t++) first[t] = 3 * t;
     const Polygons polygons = {.vertex_count = plane->vertex_count, .face_count = plane->triangle_count,
-                               .corner_count = 3 * plane->triangle_count, .positions = plane->place[0], .first = first,
+                               .corner_count = 3 * plane->triangle_count, .positions = plane->position[0], .first = first,
                                .corners = plane->corner[0]};
     options.quads = quads;
     SingeResult result = mesh_make("bench", &polygons, &options, (SingeAllocator){0}, mesh, report, error);
@@ -207,7 +207,7 @@ static SingeResult make_quads(const Plane *plane, MeshQuads quads, Mesh *mesh, M
 /// The grid's quads on the plane's vertices.
 static SingeResult make_grid(const Plane *plane, uint32_t n, Mesh *mesh, SingeError *error) {
     SingeResult result = mesh_grid(1, 1, n, n, (SingeAllocator){0}, mesh, error);
-    if (!result) memcpy(mesh->positions, plane->place, plane->vertex_count * sizeof *plane->place);
+    if (!result) memcpy(mesh->positions, plane->position, plane->vertex_count * sizeof *plane->position);
     return result;
 }
 

@@ -61,7 +61,7 @@ typedef struct Cases {
     bool full_table; ///< out of memory for it
 } Cases;
 
-static double larger(double most, double value) { return value <= most ? most : value; } // NaN stays
+static double larger(double max, double value) { return value <= max ? max : value; } // NaN stays
 
 static void sample(Case *c, const SingeSim *sim, double energy_start, Strain *strain) {
     SingeView view = singe_sim_view(sim);
@@ -134,7 +134,7 @@ static void done(void *context, int i) {
     if (!table_add(cases->table, row)) cases->full_table = true;
 }
 
-enum { CELLS_MOST = BENCH_LIST_MAX, RATIOS_MOST = 6, STEPS_MOST = 5 };
+enum { CELLS_MAX = BENCH_LIST_MAX, RATIOS_MAX = 6, STEPS_MAX = 5 };
 
 static void fill(Cases *cases, const BenchOptions *options) {
     static const double all_cells[] = {20, 50, 100, 200}, all_ratios[] = {0.05, 0.2, 0.5, 0.7, 1, 2.5};
@@ -144,8 +144,8 @@ static void fill(Cases *cases, const BenchOptions *options) {
     const double *ratios = quick ? few_ratios : all_ratios, *steps = quick ? few_steps : all_steps;
     for (int state = 0; state < 2; state++)
         for (int n = 0; n < cells.count; n++)
-            for (int r = 0; r < (quick ? 3 : RATIOS_MOST); r++)
-                for (int s = 0; s < (quick ? 2 : STEPS_MOST); s++) {
+            for (int r = 0; r < (quick ? 3 : RATIOS_MAX); r++)
+                for (int s = 0; s < (quick ? 2 : STEPS_MAX); s++) {
                     Case *c = &cases->list[cases->count++];
                     c->setup = sheet_setup(options, state ? BENCH_SHRINK : BENCH_SWING, 20);
                     c->setup.cells = (int)cells.values[n];
@@ -158,7 +158,7 @@ static void fill(Cases *cases, const BenchOptions *options) {
 }
 
 SingeResult bench_stability(const BenchOptions *options, BenchTable *table, SingeError *error) {
-    Cases cases = {.table = table, .list = calloc(2 * CELLS_MOST * RATIOS_MOST * STEPS_MOST, sizeof *cases.list)};
+    Cases cases = {.table = table, .list = calloc(2 * CELLS_MAX * RATIOS_MAX * STEPS_MAX, sizeof *cases.list)};
     SingeResult result = SINGE_OK;
     if (!cases.list) return SINGE_ERROR_MEMORY;
     *table = table_begin("stability", columns, COLUMNS, table->text);

@@ -8,7 +8,7 @@
 enum { WARM_UP = 40 };
 
 enum {
-    SPRINGS, SOLVER, LIMIT, THREADS, STEP_MEDIAN, STEP_LEAST, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS,
+    SPRINGS, SOLVER, LIMIT, THREADS, STEP_MEDIAN, STEP_MIN, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS,
     ITERATIONS, CONTACTS, BURNT, MEMORY, YARDSTICK, STEP_COLUMNS
 };
 
@@ -18,7 +18,7 @@ static const BenchColumn step_columns[STEP_COLUMNS] = {
     [LIMIT] = {"curvature_max", "%.0f", 13, NULL},
     [THREADS] = {"threads", "%.0f", 7, NULL},
     [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_LEAST] = {"least_ms", "%.4g", 8, NULL},
+    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
     [HEAT] = {"heat_ms", "%.4g", 8, NULL},
     [BURN] = {"burn_ms", "%.4g", 8, NULL},
     [ABLATE] = {"ablate_ms", "%.4g", 9, NULL},
@@ -40,7 +40,7 @@ static void fill_step(BenchValue *row, const BenchOptions *options, const SingeS
     row[LIMIT] = bench_number(options->curvature.values[0]);
     row[THREADS] = bench_number(options->threads);
     row[STEP_MEDIAN] = bench_number(step);
-    row[STEP_LEAST] = bench_number(timing_least(timing, TIMED_STEP));
+    row[STEP_MIN] = bench_number(timing_min(timing, TIMED_STEP));
     row[HEAT] = bench_number(timing_median(timing, SINGE_STAGE_HEAT));
     row[BURN] = bench_number(timing_median(timing, SINGE_STAGE_BURN));
     row[ABLATE] = bench_number(timing_median(timing, SINGE_STAGE_ABLATE));
@@ -51,17 +51,17 @@ static void fill_step(BenchValue *row, const BenchOptions *options, const SingeS
     row[ITERATIONS] = bench_number((double)timing->total.heat_iterations / timing->steps);
     row[CONTACTS] = bench_number((double)timing->total.contacts / timing->steps);
     row[BURNT] = bench_number(100 * singe_sim_stats(sim).burnt_fraction);
-    row[MEMORY] = bench_number((double)singe_sim_census(sim).memory / springs);
+    row[MEMORY] = bench_number((double)singe_sim_counts(sim).memory / springs);
     row[YARDSTICK] = bench_number(timing_median(timing, TIMED_YARDSTICK));
 }
 
-enum { STAGE_SPRINGS, STAGE_THREADS, STAGE_MEDIAN, STAGE_LEAST, STAGE_NS, STAGE_ITERATIONS, STAGE_GONE, STAGE_COLUMNS };
+enum { STAGE_SPRINGS, STAGE_THREADS, STAGE_MEDIAN, STAGE_MIN, STAGE_NS, STAGE_ITERATIONS, STAGE_GONE, STAGE_COLUMNS };
 
 static const BenchColumn stage_columns[STAGE_COLUMNS] = {
     [STAGE_SPRINGS] = {"springs", "%.0f", 8, NULL},
     [STAGE_THREADS] = {"threads", "%.0f", 7, NULL},
     [STAGE_MEDIAN] = {"stage_ms", "%.4g", 9, NULL},
-    [STAGE_LEAST] = {"least_ms", "%.4g", 9, NULL},
+    [STAGE_MIN] = {"min_ms", "%.4g", 9, NULL},
     [STAGE_NS] = {"ns_spring", "%.3f", 9, NULL},
     [STAGE_ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
     [STAGE_GONE] = {"springs_gone", "%.0f", 12, NULL},
@@ -73,7 +73,7 @@ static void fill_stage(BenchValue *row, int stage, const BenchOptions *options, 
     row[STAGE_SPRINGS] = bench_number(springs);
     row[STAGE_THREADS] = bench_number(options->threads);
     row[STAGE_MEDIAN] = bench_number(median);
-    row[STAGE_LEAST] = bench_number(timing_least(timing, stage));
+    row[STAGE_MIN] = bench_number(timing_min(timing, stage));
     row[STAGE_NS] = bench_number(1e6 * median / springs);
     row[STAGE_ITERATIONS] = bench_number((double)timing->total.heat_iterations / timing->steps);
     row[STAGE_GONE] = bench_number(springs - singe_sim_stats(sim).springs);

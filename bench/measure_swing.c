@@ -39,12 +39,12 @@ static const BenchColumn columns[COLUMNS] = {
 
 /// Whether the sheet is inextensible and moves as it should; "-" where that is not known.
 static const char *bars_held(const BenchSetup *setup, const Trajectory *t, double off) {
-    const double scale = setup->pins == 1 ? 10 : 1, max = 0.5 * scale, p99 = 0.05 * scale, off_most = 2;
+    const double scale = setup->pins == 1 ? 10 : 1, max = 0.5 * scale, p99 = 0.05 * scale, off_max = 2;
     const BenchValue blue = strain_percent(&t->strain[SINGE_BLUE]);
     if (setup->state != BENCH_SWING) return "-";
     if (t->diverged) return "missed";
     if (isnan(t->fall[TRAJECTORY_MARKS - 1])) return "-";
-    return blue.number[0] <= max && blue.number[1] <= p99 && !(off > off_most) ? "held" : "missed";
+    return blue.number[0] <= max && blue.number[1] <= p99 && !(off > off_max) ? "held" : "missed";
 }
 
 static bool add_row(BenchTable *table, const BenchSetup *setup, int steps, const Trajectory *t) {

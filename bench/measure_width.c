@@ -6,13 +6,13 @@
 #include "bench/hung_sheet.h"
 #include "bench/timing.h"
 
-enum { INSTRUCTIONS, SPRINGS, STEP_MEDIAN, STEP_LEAST, PROJECTION, NS, RATIO, BYTES, COLUMNS };
+enum { INSTRUCTIONS, SPRINGS, STEP_MEDIAN, STEP_MIN, PROJECTION, NS, RATIO, BYTES, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
     [INSTRUCTIONS] = {"instructions", NULL, 12, NULL},
     [SPRINGS] = {"springs", "%.0f", 8, NULL},
     [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_LEAST] = {"least_ms", "%.4g", 8, NULL},
+    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
     [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
     [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
     [RATIO] = {"plain_over_this", "%.2f", 15, NULL},
@@ -46,7 +46,7 @@ static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Sin
         [INSTRUCTIONS] = bench_text(options_instructions_name(setup->instructions)),
         [SPRINGS] = bench_number(springs),
         [STEP_MEDIAN] = bench_number(timing_median(timing, SINGE_STAGE_DYNAMICS)),
-        [STEP_LEAST] = bench_number(timing_least(timing, SINGE_STAGE_DYNAMICS)),
+        [STEP_MIN] = bench_number(timing_min(timing, SINGE_STAGE_DYNAMICS)),
         [PROJECTION] = bench_number(projection),
         [NS] = bench_number(1e6 * projection / (springs * sweeps)),
         [RATIO] = bench_number(plain->projection_ms / projection),

@@ -18,7 +18,7 @@ typedef struct Strip {
 StripSetup strip_setup(const SingeMaterialDef *material) {
     return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step,
                         .length = 0.12f, .width = 3e-3f, .gravity = {0, 0, -9.81f}, .pace = 1, .threads = 1,
-                        .patience = 20000, .work_most = 1000000};
+                        .patience = 20000, .work_max = 1000000};
 }
 
 static bool strip_mesh(Strip *strip, const StripSetup *setup) {
@@ -130,7 +130,7 @@ static uint64_t strip_work(const Strip *strip) {
 
 static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult *result) {
     double reached = 0;
-    for (int since = 0; reached <= strip->last && since < setup->patience && strip_work(strip) < setup->work_most;) {
+    for (int since = 0; reached <= strip->last && since < setup->patience && strip_work(strip) < setup->work_max;) {
         SingeResult failed = singe_sim_step(strip->sim);
         if (failed) return failed;
         SingeView view = singe_sim_view(strip->sim);
@@ -140,7 +140,7 @@ static SingeResult strip_run(Strip *strip, const StripSetup *setup, StripResult 
     }
     strip_read(strip, (double)setup->pace, result);
     result->work = strip_work(strip);
-    result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_most ? STRIP_OUT : STRIP_CUT;
+    result->end = reached > strip->last ? STRIP_THROUGH : result->work < setup->work_max ? STRIP_OUT : STRIP_CUT;
     return SINGE_OK;
 }
 

@@ -15,7 +15,7 @@ typedef struct StripSetup {
     float gas_cell;            ///< m, 0: as it comes
     int threads;
     int patience;              ///< steps without a new place reached, after which the fire has gone out
-    uint64_t work_most;        ///< steps, and iterations of their conduction, in all
+    uint64_t work_max;        ///< steps, and iterations of their conduction, in all
     /// Moves a vertex from its place on the grid; NULL: none.
     void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
 } StripSetup;
@@ -24,12 +24,12 @@ typedef enum StripEnd {
     STRIP_UNKNOWN, ///< a step failed
     STRIP_THROUGH, ///< the front has passed along it
     STRIP_OUT,     ///< the fire has gone out
-    STRIP_CUT,     ///< work_most was reached
+    STRIP_CUT,     ///< work_max was reached
 } StripEnd;
 
 typedef struct StripResult {
     StripEnd end;
-    uint64_t work;     ///< as in work_most
+    uint64_t work;     ///< as in work_max
     double speed;      ///< m/s of the front along the strip; 0 where it has not passed along it
     double hottest;    ///< K, of what the front has passed
     double residue;    ///< share of its mass that did not go as gas

@@ -10,15 +10,15 @@ static const double yardstick_reference_ms = 8.6;
 
 double timing_yardstick_reference(void) { return yardstick_reference_ms; }
 
-int timing_steps(double springs, int least, int most) {
+int timing_steps(double springs, int min, int max) {
     double steps = 2e7 / springs;
-    return steps < least ? least : steps > most ? most : (int)steps;
+    return steps < min ? min : steps > max ? max : (int)steps;
 }
 
 double timing_springs(const SingeSim *sim) {
-    SingeCensus census = singe_sim_census(sim);
+    SingeCounts counts = singe_sim_counts(sim);
     double springs = 0;
-    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) springs += census.springs[colour];
+    for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) springs += counts.springs[colour];
     return springs;
 }
 
@@ -77,7 +77,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
 }
 
 double timing_median(const Timing *timing, int what) { return timing->ms[what][timing->steps / 2]; }
-double timing_least(const Timing *timing, int what) { return timing->ms[what][0]; }
+double timing_min(const Timing *timing, int what) { return timing->ms[what][0]; }
 
 void timing_free(Timing *timing) {
     for (int what = 0; what < TIMED_COUNT; what++) free(timing->ms[what]);

@@ -29,11 +29,11 @@ double timing_yardstick_reference(void);
 SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps);
 
 double timing_median(const Timing *timing, int what);
-double timing_least(const Timing *timing, int what);
+double timing_min(const Timing *timing, int what);
 void timing_free(Timing *timing);
 
 /// How many steps of a sheet of so many springs make up a good share of a second.
-int timing_steps(double springs, int least, int most);
+int timing_steps(double springs, int min, int max);
 
 /// Springs of all colours, as they were at the commit.
 double timing_springs(const SingeSim *sim);

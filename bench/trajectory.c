@@ -58,7 +58,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
     } else {
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_clear(&trajectory->strain[colour]);
         for (int m = 0; m < TRAJECTORY_MARKS; m++) trajectory->fall[m] = NAN;
-        trajectory->strand_length = singe_sim_census(sim).mean_strand_length;
+        trajectory->strand_length = singe_sim_counts(sim).mean_strand_length;
         follow(trajectory, sim, frames, steps, budget);
     }
     singe_sim_destroy(sim);
@@ -72,11 +72,11 @@ void trajectory_free(Trajectory *trajectory) {
 
 double trajectory_off(const BenchSetup *setup, const Trajectory *trajectory) {
     static const double right[TRAJECTORY_MARKS] = {-0.373, -0.486, -0.299}; // m
-    double most = 0;
+    double max = 0;
     if (setup->state != BENCH_SWING || setup->pins != 2) return NAN;
     for (int m = 0; m < TRAJECTORY_MARKS; m++) {
         double off = 100 * fabs(trajectory->fall[m] - right[m]);
-        if (!(off <= most)) most = off; // NaN stays: not reached
+        if (!(off <= max)) max = off; // NaN stays: not reached
     }
-    return most;
+    return max;
 }

@@ -9,14 +9,14 @@
 #include "bench/numbers.h"
 #include "preview/preview.h"
 
-enum { PICTURE, TRIANGLES, SAMPLES, SECONDS, LEAST, WALL, COLUMNS };
+enum { PICTURE, TRIANGLES, SAMPLES, SECONDS, MIN, WALL, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
     [PICTURE] = {"picture", NULL, 8, NULL},
     [TRIANGLES] = {"triangles", "%.0f", 10, NULL},
     [SAMPLES] = {"samples", "%.0f", 8, NULL},
     [SECONDS] = {"cpu_s", "%.3f", 8, NULL},
-    [LEAST] = {"least_cpu_s", "%.3f", 12, NULL},
+    [MIN] = {"min_cpu_s", "%.3f", 12, NULL},
     [WALL] = {"wall_s", "%.3f", 8, NULL},
 };
 
@@ -161,7 +161,7 @@ static SingeResult measure(const BenchOptions *options, const Shot *shot, const 
     BenchValue row[COLUMNS] = {
         [PICTURE] = bench_text(shot->name), [TRIANGLES] = bench_number(surface->triangle_count),
         [SAMPLES] = bench_number(def.samples), [SECONDS] = bench_number(seconds),
-        [LEAST] = bench_number(cpu[0]), [WALL] = bench_number(numbers_median(wall, REPEATS))};
+        [MIN] = bench_number(cpu[0]), [WALL] = bench_number(numbers_median(wall, REPEATS))};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 

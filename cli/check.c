@@ -95,7 +95,7 @@ static void report_meshes(const Job *job) {
     }
 }
 
-static void report_shell(const SingeCensus *c) {
+static void report_shell(const SingeCounts *c) {
     static const struct { const char *name; SingeColour colour; } rows[] = {
         {"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
     uint64_t springs = 0, strands = 0;
@@ -110,7 +110,7 @@ static void report_shell(const SingeCensus *c) {
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
 }
 
-/// Office paper takes 23,600 pieces of work (StripSetup.work_most), a second in all; a fire that creeps by less than a
+/// Office paper takes 23,600 pieces of work (StripSetup.work_max), a second in all; a fire that creeps by less than a
 /// cell in as many steps has gone out.
 enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
 
@@ -118,7 +118,7 @@ enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 400
 /// not burn, and no end where that cannot be told. Fails only without memory.
 static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
-    setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE, setup.work_most = CHECK_STRIP_WORK;
+    setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE, setup.work_max = CHECK_STRIP_WORK;
     *front = (StripResult){.end = STRIP_UNKNOWN};
     SingeResult result = step < 10 ? strip_burn(&setup, front, error) : SINGE_ERROR_ARGUMENT;
     if (result || !(front->speed > 0)) front->speed = 0;
@@ -151,7 +151,7 @@ static SingeResult report_front(const Scene *scene, const BenchMaterial *materia
 /// The sheets' materials, those of a name and weight once, and how fast their fire is going to be.
 static SingeResult report_materials(const Scene *scene, float thickening, SingeError *error) {
     SingeResult result = SINGE_OK;
-    for (uint32_t i = 0, told = 0; !result && i < scene->sheet_count && told < CHECK_MATERIALS; i++) {
+    for (uint32_t i = 0, reported = 0; !result && i < scene->sheet_count && reported < CHECK_MATERIALS; i++) {
         const SceneMaterial *material = &scene->sheets[i].material;
         const float grammage = material->def.grammage.value;
         uint32_t j = 0;
@@ -162,7 +162,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
                1e3 * (double)grammage);
         result = report_front(scene, &bench, thickening, error);
         printf("\n");
-        told++;
+        reported++;
     }
     return result;
 }
@@ -204,12 +204,12 @@ static ExitCode check_scene(Console *console, const char *path, const SetList *s
     ExitCode code = job_read(&job, console, path, sets, threads);
     if (!code) code = load_and_build(&job, console, &sim);
     if (!code) {
-        SingeCensus census = singe_sim_census(sim);
+        SingeCounts counts = singe_sim_counts(sim);
         float thickening = singe_sim_stats(sim).thickening;
         CheckTimes times = {0};
         SingeError error = {0};
         report_meshes(&job);
-        report_shell(&census);
+        report_shell(&counts);
         job_note_long(&job, console, "burning a strip of each material");
         SingeResult result = report_materials(job.scene, thickening, &error);
         if (!result) job_note_long(&job, console, "timing steps");

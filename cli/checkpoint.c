@@ -56,7 +56,7 @@ static uint64_t hash_mesh(uint64_t hash, const Mesh *mesh) {
     return hash;
 }
 
-static uint64_t hash_picture(uint64_t hash, const SingePicture *picture) {
+static uint64_t hash_picture(uint64_t hash, const SingeTexture *picture) {
     hash = hash_bytes(hash, &picture->width, sizeof picture->width);
     return hash_array(hash, picture->values, (size_t)picture->width * (size_t)picture->height, sizeof(float));
 }
@@ -79,7 +79,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
         hash = hash_image(hash, &assets->images[i]);
         for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->params[i][k]);
     }
-    for (uint32_t i = 0; i < assets->source_count; i++) hash = hash_picture(hash, &assets->source_pictures[i]);
+    for (uint32_t i = 0; i < assets->source_count; i++) hash = hash_picture(hash, &assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count; i++) hash = hash_solid(hash, &assets->solids[i]);
     return hash;
 }

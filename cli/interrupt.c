@@ -9,8 +9,8 @@
 
 // The statics of the program: a signal handler has no other way to pass a word on, nor to be told one.
 static volatile sig_atomic_t interrupt_flag;
-enum { DRAFTS_MOST = 8 };
-static const char *volatile interrupt_drafts[DRAFTS_MOST];
+enum { DRAFTS_MAX = 8 };
+static const char *volatile interrupt_drafts[DRAFTS_MAX];
 
 static void note_signal(int number) {
     (void)number;
@@ -22,12 +22,12 @@ static void note_signal(int number) {
 
 /// Only what a signal handler may do.
 static void remove_drafts(void) {
-    for (int i = 0; i < DRAFTS_MOST; i++)
+    for (int i = 0; i < DRAFTS_MAX; i++)
         if (interrupt_drafts[i]) unlink(interrupt_drafts[i]);
 }
 
 static void replace_draft(const char *old, const char *draft) {
-    for (int i = 0; i < DRAFTS_MOST; i++)
+    for (int i = 0; i < DRAFTS_MAX; i++)
         if (interrupt_drafts[i] == old) {
             interrupt_drafts[i] = draft;
             return;

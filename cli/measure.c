@@ -133,8 +133,8 @@ static double jitter(const Moment *before, const Moment *now, const Moment *afte
     for (uint32_t i = 0; i < count; i++) {
         if (!before->there[i] || !now->there[i] || !after->there[i]) continue;
         for (int k = 0; k < 3; k++) {
-            double way = ((double)after->position[i][k] - (double)before->position[i][k]) * inverse;
-            sum += pow((double)now->velocity[i][k] - way, 2);
+            double moved = ((double)after->position[i][k] - (double)before->position[i][k]) * inverse;
+            sum += pow((double)now->velocity[i][k] - moved, 2);
         }
         counted++;
     }

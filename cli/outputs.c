@@ -15,26 +15,26 @@ static SingeResult no_memory(SingeError *error) {
 
 /// The way from a folder to a file, both as they are on this machine; the file's own path where one cannot be found.
 static char *path_from(const char *folder, const char *file) {
-    char *from = realpath(folder, NULL), *to = realpath(file, NULL), *way = NULL;
+    char *from = realpath(folder, NULL), *to = realpath(file, NULL), *relative = NULL;
     if (from && to) {
         size_t same = 0, i = 0;
         for (; from[i] && from[i] == to[i]; i++)
             if (from[i] == '/') same = i + 1;
         if (!from[i] && to[i] == '/') same = i + 1;
         const char *rest = strlen(from) < same ? "" : from + same;
-        way = text_format("%s", *rest ? "../" : "./");
+        relative = text_format("%s", *rest ? "../" : "./");
         for (const char *c = rest; *c; c++) {
             if (*c != '/') continue;
-            char *longer = text_format("../%s", way);
-            free(way);
-            way = longer;
+            char *longer = text_format("../%s", relative);
+            free(relative);
+            relative = longer;
         }
-        char *whole = text_format("%s%s", way, to + same);
-        free(way);
-        way = whole;
+        char *whole = text_format("%s%s", relative, to + same);
+        free(relative);
+        relative = whole;
     }
     free(from), free(to);
-    return way ? way : text_format("%s", file);
+    return relative ? relative : text_format("%s", file);
 }
 
 static void fill_sheet(const Outputs *outputs, uint32_t index) {

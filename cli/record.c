@@ -58,10 +58,10 @@ static void write_totals(FILE *file, const Totals *t) {
     fputs("},\n", file);
 }
 
-static void write_census(FILE *file, const Record *record) {
+static void write_counts(FILE *file, const Record *record) {
     static const char *const colours[] = {"red", "green", "blue", "yellow"};
-    const SingeCensus *c = &record->census;
-    fprintf(file, "  \"census\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles,
+    const SingeCounts *c = &record->counts;
+    fprintf(file, "  \"counts\": {\"particles\": %" PRIu32 ", \"cells\": %" PRIu32 ", \"springs\": {", c->particles,
             c->cells);
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
         fprintf(file, "%s\"%s\": %" PRIu32, i ? ", " : "", colours[i], c->springs[i]);
@@ -100,7 +100,7 @@ static void write_all(FILE *file, const Record *record, const Job *job) {
     write_totals(file, &record->totals);
     fprintf(file, "  \"drawn\": {\"triangles\": %" PRIu32 ", \"triangles_fine\": %" PRIu32 "},\n", record->triangles,
             record->fine_triangles);
-    write_census(file, record);
+    write_counts(file, record);
     fputs("  \"scene\": ", file);
     scene_dump(scene, SCENE_JSON, 2, file);
     fputs("\n}\n", file);

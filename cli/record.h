@@ -14,7 +14,7 @@ typedef struct Record {
     int frames_done;
     int resumed_from;     ///< frame of the checkpoint that the last start went on from, 0 for none
     bool preview, video;
-    SingeCensus census;
+    SingeCounts counts;
     float thickening;
     uint32_t triangles, fine_triangles; ///< of the last frame drawn
     Totals totals;

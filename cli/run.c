@@ -73,10 +73,10 @@ static void show_progress(Run *run, int frame, const SingeStats *stats, double s
 }
 
 /// From this strain of one edge in a hundred on, sheets do not look like sheets any more.
-static const double strain_most = 0.5;
+static const double strain_max = 0.5;
 
 static void note_strain(Run *run, int frame, const SingeStats *stats) {
-    if (stats->strain_p99 > fmax(strain_most, run->strain)) run->strain = stats->strain_p99, run->strained = frame;
+    if (stats->strain_p99 > fmax(strain_max, run->strain)) run->strain = stats->strain_p99, run->strained = frame;
 }
 
 /// Ctrl-C ends it between two steps.
@@ -175,12 +175,12 @@ static ExitCode run_scene(Run *run, const RunOptions *options) {
     if (code) return code;
     SingeError error = {0};
     run->record.preview = run->pictures != NULL;
-    run->record.census = singe_sim_census(run->sim);
+    run->record.counts = singe_sim_counts(run->sim);
     run->record.thickening = singe_sim_stats(run->sim).thickening;
     job_note_meshes(&run->job, run->console);
-    const SingeCensus *census = &run->record.census;
-    console_note(run->console, "%u cells of %.3g mm, strands of %.1f springs on average", census->cells,
-                 1e3 * (double)census->cell_size, census->mean_strand_length);
+    const SingeCounts *counts = &run->record.counts;
+    console_note(run->console, "%u cells of %.3g mm, strands of %.1f springs on average", counts->cells,
+                 1e3 * (double)counts->cell_size, counts->mean_strand_length);
     run->timers = singe_sim_timers(run->sim);
     interrupt_watch();
     SingeResult result = run_all(run, &error);

@@ -25,7 +25,7 @@ typedef struct FrameFile {
     char *path;
     char *draft; ///< where it is written until it takes its place; NULL: at once
 } FrameFile;
-enum { FRAME_FILES_MOST = 3 + OUTPUT_COUNT };
+enum { FRAME_FILES_MAX = 3 + OUTPUT_COUNT };
 
 /// A run in progress.
 typedef struct Run {
@@ -38,7 +38,7 @@ typedef struct Run {
     bool layers;        ///< written as EXR, too
     Frame frame;
     Outputs outputs;
-    FrameFile files[FRAME_FILES_MOST];
+    FrameFile files[FRAME_FILES_MAX];
     int file_count;
     StatsFile stats;
     Record record;

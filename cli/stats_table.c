@@ -22,26 +22,26 @@ static void next_cell(Text *text, const uint8_t **begin, const uint8_t **end) {
     if (!text_at_line_end(text)) text->at++;
 }
 
-static bool read_header(Text *text, int place[COLUMNS]) {
+static bool read_header(Text *text, int column[COLUMNS]) {
     int found = 0;
     for (int i = 0; !text_at_line_end(text); i++) {
         const uint8_t *begin, *end;
         next_cell(text, &begin, &end);
         for (int c = 0; c < COLUMNS; c++)
-            if (text_word_is(begin, end, names[c])) place[c] = i, found++;
+            if (text_word_is(begin, end, names[c])) column[c] = i, found++;
     }
     text_next_line(text);
     return found == COLUMNS;
 }
 
-static bool read_row(Text *text, const int place[COLUMNS], StatsRow *row) {
+static bool read_row(Text *text, const int column[COLUMNS], StatsRow *row) {
     double *const values[COLUMNS] = {&row->frame, &row->time, &row->triangles, &row->inverted_cells};
     int found = 0;
     for (int i = 0; !text_at_line_end(text); i++) {
         const uint8_t *begin, *end;
         next_cell(text, &begin, &end);
         for (int c = 0; c < COLUMNS; c++)
-            if (place[c] == i && number_double(&begin, end, values[c]) == NUMBER_OK && begin == end) found++;
+            if (column[c] == i && number_double(&begin, end, values[c]) == NUMBER_OK && begin == end) found++;
     }
     text_next_line(text);
     return found == COLUMNS && row->inverted_cells >= 0 && row->triangles >= 0;
@@ -50,7 +50,7 @@ static bool read_row(Text *text, const int place[COLUMNS], StatsRow *row) {
 ExitCode stats_table_read(StatsTable *table, const char *path, Console *console) {
     Bytes bytes = {0};
     SingeError error = {0};
-    int place[COLUMNS];
+    int column[COLUMNS];
     if (access(path, F_OK) != 0 && errno == ENOENT) {
         console_warn(console, "no %s: inverted cells are not known", path);
         return EXIT_GOOD;
@@ -61,11 +61,11 @@ ExitCode stats_table_read(StatsTable *table, const char *path, Console *console)
         return job_exit(result);
     }
     Text text = {bytes.data, bytes.data + bytes.size, 1};
-    bool good = read_header(&text, place);
+    bool good = read_header(&text, column);
     size_t lines = 1;
     for (size_t i = 0; i < bytes.size; i++) lines += bytes.data[i] == '\n';
     table->rows = calloc(lines, sizeof *table->rows);
-    while (good && table->rows && text.at < text.end) good = read_row(&text, place, &table->rows[table->count++]);
+    while (good && table->rows && text.at < text.end) good = read_row(&text, column, &table->rows[table->count++]);
     if (!table->rows) console_error(console, "%s: out of memory", path);
     else if (!good) console_error(console, "%s:%lld: not a line of such numbers", path, (long long)text.line - 1);
     bytes_free(&bytes);

@@ -241,16 +241,16 @@ double shape_left(const SingeView *view) {
 }
 
 int shape_pieces(const SingeView *view, double share) {
-    enum { MOST = 4096 };
+    enum { MAX = 4096 };
     static const double none = 0;
-    double *area = calloc(MOST, sizeof *area), all = none;
+    double *area = calloc(MAX, sizeof *area), all = none;
     int count = 0;
     for (uint32_t i = view->vertex_count; area && i < view->particle_count; i++) {
         all += (double)view->area[i];
         if (view->particle_flags[i] & SINGE_ALIVE && view->piece[i] >= 0)
-            area[view->piece[i] % MOST] += (double)view->area[i];
+            area[view->piece[i] % MAX] += (double)view->area[i];
     }
-    for (int p = 0; area && p < MOST; p++) count += area[p] >= share * all && area[p] > 0;
+    for (int p = 0; area && p < MAX; p++) count += area[p] >= share * all && area[p] > 0;
     free(area);
     return count;
 }

@@ -39,7 +39,7 @@ static SingeResult fig1_run(Lab *lab, bool plain, Fig1 *fig, SingeError *error) 
     const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
                           plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
     SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
-    const SingePicture *picture = &play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)];
+    const SingeTexture *picture = &play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)];
     if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
     for (int i = 0; i < FIG1_SHOTS && !result; i++) {
         result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
@@ -95,7 +95,7 @@ static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_
         {"sheets.0.material.shrink_front=0", "sheets.0.material.shrink_back=0", "tearing=no"},
         {"sheets.0.material.ablate=no", "tearing=no", ""},
         {"", "", ""},
-        {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, picture: rate.png}", "", ""},
+        {"sheets.0.material.mass_rate={from: 1e-3, to: 20e-3, texture: rate.png}", "", ""},
         {"", "", ""}};
     char mean[60] = "";
     if (i == FIG4_MEAN) snprintf(mean, sizeof mean, "sheets.0.material.mass_rate=%g", *rate);
@@ -306,9 +306,9 @@ static void rival_look(const SingeView *view, double *difference, double *curvat
 }
 
 static void scale_to_one(double *values, int count) {
-    double most = 0;
-    for (int i = 0; i < count; i++) most = fmax(most, fabs(values[i]));
-    for (int i = 0; i < count && most > 0; i++) values[i] = fabs(values[i]) / most;
+    double max = 0;
+    for (int i = 0; i < count; i++) max = fmax(max, fabs(values[i]));
+    for (int i = 0; i < count && max > 0; i++) values[i] = fabs(values[i]) / max;
 }
 
 /// The strip from its side at some moments: ours above, the rival's arc of the same length below.
@@ -364,23 +364,23 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
     }
     play_close(&play);
     if (result) return result;
-    double most = 0, hottest = 0;
+    double max = 0, hottest = 0;
     for (int k = 0; k < RIVAL_LOOKS; k++)
-        most = fmax(most, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
+        max = fmax(max, fabs(curvature[k])), hottest = fmax(hottest, fabs(difference[k]));
     report_text(lab->report,
                 "A strip of card is heated from below for a second and cools. The lower side is up to %.0f K hotter, "
                 "and chars and shrinks more; the strip curls to %.0f /m. A model that bends by the temperature "
                 "difference (dashed, scaled to the same largest curl) is flat again as soon as the strip is cold.",
-                hottest, most);
+                hottest, max);
     scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
-    for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = most * difference[rival_shots[s]];
+    for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = max * difference[rival_shots[s]];
     rival_draw(report_drawing(lab->report), (const double (*)[RIVAL_POINTS][2])profiles, bend);
     Plot plot = {.title = "Curl while it is heated and cools", .x_label = "s", .y_label = "share of the largest"};
     plot_add(&plot, (PlotLine){"by temperature", "#b2182b", time, difference, RIVAL_LOOKS, false, true});
     plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});
     report_plot(lab->report, &plot);
     const double rival_end = difference[RIVAL_LOOKS - 1], here_end = curvature[RIVAL_LOOKS - 1];
-    report_bar(lab->report, &(ReportBar){"curl", "largest curvature, 1/m", most, 3, INFINITY, most * curvature[0],
+    report_bar(lab->report, &(ReportBar){"curl", "largest curvature, 1/m", max, 3, INFINITY, max * curvature[0],
                                          "before it is heated"});
     report_bar(lab->report,
                &(ReportBar){"rival_end", "rival: curl left in the end", rival_end, 0, 0.05, here_end, "by shrinkage"});

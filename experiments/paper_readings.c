@@ -46,13 +46,13 @@ static SingeResult centre_moves(bool with_mass, double *moved, SingeError *error
 }
 
 /// Steps that the paper's solver takes until it fails, or `most`.
-static SingeResult steps_taken(SingeSolverMethod method, int most, int *steps, SingeError *error) {
+static SingeResult steps_taken(SingeSolverMethod method, int max, int *steps, SingeError *error) {
     SingeSolverDef solver = singe_default_solver();
     singe_init_solver_method(&solver, sizeof solver, method);
     SingeSim *sim;
     SingeResult result = paper_sim(PAPER_SWING, 8, &solver, 1, &sim, error);
     if (result) return result;
-    for (*steps = 0; *steps < most && !singe_sim_step(sim); ++*steps)
+    for (*steps = 0; *steps < max && !singe_sim_step(sim); ++*steps)
         if (fabs((double)singe_sim_view(sim).position[40][2]) > 1e3) break; // thrown away
     singe_sim_destroy(sim);
     return SINGE_OK;
@@ -60,15 +60,15 @@ static SingeResult steps_taken(SingeSolverMethod method, int most, int *steps, S
 
 /// Springs of a colour that share an end with one of the same colour, at most, and that one itself.
 static int row_length(const SingeView *view) {
-    int most = 0;
+    int max = 0;
     const uint32_t (*s)[2] = view->springs[SINGE_BLUE];
     for (uint32_t i = 0; i < view->spring_count[SINGE_BLUE]; i++) {
         int count = 0;
         for (uint32_t j = 0; j < view->spring_count[SINGE_BLUE]; j++)
             count += s[i][0] == s[j][0] || s[i][0] == s[j][1] || s[i][1] == s[j][0] || s[i][1] == s[j][1];
-        if (count > most) most = count;
+        if (count > max) max = count;
     }
-    return most;
+    return max;
 }
 
 static SingeResult burn_strip(const SingeMaterialDef *material, StripResult *out, SingeError *error) {

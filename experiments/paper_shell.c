@@ -16,7 +16,7 @@ typedef struct Sight {
     int width, height;
 } Sight;
 
-static void sight_place(const Sight *sight, const float *p, double out[2]) {
+static void sight_position(const Sight *sight, const float *p, double out[2]) {
     double c = cos(sight->turn), s = sin(sight->turn), x = (double)p[0] * c - (double)p[1] * s;
     double y = (double)p[0] * s + (double)p[1] * c;
     out[0] = sight->width / 2.0 + sight->scale * (x - sight->x);
@@ -28,7 +28,7 @@ static Sight sight_fit(const SingeView *view, double turn, double tilt, int widt
     Sight sight = {.turn = turn, .tilt = tilt, .scale = 1, .width = width, .height = height};
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, p[2];
     for (uint32_t i = 0; i < view->particle_count; i++) {
-        sight_place(&sight, view->position[i], p);
+        sight_position(&sight, view->position[i], p);
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], p[k]), high[k] = fmax(high[k], p[k]);
     }
     sight.x = (low[0] + high[0] - width) / 2, sight.y = -(low[1] + high[1] - height) / 2;
@@ -46,15 +46,15 @@ static void draw_springs(FILE *file, const SingeView *view, const Sight *sight, 
         while (*at && *at != letters[c]) at++;
         for (uint32_t s = 0; *at && s < view->spring_count[c]; s++) {
             double a[2], b[2];
-            sight_place(sight, view->position[view->springs[c][s][0]], a);
-            sight_place(sight, view->position[view->springs[c][s][1]], b);
+            sight_position(sight, view->position[view->springs[c][s][0]], a);
+            sight_position(sight, view->position[view->springs[c][s][1]], b);
             fprintf(file, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" stroke-width=\"%s\"/>\n",
                     a[0], a[1], b[0], b[1], inks[c], c == SINGE_RED || c == SINGE_YELLOW ? "1.1" : "2.2");
         }
     }
     for (uint32_t i = 0; i < view->particle_count; i++) {
         double p[2];
-        sight_place(sight, view->position[i], p);
+        sight_position(sight, view->position[i], p);
         fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", p[0], p[1],
                 inks[i < view->vertex_count ? SINGE_BLUE : SINGE_GREEN]);
     }

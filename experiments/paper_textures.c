@@ -22,7 +22,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
                               plain ? "sheets.0.material.shrink_front=0" : "",
                               plain ? "sheets.0.material.shrink_back=0" : "", NULL};
         result = play_open(&play, lab, "heat.yaml", sets, error);
-        const SingePicture *picture = play.job.assets.source_pictures;
+        const SingeTexture *picture = play.job.assets.source_textures;
         if (!result && !plain) texture_show(lab, picture);
         for (int i = 0; i < SHOTS && !result; i++) {
             result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);

@@ -46,7 +46,7 @@ static const Figure figures[FIGURES] = {
      "fig1.yaml",
      "sheets.0.grid.cells=[30, 42]",
      "sheets.0.grid.cells=[20, 28]",
-     {"sheets.0.material.mass_rate={from: 0.1e-3, to: 2e-3, picture: rate.png}", "sheets.0.material.diffusivity=2e-5",
+     {"sheets.0.material.mass_rate={from: 0.1e-3, to: 2e-3, texture: rate.png}", "sheets.0.material.diffusivity=2e-5",
       ""},
      {0.08, 0.2, 0.35},
      {2, 3.4}},

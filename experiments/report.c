@@ -203,10 +203,10 @@ void report_picture(Report *report, const char *caption, int width, int height, 
 void report_plot(Report *report, const Plot *plot) { plot_draw(plot, body(report, BLOCK_NONE)); }
 FILE *report_drawing(Report *report) { return body(report, BLOCK_NONE); }
 
-static void print_bar(FILE *file, double low, double high, const char *least, const char *most, const char *between) {
+static void print_bar(FILE *file, double low, double high, const char *min, const char *max, const char *between) {
     if (isfinite(low) && isfinite(high)) fprintf(file, between, low, high);
-    else if (isfinite(low)) fprintf(file, least, low);
-    else fprintf(file, most, high);
+    else if (isfinite(low)) fprintf(file, min, low);
+    else fprintf(file, max, high);
 }
 
 static void measure_json(Report *report, const ReportBar *bar, bool holds) {

@@ -5,12 +5,12 @@
 #include "experiments/lab.h"
 
 /// As it lies on the sheet, into the report.
-void texture_show(Lab *lab, const SingePicture *picture);
+void texture_show(Lab *lab, const SingeTexture *picture);
 
 /// The mean of its values.
-double texture_mean(const SingePicture *picture);
+double texture_mean(const SingeTexture *picture);
 
 /// Correlation of the texture, or of its mirror image, with a field of the vertices.
-double texture_correlation(const SingeView *view, const SingePicture *picture, bool mirrored, const float *field);
+double texture_correlation(const SingeView *view, const SingeTexture *picture, bool mirrored, const float *field);
 
 #endif

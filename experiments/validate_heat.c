@@ -64,11 +64,11 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
     }
     if (result) return result;
     report_heads(lab->report, "cells mm|error|order|step ms|error|order");
-    double order[2][CASES] = {{NAN, NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}}, least[2] = {INFINITY, INFINITY};
+    double order[2][CASES] = {{NAN, NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}}, min[2] = {INFINITY, INFINITY};
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 2 && i > 0; k++) {
             order[k][i] = log2(off[k][i - 1] / off[k][i]);
-            least[k] = fmin(least[k], order[k][i]);
+            min[k] = fmin(min[k], order[k][i]);
         }
         report_row(lab->report, "%.2f|%.2e|%.2f|%.0f|%.2e|%.2f", size[0][i], off[0][i], order[0][i], size[1][i],
                    off[1][i],                   order[1][i]);
@@ -81,9 +81,9 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
     plot_add(&plot, (PlotLine){"second order", "#999", size[0], second, count, false, true});
     plot_add(&plot, (PlotLine){"surface", "#2166ac", size[0], off[0], count, true, false});
     report_plot(lab->report, &plot);
-    report_measure(lab->report, "order_space", "least order in the cells, steps going with their square", least[0], 1.9,
+    report_measure(lab->report, "order_space", "least order in the cells, steps going with their square", min[0], 1.9,
                    2.2);
-    report_measure(lab->report, "order_time", "least order in the time step, on cells of 1.25 mm", least[1], 0.9, 1.2);
+    report_measure(lab->report, "order_time", "least order in the time step, on cells of 1.25 mm", min[1], 0.9, 1.2);
     report_measure(lab->report, "error", "error on the finest cells", off[0][count - 1], 0, 5e-3);
     return SINGE_OK;
 }

@@ -166,9 +166,9 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;
-    const float way = (float)(0.02 * length);
+    const float displacement = (float)(0.02 * length);
     const SingePoseKey path[2] = {{0, {0, 0, 0}, {0, 0, 0, 1}},
-                                  {0.5f, {shear ? 0 : way, shear ? way : 0, 0}, {0, 0, 0, 1}}};
+                                  {0.5f, {shear ? 0 : displacement, shear ? displacement : 0, 0}, {0, 0, 0, 1}}};
     const double left[2][2] = {{0, 0}, {cell, width}}, right[2][2] = {{length - cell, 0}, {length, width}};
     result = hold(sim, left[0], left[1], cell, 0, NULL, error);
     if (!result) result = hold(sim, right[0], right[1], cell, 2, path, error);

@@ -29,7 +29,7 @@ struct Walk {
     SingeError *error;
     Visit *visit;
     MeshCounts counts;  ///< so far
-    uint64_t most;      ///< bytes of the answer
+    uint64_t max;      ///< bytes of the answer
     int depth;
     IsolateAnswer *answer;
     size_t held;        ///< bytes of `buffer` in use
@@ -99,10 +99,10 @@ static SingeResult count_mesh(Walk *walk, const struct aiMesh *mesh, const struc
     }
     counts->vertices += mesh->mNumVertices;
     counts->uv = counts->uv || mesh->mTextureCoords[0];
-    if (12 * counts->vertices + 12 * counts->corners > walk->most)
+    if (12 * counts->vertices + 12 * counts->corners > walk->max)
         return refuse(walk->error, SINGE_ERROR_LIMIT, "mesh", -1,
                       "%s: too large: its nodes use meshes over and over, and come to more than %llu MB",
-                      short_name(walk->name), (unsigned long long)walk->most / 1000000);
+                      short_name(walk->name), (unsigned long long)walk->max / 1000000);
     return SINGE_OK;
 }
 
@@ -180,10 +180,10 @@ static void note_complaint(const char *message, char *bad_index) {
 }
 
 /// assimp's words without what it quotes: the file may not be one that whoever sees the message may read.
-static void unquote(char *to, size_t most, const char *words) {
+static void unquote(char *to, size_t max, const char *words) {
     size_t length = 0;
     bool quoted = false;
-    for (; *words && length + 4 < most; words++) {
+    for (; *words && length + 4 < max; words++) {
         if (*words == '"' && !quoted) memcpy(to + length, "...", 3), length += 3;
         if (*words == '"') quoted = !quoted;
         else if (!quoted && (unsigned char)*words >= ' ') to[length++] = *words;
@@ -211,7 +211,7 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
     Walk walk = {.scene = scene, .name = source->name, .error = error, .answer = answer,
-                 .most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
+                 .max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
     return put_scene(&walk);
 }
 

@@ -17,8 +17,8 @@ typedef struct Opened {
 static size_t opened_read(struct aiFile *file, char *to, size_t size, size_t count) {
     Opened *opened = (void *)file->UserData;
     if (!size) return 0;
-    size_t most = (opened->size - opened->at) / size;
-    if (count > most) count = most;
+    size_t max = (opened->size - opened->at) / size;
+    if (count > max) count = max;
     if (count) memcpy(to, opened->bytes + opened->at, size * count);
     opened->at += size * count;
     return count;

@@ -48,16 +48,16 @@ static SingeResult read_bytes(int file, const char *path, Bytes *bytes, SingeErr
     return SINGE_OK;
 }
 
-static SingeResult read_open(int file, const char *path, size_t most, SingeAllocator allocator, Bytes *bytes,
+static SingeResult read_open(int file, const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
                              SingeError *error) {
     struct stat about;
     if (fstat(file, &about)) return refuse_system(error, "read", path, errno);
     if (S_ISDIR(about.st_mode)) return refuse_system(error, "read", path, EISDIR);
     if (!S_ISREG(about.st_mode))
         return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot read: not a regular file", short_name(path));
-    if (about.st_size > (off_t)most)
+    if (about.st_size > (off_t)max)
         return refuse(error, SINGE_ERROR_LIMIT, "file", -1, "%s: larger than %zu MiB", short_name(path),
-                      (most + 1) >> 20);
+                      (max + 1) >> 20);
     bytes->size = (size_t)about.st_size;
     bytes->allocator = allocator;
     bytes->data = store_new(allocator, bytes->size + 1, 1);
@@ -66,15 +66,15 @@ static SingeResult read_open(int file, const char *path, size_t most, SingeAlloc
 }
 
 SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
-    return file_read_most(path, FILE_LIMIT, allocator, bytes, error);
+    return file_read_max(path, FILE_LIMIT, allocator, bytes, error);
 }
 
-SingeResult file_read_most(const char *path, size_t most, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
+SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes, SingeError *error) {
     memset(bytes, 0, sizeof *bytes);
     // without O_NONBLOCK a named pipe would wait here for its writer
     int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return refuse_system(error, "read", path, errno);
-    SingeResult result = read_open(file, path, most, allocator, bytes, error);
+    SingeResult result = read_open(file, path, max, allocator, bytes, error);
     close(file);
     if (result) bytes_free(bytes);
     return result;
@@ -134,7 +134,7 @@ static SingeResult check_target(const char *path, SingeError *error) {
     return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file", short_name(path));
 }
 
-static int put_in_place(const char *temporary, const char *target) {
+static int put_in_location(const char *temporary, const char *target) {
     if (rename(temporary, target)) return errno;
     flush_folder(target);
     return 0;
@@ -149,7 +149,7 @@ SingeResult file_write(const char *path, const void *data, size_t size, SingeErr
     if (!reason) {
         reason = write_bytes(file, data, size);
         if (close(file) && !reason) reason = errno;
-        if (!reason) reason = put_in_place(temporary, path);
+        if (!reason) reason = put_in_location(temporary, path);
         if (reason) unlink(temporary);
     }
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
@@ -176,7 +176,7 @@ SingeResult file_publish(char *draft, const char *path, SingeError *error) {
     int file = open(draft, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
     if (file >= 0) close(file);
-    if (!reason) reason = put_in_place(draft, path);
+    if (!reason) reason = put_in_location(draft, path);
     if (reason) {
         file_discard(draft);
         return refuse_system(error, "write", path, reason);

@@ -17,7 +17,7 @@ typedef struct Bytes {
 /// directory, unreadable), SINGE_ERROR_LIMIT above 2 GiB.
 SINGE_NODISCARD SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error);
 /// The same of a file that has at most so many bytes; SINGE_ERROR_LIMIT where it is larger, before it is read.
-SINGE_NODISCARD SingeResult file_read_most(const char *path, size_t most, SingeAllocator allocator, Bytes *bytes,
+SINGE_NODISCARD SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
                                            SingeError *error);
 void bytes_free(Bytes *bytes);
 
@@ -102,7 +102,7 @@ SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells
 /// What keeps a grid from being perfect.
 typedef struct GridWear {
     float jitter;  ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3
-    float relief;  ///< m, root mean square height of the waves in which the sheet lies, >= 0
+    float displacement;  ///< m, root mean square height of the waves in which the sheet lies, >= 0
     uint32_t seed;
 } GridWear;
 
@@ -142,9 +142,9 @@ bool exr_available(void);
 /// Writes an EXR file of one part, whole or not at all. Names of channels must differ.
 SINGE_NODISCARD SingeResult exr_write(const char *path, int width, int height, const ExrChannel *channels, int count,
                                       SingeError *error);
-/// Luminance (Rec. 709 weights of the encoded values, 0 to 1) as the SingePicture of a parameter; values are allocated
+/// Luminance (Rec. 709 weights of the encoded values, 0 to 1) as the SingeTexture of a parameter; values are allocated
 /// with `allocator`, [width * height].
-SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingePicture *picture,
+SINGE_NODISCARD SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeTexture *picture,
                                             SingeError *error);
 
 // ---- the cache: one binary PLY per frame (docs/formats.md)

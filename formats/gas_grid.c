@@ -5,10 +5,10 @@
 #include <string.h>
 
 bool gas_shape_is_good(const SingeGas *gas) {
-    const uint32_t most = 4096; // one node under a VDB tree's root
+    const uint32_t max = 4096; // one node under a VDB tree's root
     const uint32_t *n = gas->size;
     if (!n[0] && !n[1] && !n[2]) return true;
-    bool good = n[0] && n[1] && n[2] && n[0] <= most && n[1] <= most && n[2] <= most &&
+    bool good = n[0] && n[1] && n[2] && n[0] <= max && n[1] <= max && n[2] <= max &&
                 (uint64_t)n[0] * n[1] * n[2] <= GAS_CELL_LIMIT && gas->cell > 0 && isfinite(gas->cell);
     for (int c = 0; c < 3; c++) good = good && isfinite(gas->origin[c]);
     return good;
@@ -29,8 +29,8 @@ bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest
         for (uint32_t y = low[1]; y < high[1]; y++)
             for (uint32_t x = low[0]; x < high[0]; x++) {
                 size_t i = gas_index(gas, x, y, z);
-                if (gas->smoke[i] > GAS_SMOKE_LEAST || gas->flame[i] > GAS_FLAME_LEAST ||
-                    gas->temperature[i] - coolest > GAS_WARM_LEAST)
+                if (gas->smoke[i] > GAS_SMOKE_MIN || gas->flame[i] > GAS_FLAME_MIN ||
+                    gas->temperature[i] - coolest > GAS_WARM_MIN)
                     return true;
             }
     return false;

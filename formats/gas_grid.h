@@ -9,9 +9,9 @@
 enum { GAS_BLOCK = 8 }; ///< cells along a block's side: an OpenVDB leaf
 
 // what a cell holds when it is worth a look: less than this is not to be seen
-#define GAS_SMOKE_LEAST 1e-7f ///< kg/m3; at 8.7 m2/g half a metre of it hides 0.04 %
-#define GAS_FLAME_LEAST 100.0f ///< W/m3; flames have about 1e6
-#define GAS_WARM_LEAST 2.0f   ///< K above the coolest cell
+#define GAS_SMOKE_MIN 1e-7f ///< kg/m3; at 8.7 m2/g half a metre of it hides 0.04 %
+#define GAS_FLAME_MIN 100.0f ///< W/m3; flames have about 1e6
+#define GAS_WARM_MIN 2.0f   ///< K above the coolest cell
 
 /// The box of cells [low, high) of a block, cut to the gas.
 static inline void gas_block_box(const SingeGas *gas, const uint32_t block[3], uint32_t low[3], uint32_t high[3]) {

@@ -38,11 +38,11 @@ SingeResult gltf_index(const Gltf *gltf, int64_t object, const char *key, uint32
 }
 
 /// A member that counts, or `otherwise` without it. False where it does not count, or above `most`.
-static bool take_count(const Gltf *gltf, int64_t object, const char *key, uint64_t otherwise, uint64_t most,
+static bool take_count(const Gltf *gltf, int64_t object, const char *key, uint64_t otherwise, uint64_t max,
                        uint64_t *count) {
     int64_t value = json_member(&gltf->json, object, key);
     *count = otherwise;
-    return (value == JSON_NONE || json_count(&gltf->json, value, count)) && *count <= most;
+    return (value == JSON_NONE || json_count(&gltf->json, value, count)) && *count <= max;
 }
 
 static SingeResult list_items(Gltf *gltf, const char *key, uint32_t **items, uint32_t *count) {
@@ -110,7 +110,7 @@ static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, con
     if (!make_path(gltf, at, end, path) || !beside_is(gltf->name, path))
         return bad(gltf, "buffers", number, "what it refers to is no file in the folder or below");
     SingeError error = {0};
-    SingeResult result = file_read_most(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
+    SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
     if (result == SINGE_ERROR_MEMORY) return refuse_memory(gltf->error, "gltf", gltf->name);
     if (result == SINGE_ERROR_LIMIT) return bad(gltf, "buffers", number, "buffers have more than 1 GiB");
     return result ? bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
@@ -146,12 +146,12 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
 // ---- views and accessors
 
 /// A place in a view, from which `size` bytes are left.
-typedef struct Place {
+typedef struct Slice {
     const uint8_t *bytes;
     uint64_t size, stride; ///< 0: close together
-} Place;
+} Slice;
 
-static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Place *place) {
+static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Slice *slice) {
     int64_t view = gltf->views[number], extensions = json_member(&gltf->json, view, "extensions"), buffer;
     if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
         return bad(gltf, "bufferViews", number, "compressed data are not read");
@@ -162,9 +162,9 @@ static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Place
     TRY(load_buffer(gltf, (uint32_t)buffer, &bytes, &size));
     bool good = take_count(gltf, view, "byteOffset", 0, size, &begin);
     good = good && take_count(gltf, view, "byteLength", 0, size - begin, &length) && offset <= length;
-    if (!good || !take_count(gltf, view, "byteStride", 0, 252, &place->stride))
+    if (!good || !take_count(gltf, view, "byteStride", 0, 252, &slice->stride))
         return bad(gltf, "bufferViews", number, "it goes past the end of its buffer");
-    place->bytes = bytes + begin + offset, place->size = length - offset;
+    slice->bytes = bytes + begin + offset, slice->size = length - offset;
     return SINGE_OK;
 }
 
@@ -189,13 +189,13 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     if (view == JSON_NONE) return bad(gltf, "accessors", number, "it has no data, or compressed ones");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
         return bad(gltf, "accessors", number, "its byteOffset is no count");
-    Place place = {0};
-    TRY(find_view(gltf, (uint32_t)view, offset, &place));
-    uint64_t step = place.stride ? place.stride : size;
+    Slice slice = {0};
+    TRY(find_view(gltf, (uint32_t)view, offset, &slice));
+    uint64_t step = slice.stride ? slice.stride : size;
     if (step < size) return bad(gltf, "accessors", number, "its elements overlap");
-    if (count == 0 || place.size < size || (place.size - size) / step < count - 1)
+    if (count == 0 || slice.size < size || (slice.size - size) / step < count - 1)
         return bad(gltf, "accessors", number, "it has no elements, or goes past the end of its view");
-    *bytes = place.bytes, *stride = (uint32_t)step;
+    *bytes = slice.bytes, *stride = (uint32_t)step;
     return SINGE_OK;
 }
 
@@ -368,8 +368,8 @@ SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, Singe
     bool other = !result && is_for_assimp(&gltf.json);
     if (!result && !other) result = read_lists(&gltf);
     if (!result && !other) result = read_meshes(&gltf);
-    uint64_t most = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);
-    if (!result && !other) result = gltf_make(&gltf, most, polygons);
+    uint64_t max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)size + gltf.beside_size);
+    if (!result && !other) result = gltf_make(&gltf, max, polygons);
     free_all(&gltf);
     return other ? assimp_read(name, bytes, size, allocator, polygons, error) : result;
 }

@@ -55,6 +55,6 @@ SINGE_NODISCARD SingeResult gltf_index(const Gltf *gltf, int64_t object, const c
 uint32_t gltf_type_size(uint32_t type);
 
 /// Makes polygons of the file's scene.
-SINGE_NODISCARD SingeResult gltf_make(Gltf *gltf, uint64_t most, Polygons *polygons);
+SINGE_NODISCARD SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons);
 
 #endif

@@ -25,7 +25,7 @@ typedef struct Walk {
     Instance *instances;
     size_t count, capacity;
     uint8_t *seen; ///< [node_count]
-    uint64_t most, vertices, faces, corners, primitives;
+    uint64_t max, vertices, faces, corners, primitives;
     bool uv;
 } Walk;
 
@@ -97,10 +97,10 @@ static SingeResult count_primitive(Walk *walk, const GltfPrimitive *primitive) {
     walk->vertices += vertices, walk->faces += faces, walk->corners += 3 * faces;
     walk->uv = walk->uv || primitive->uv >= 0;
     walk->primitives++;
-    if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->most)
+    if (12 * walk->vertices + 12 * walk->corners + 100 * walk->primitives > walk->max)
         return gltf_refuse(gltf, SINGE_ERROR_LIMIT,
                            "too large: its nodes use meshes over and over, and come to more than %llu MB",
-                           (unsigned long long)walk->most / 1000000);
+                           (unsigned long long)walk->max / 1000000);
     return SINGE_OK;
 }
 
@@ -168,16 +168,16 @@ static uint32_t load_index(const uint8_t *p, uint32_t type) {
 
 static float load_value(const uint8_t *p, uint32_t type, bool normalized) {
     uint32_t bits = gltf_type_size(type) == 4 ? load_u32_little(p) : load_index(p, type < 5122 ? 5121 : 5123);
-    float value, most;
+    float value, max;
     switch (type) {
-    case 5120: value = (float)(int8_t)bits, most = 127; break;
-    case 5121: value = (float)bits, most = 255; break;
-    case 5122: value = (float)(int16_t)bits, most = 32767; break;
-    case 5123: value = (float)bits, most = 65535; break;
+    case 5120: value = (float)(int8_t)bits, max = 127; break;
+    case 5121: value = (float)bits, max = 255; break;
+    case 5122: value = (float)(int16_t)bits, max = 32767; break;
+    case 5123: value = (float)bits, max = 65535; break;
     case 5125: return (float)bits;
     default: memcpy(&value, &bits, sizeof value); return value;
     }
-    return normalized ? fmaxf(value / most, -1) : value;
+    return normalized ? fmaxf(value / max, -1) : value;
 }
 
 /// All elements of an accessor.
@@ -299,8 +299,8 @@ static SingeResult make_polygons(const Walk *walk, Polygons *polygons) {
     return result;
 }
 
-SingeResult gltf_make(Gltf *gltf, uint64_t most, Polygons *polygons) {
-    Walk walk = {.gltf = gltf, .most = most};
+SingeResult gltf_make(Gltf *gltf, uint64_t max, Polygons *polygons) {
+    Walk walk = {.gltf = gltf, .max = max};
     SingeResult result = walk_scene(&walk);
     if (!result) result = make_polygons(&walk, polygons);
     store_free(gltf->allocator, walk.seen, gltf->node_count, 1);

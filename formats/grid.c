@@ -35,7 +35,7 @@ static double grid_noise(double x, double y, double wavelength, uint32_t seed) {
 }
 
 void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear) {
-    if (!(wear->jitter > 0) && !(wear->relief > 0)) return;
+    if (!(wear->jitter > 0) && !(wear->displacement > 0)) return;
     const double jitter_wavelength = 3.7; // cells: neighbours move much alike, cells stay convex
     uint32_t row = cells_x + 1, last = mesh->vertex_count - 1;
     double size_x = (double)mesh->positions[3 * last] * 2, size_y = (double)mesh->positions[3 * last + 1] * 2;
@@ -51,7 +51,7 @@ void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWe
         uv[0] = (float)x, uv[1] = (float)y;
         position[0] = (float)((x - 0.5) * size_x), position[1] = (float)((y - 0.5) * size_y);
         double height = grid_noise((double)position[0], (double)position[1], wavelength, ~wear->seed);
-        position[2] = (float)((double)wear->relief * height);
+        position[2] = (float)((double)wear->displacement * height);
     }
 }
 

@@ -21,7 +21,7 @@ void image_free(Image *image) {
 
 // Luma of Rec. 709 on the encoded values, Y = (2126 R + 7152 G + 722 B) / (10000 * 255): whole numbers up to
 // the last division, so that white is 1 exactly.
-SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingePicture *picture, SingeError *error) {
+SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeTexture *picture, SingeError *error) {
     memset(picture, 0, sizeof *picture);
     size_t pixels = (size_t)image->width * (size_t)image->height;
     float *values = store_new(allocator, pixels, sizeof *values);
@@ -29,6 +29,6 @@ SingeResult image_luminance(const Image *image, SingeAllocator allocator, SingeP
     const uint8_t *p = image->rgb;
     for (size_t i = 0; i < pixels; i++, p += 3)
         values[i] = (float)(2126 * p[0] + 7152 * p[1] + 722 * p[2]) / 2550000.0f;
-    *picture = (SingePicture){image->width, image->height, values};
+    *picture = (SingeTexture){image->width, image->height, values};
     return SINGE_OK;
 }

@@ -101,11 +101,11 @@ static void silence(void) {
     if (nowhere > 2) close(nowhere);
 }
 
-static void limit(int resource, rlim_t most) {
+static void limit(int resource, rlim_t max) {
     struct rlimit now;
     if (getrlimit(resource, &now)) return;
-    if (now.rlim_max != RLIM_INFINITY && now.rlim_max < most) most = now.rlim_max;
-    now.rlim_cur = most;
+    if (now.rlim_max != RLIM_INFINITY && now.rlim_max < max) max = now.rlim_max;
+    now.rlim_cur = max;
     setrlimit(resource, &now);
 }
 

@@ -75,15 +75,15 @@ static SingeResult obj_number(Obj *obj, float *value) {
 }
 
 // Reads the numbers of a line, at least `least`, and keeps the first `kept`; `count` gets how many there were.
-static SingeResult obj_numbers(Obj *obj, int least, int most, int kept, float *values, const char *expected) {
+static SingeResult obj_numbers(Obj *obj, int min, int max, int kept, float *values, const char *expected) {
     int count = 0;
     for (obj_skip_blanks(obj); !obj_at_end(obj); obj_skip_blanks(obj), count++) {
         float value;
-        if (count == most) return obj_refuse(obj, SINGE_ERROR_FORMAT, expected);
+        if (count == max) return obj_refuse(obj, SINGE_ERROR_FORMAT, expected);
         TRY(obj_number(obj, &value));
         if (count < kept) values[count] = value;
     }
-    return count < least ? obj_refuse(obj, SINGE_ERROR_FORMAT, expected) : SINGE_OK;
+    return count < min ? obj_refuse(obj, SINGE_ERROR_FORMAT, expected) : SINGE_OK;
 }
 
 // v x y z [w | r g b [w]]

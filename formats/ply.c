@@ -40,8 +40,8 @@ static double ply_decode(PlyType type, uint64_t bits) {
 }
 
 static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
-    static const double least[] = {-128, 0, -32768, 0, -2147483648.0, 0};
-    static const double most[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
+    static const double min[] = {-128, 0, -32768, 0, -2147483648.0, 0};
+    static const double max[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0};
     Text *text = &ply->text;
     text_skip_blanks(text);
     const uint8_t *word = text->at, *end = text_word_end(text);
@@ -55,7 +55,7 @@ static SingeResult ply_text_value(Ply *ply, PlyType type, double *value) {
         text->at = word;
         status = number_integer(&text->at, end, &integer);
         *value = (double)integer;
-        if (status == NUMBER_OK && (*value < least[type] || *value > most[type])) status = NUMBER_RANGE;
+        if (status == NUMBER_OK && (*value < min[type] || *value > max[type])) status = NUMBER_RANGE;
     }
     if (status == NUMBER_OK && text->at == end) return SINGE_OK;
     text->at = word;

@@ -175,17 +175,17 @@ static SingeResult ply_check_counts(const Ply *ply) {
     uint64_t left = (uint64_t)(ply->text.end - ply->text.at) + (header->format == PLY_ASCII);
     for (size_t i = 0; i < header->element_count; i++) {
         const PlyElement *element = &header->elements[i];
-        uint64_t least = 0;
+        uint64_t min = 0;
         for (size_t k = 0; k < element->property_count; k++) {
             const PlyProperty *property = &header->properties[element->first_property + k];
-            if (header->format == PLY_ASCII) least += 2; // a digit and what parts it from the next
-            else least += ply_type_size(property->is_list ? property->count_type : property->type);
+            if (header->format == PLY_ASCII) min += 2; // a digit and what parts it from the next
+            else min += ply_type_size(property->is_list ? property->count_type : property->type);
         }
         // the product is below 2^31 * 8000
-        if (least * element->count > left)
+        if (min * element->count > left)
             return ply_refuse(ply, SINGE_ERROR_FORMAT, "the file is too short for its %u elements of kind %zu",
                               element->count, i + 1);
-        left -= least * element->count;
+        left -= min * element->count;
     }
     return SINGE_OK;
 }

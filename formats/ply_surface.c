@@ -102,14 +102,14 @@ SingeResult ply_write_surface(const char *path, const SingeSurface *surface, dou
         return refuse(error, SINGE_ERROR_ARGUMENT, "cache", -1, "%s: the time is not finite", short_name(path));
     if (surface->vertex_count > MESH_COUNT_LIMIT || surface->triangle_count > MESH_COUNT_LIMIT)
         return refuse(error, SINGE_ERROR_LIMIT, "cache", -1, "%s: too many vertices or triangles", short_name(path));
-    uint64_t most = HEADER_LIMIT + surface_data_size(surface);
-    if (most > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
-    uint8_t *bytes = store_new(surface->allocator, (size_t)most, 1);
+    uint64_t max = HEADER_LIMIT + surface_data_size(surface);
+    if (max > SIZE_MAX / 2) return refuse_memory(error, "cache", path);
+    uint8_t *bytes = store_new(surface->allocator, (size_t)max, 1);
     if (!bytes) return refuse_memory(error, "cache", path);
     size_t header = surface_header((char *)bytes, surface, time);
     const uint8_t *end = surface_pack(bytes + header, surface);
     SingeResult result = file_write(path, bytes, (size_t)(end - bytes), error);
-    store_free(surface->allocator, bytes, (size_t)most, 1);
+    store_free(surface->allocator, bytes, (size_t)max, 1);
     return result;
 }
 

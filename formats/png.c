@@ -53,7 +53,7 @@ static png_voidp png_take(png_structp png, png_alloc_size_t size) {
     return block + 1;
 }
 
-static void png_give(png_structp png, png_voidp memory) {
+static void png_supply(png_structp png, png_voidp memory) {
     PngJob *job = png_get_mem_ptr(png);
     PngBlock *block = memory;
     if (block) store_resize(job->allocator, block - 1, block[-1].size, 0);
@@ -113,7 +113,7 @@ static void png_pull_rows(PngJob *job) {
 
 static bool png_decode(PngJob *job) {
     if (setjmp(job->jump)) return false;
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_give);
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
     if (job->png) job->info = png_create_info_struct(job->png);
     if (!job->info) {
         job->out_of_memory = true;
@@ -178,7 +178,7 @@ static void png_flush_nothing(png_structp png) { (void)png; }
 
 static bool png_encode(PngJob *job) {
     if (setjmp(job->jump)) return false;
-    job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_give);
+    job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, png_fail, png_ignore, job, png_take, png_supply);
     if (job->png) job->info = png_create_info_struct(job->png);
     if (!job->info) {
         job->out_of_memory = true;

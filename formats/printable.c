@@ -77,7 +77,7 @@ Shown shown(const char *text) {
     Shown result;
     const char *end = text + strlen(text);
     size_t used = 0;
-    for (int i = 0; i < SHOWN_MOST && text < end; i++) used += printable_character(&text, end, result.text + used);
+    for (int i = 0; i < SHOWN_MAX && text < end; i++) used += printable_character(&text, end, result.text + used);
     strcpy(result.text + used, text < end ? "..." : "");
     return result;
 }
@@ -87,8 +87,8 @@ Shown shown_path(const char *path) {
     const char *end = path + strlen(path);
     size_t left = printable_count(path), used = 0;
     char piece[PRINTABLE_PIECE];
-    if (left > SHOWN_PATH_MOST) used = strlen(strcpy(result.text, "..."));
-    for (; left > SHOWN_PATH_MOST; left--) printable_character(&path, end, piece);
+    if (left > SHOWN_PATH_MAX) used = strlen(strcpy(result.text, "..."));
+    for (; left > SHOWN_PATH_MAX; left--) printable_character(&path, end, piece);
     while (path < end && used < sizeof result.text - PRINTABLE_PIECE)
         used += printable_character(&path, end, result.text + used);
     result.text[used] = 0;

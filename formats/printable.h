@@ -8,8 +8,8 @@
 #include <stdio.h>
 
 enum {
-    SHOWN_MOST = 80,      ///< characters of a word that a message repeats
-    SHOWN_PATH_MOST = 200, ///< of a path, its end
+    SHOWN_MAX = 80,      ///< characters of a word that a message repeats
+    SHOWN_PATH_MAX = 200, ///< of a path, its end
     PRINTABLE_PIECE = 12, ///< bytes that a character takes at most, with a zero
 };
 
@@ -33,9 +33,9 @@ typedef struct Shown {
     char text[1040];
 } Shown;
 
-/// At most SHOWN_MOST characters of a text, with "..." behind them where it is longer.
+/// At most SHOWN_MAX characters of a text, with "..." behind them where it is longer.
 Shown shown(const char *text);
-/// The last SHOWN_PATH_MOST characters of a path, with "..." before them where it is longer.
+/// The last SHOWN_PATH_MAX characters of a path, with "..." before them where it is longer.
 Shown shown_path(const char *path);
 
 /// The end of a zero-terminated text whose last character was cut: that character goes.

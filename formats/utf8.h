@@ -7,7 +7,7 @@
 
 /// Bytes of the character that begins at `text`, which ends with a zero; 0 where the bytes are no UTF-8.
 static inline int utf8_length(const char *text) {
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
     const unsigned char *c = (const unsigned char *)text;
     int length = *c < 0x80 ? 1 : *c < 0xc0 ? 0 : *c < 0xe0 ? 2 : *c < 0xf0 ? 3 : *c < 0xf8 ? 4 : 0;
     if (length <= 1) return length;
@@ -17,7 +17,7 @@ static inline int utf8_length(const char *text) {
         code = code << 6 | (c[i] & 0x3fu);
     }
     bool surrogate = code >= 0xd800 && code < 0xe000;
-    return code < least[length] || code > 0x10ffff || surrogate ? 0 : length;
+    return code < min[length] || code > 0x10ffff || surrogate ? 0 : length;
 }
 
 #endif

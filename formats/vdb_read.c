@@ -108,13 +108,13 @@ static SingeResult read_head(Reader *r) {
 
 static SingeResult read_map(Reader *r, bool first) {
     if (!is(get_string(r), VDB_MAP)) return bad(r, "another map than " VDB_MAP);
-    double place[3], scale[3];
-    for (int c = 0; c < 3; c++) place[c] = get_double(r);
+    double position[3], scale[3];
+    for (int c = 0; c < 3; c++) position[c] = get_double(r);
     for (int c = 0; c < 3; c++) scale[c] = get_double(r);
     if (!take(r, 12 * 8)) return bad(r, "the map is cut off");
     SingeGas map = r->gas->view;
     map.cell = (float)scale[0];
-    for (int c = 0; c < 3; c++) map.origin[c] = (float)(place[c] - 0.5 * scale[0]);
+    for (int c = 0; c < 3; c++) map.origin[c] = (float)(position[c] - 0.5 * scale[0]);
     if (!gas_shape_is_good(&map) || scale[1] != scale[0] || scale[2] != scale[0]) return bad(r, "a bad map");
     if (first) r->gas->view = map;
     else if (memcmp(map.origin, r->gas->view.origin, sizeof map.origin) != 0 || map.cell != r->gas->view.cell)
@@ -189,7 +189,7 @@ static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
 }
 
 /// A place in the file; NULL outside of it.
-static const uint8_t *place(const Reader *r, uint64_t offset) {
+static const uint8_t *position(const Reader *r, uint64_t offset) {
     return offset <= (uint64_t)(r->end - r->begin) ? r->begin + offset : NULL;
 }
 
@@ -198,9 +198,9 @@ static SingeResult read_grid(Reader *r, VdbField field) {
         !is(get_string(r), ""))
         return bad(r, "other grids than those of Singe");
     Reader body = *r, buffers = *r;
-    body.at = place(r, get_u64(r));
-    buffers.at = place(r, get_u64(r));
-    const uint8_t *end = place(r, get_u64(r));
+    body.at = position(r, get_u64(r));
+    buffers.at = position(r, get_u64(r));
+    const uint8_t *end = position(r, get_u64(r));
     if (!body.at || !buffers.at || !end || end < r->at) return bad(r, "a grid lies outside of the file");
     r->at = end;
     if (get_u32(&body) != VDB_ACTIVE_VALUES) return bad(&body, "another compression than by active values");

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HEADER_MOST = 2048, GRID_MOST = 2048, NODE_SIDE = 1 << VDB_LOWER_LOG };
+enum { HEADER_MAX = 2048, GRID_MAX = 2048, NODE_SIDE = 1 << VDB_LOWER_LOG };
 
 /// Blocks that are leaves, in the order of the tree; those of a node follow each other.
 typedef struct Leaf {
@@ -203,7 +203,7 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
     put_string(w, name);
     put_string(w, vdb_fields[field].type);
     put_string(w, parent);
-    uint8_t *places = w->at;
+    uint8_t *locations = w->at;
     w->at += 24;
     uint64_t body = (uint64_t)(w->at - w->begin);
     put_u32(w, VDB_ACTIVE_VALUES);
@@ -213,7 +213,7 @@ static void put_grid(Writer *w, const char *name, VdbField field, const char *pa
     uint64_t buffers = (uint64_t)(w->at - w->begin);
     if (!*parent) put_buffers(w, field);
     uint8_t *end = w->at;
-    w->at = places;
+    w->at = locations;
     put_u64(w, body);
     put_u64(w, buffers);
     put_u64(w, (uint64_t)(end - w->begin));
@@ -246,23 +246,23 @@ static void find_tree(Writer *w) {
 }
 
 /// Bytes that are enough for the whole file.
-static size_t size_most(const Writer *w) {
-    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, all = HEADER_MOST + GRID_MOST;
+static size_t size_max(const Writer *w) {
+    size_t leaf = 2 * VDB_LEAF_MASK + 1, cells = GAS_BLOCK * GAS_BLOCK * GAS_BLOCK, all = HEADER_MAX + GRID_MAX;
     for (int f = 0; f < VDB_FIELDS; f++)
-        all += GRID_MOST + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
+        all += GRID_MAX + 2 * VDB_UPPER_MASK + w->node_count * (2 * VDB_LOWER_MASK + 1) +
                w->leaf_count * (leaf + cells * vdb_fields[f].width * 4);
     return all;
 }
 
 static SingeResult write_file(Writer *w, const char *path, double time, SingeError *error) {
-    size_t most = size_most(w);
-    w->begin = w->at = store_new(w->gas->allocator, most, 1);
+    size_t max = size_max(w);
+    w->begin = w->at = store_new(w->gas->allocator, max, 1);
     if (!w->begin) return refuse_memory(error, "gas", path);
     put_header(w, time);
     for (int f = 0; f < VDB_FIELDS; f++) put_grid(w, vdb_fields[f].name, (VdbField)f, "");
     put_grid(w, "vel", VDB_VELOCITY, vdb_fields[VDB_VELOCITY].name);
     SingeResult result = file_write(path, w->begin, (size_t)(w->at - w->begin), error);
-    store_free(w->gas->allocator, w->begin, most, 1);
+    store_free(w->gas->allocator, w->begin, max, 1);
     return result;
 }
 

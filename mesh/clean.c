@@ -44,11 +44,11 @@ static SingeResult clean_face(Work *work, uint32_t face, Loops *loops, Faces *ou
     return SINGE_OK;
 }
 
-static uint32_t least_corner(const Faces *faces, uint32_t face) {
-    uint32_t least = MESH_NONE;
+static uint32_t min_corner(const Faces *faces, uint32_t face) {
+    uint32_t min = MESH_NONE;
     for (uint32_t h = faces->first[face]; h < faces->first[face + 1]; h++)
-        if (faces->corner[h] < least) least = faces->corner[h];
-    return least;
+        if (faces->corner[h] < min) min = faces->corner[h];
+    return min;
 }
 
 static bool has_corner(const Faces *faces, uint32_t face, uint32_t vertex) {
@@ -74,15 +74,15 @@ static uint32_t find_duplicates(Work *work, uint8_t *gone) {
     if (work->no_memory) return 0;
     memset(head, 0xff, work->vertex_count * sizeof *head);
     for (uint32_t f = 0; f < faces->count; f++) {
-        uint32_t least = least_corner(faces, f), g = head[least];
+        uint32_t min = min_corner(faces, f), g = head[min];
         while (g != MESH_NONE && !same_corners(faces, f, g)) g = next[g];
         if (g != MESH_NONE) {
             gone[f] = 1, found++;
             work_did(work, MESH_DUPLICATE, 1, work_face_name(work, faces->origin[f]));
             continue;
         }
-        next[f] = head[least];
-        head[least] = f;
+        next[f] = head[min];
+        head[min] = f;
     }
     return found;
 }

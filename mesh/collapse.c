@@ -15,7 +15,7 @@ typedef struct Short {
 
 typedef struct Shrink {
     Work *work;
-    double least;          ///< sides shorter than this
+    double min;          ///< sides shorter than this
     uint32_t *set, *stays; ///< [vertices] what becomes one; the vertex that stays, of a root
     uint8_t *open;         ///< [vertices] of a root: has a vertex on an open edge
     double (*low)[3], (*high)[3]; ///< [vertices] of a root
@@ -34,7 +34,7 @@ static int by_size(const void *a, const void *b) {
 
 static double side_length(const Work *work, uint32_t half) {
     const Faces *faces = &work->faces;
-    return distance3(work->place[faces->corner[half]], work->place[faces->corner[faces_next(faces, work->face, half)]]);
+    return distance3(work->position[faces->corner[half]], work->position[faces->corner[faces_next(faces, work->face, half)]]);
 }
 
 static double median_side(Work *work) {
@@ -46,12 +46,12 @@ static double median_side(Work *work) {
     return lengths[count / 2];
 }
 
-static Short *list_short(Work *work, double least, uint32_t *count) {
+static Short *list_short(Work *work, double min, uint32_t *count) {
     Short *list = work_new(work, work->faces.corner_count, sizeof *list);
     *count = 0;
     for (uint32_t h = 0; list && h < work->faces.corner_count; h++) {
         double length = side_length(work, h);
-        if (length < least) list[(*count)++] = (Short){length, h};
+        if (length < min) list[(*count)++] = (Short){length, h};
     }
     if (*count) qsort(list, *count, sizeof *list, by_length);
     return list;
@@ -70,7 +70,7 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
         high[k] = fmax(shrink->high[a][k], shrink->high[b][k]);
         size[k] = high[k] - low[k];
     }
-    if (sqrt(dot3(size, size)) > shrink->least) return false;
+    if (sqrt(dot3(size, size)) > shrink->min) return false;
     bool first = shrink->open[a] != shrink->open[b] ? shrink->open[a] : shrink->stays[a] < shrink->stays[b];
     uint32_t stays = first ? shrink->stays[a] : shrink->stays[b], root;
     uint8_t open = shrink->open[a] | shrink->open[b];
@@ -81,15 +81,15 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
     return true;
 }
 
-static Shrink shrink_begin(Work *work, double least) {
+static Shrink shrink_begin(Work *work, double min) {
     const uint32_t count = work->vertex_count;
-    Shrink shrink = {.work = work, .least = least, .set = work_sets(work, count), .stays = work_sets(work, count),
+    Shrink shrink = {.work = work, .min = min, .set = work_sets(work, count), .stays = work_sets(work, count),
                      .open = work_new(work, count, 1), .low = work_new(work, count, sizeof *shrink.low),
                      .high = work_new(work, count, sizeof *shrink.high)};
     if (work->no_memory) return shrink;
     work_mark_open(work, shrink.open);
-    memcpy(shrink.low, work->place, count * sizeof *shrink.low);
-    memcpy(shrink.high, work->place, count * sizeof *shrink.high);
+    memcpy(shrink.low, work->position, count * sizeof *shrink.low);
+    memcpy(shrink.high, work->position, count * sizeof *shrink.high);
     return shrink;
 }
 
@@ -104,9 +104,9 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         uint32_t v = faces->corner[h], to = faces_next(faces, work->face, h), g;
         if (!several[v]) continue;
-        double length = fmax(side_length(work, h), shrink->least), same = 0;
+        double length = fmax(side_length(work, h), shrink->min), same = 0;
         for (int k = 0; k < 2; k++) same = fmax(same, fabs((double)faces->uv[to][k] - (double)faces->uv[h][k]));
-        same *= 4 * shrink->least / length;
+        same *= 4 * shrink->min / length;
         for (g = head[v]; g != MESH_NONE; g = next[g])
             if (fabs((double)faces->uv[g][0] - (double)faces->uv[h][0]) <= same &&
                 fabs((double)faces->uv[g][1] - (double)faces->uv[h][1]) <= same)
@@ -119,11 +119,11 @@ static void join_uv(Shrink *shrink, const uint8_t *several) {
 SingeResult mesh_shrink(Work *work) {
     work_edges(work);
     if (work->no_memory || !(work->smallest > 0)) return SINGE_OK;
-    const double least = work->smallest * median_side(work);
+    const double min = work->smallest * median_side(work);
     uint32_t count = 0, joined = 0;
-    Short *list = list_short(work, least, &count);
+    Short *list = list_short(work, min, &count);
     if (work->no_memory || !count) return SINGE_OK;
-    Shrink shrink = shrink_begin(work, least);
+    Shrink shrink = shrink_begin(work, min);
     uint8_t *several = work_new(work, work->vertex_count, 1);
     uint32_t *to = work_new(work, work->vertex_count, sizeof *to);
     if (work->no_memory) return SINGE_OK;

@@ -14,18 +14,18 @@ typedef struct OnSide {
     uint32_t vertex;
 } OnSide;
 
-enum { ON_SIDE_MOST = 256 };
+enum { ON_SIDE_MAX = 256 };
 
 typedef struct Junctions {
     Work *work;
-    Places places;
+    Positions positions;
     uint32_t *open_first, *open_to; ///< open edges by their ends
     uint32_t face; ///< whose side is looked along
-    OnSide found[ON_SIDE_MOST + 2];
+    OnSide found[ON_SIDE_MAX + 2];
     int count;
 } Junctions;
 
-static int by_place(const void *a, const void *b) {
+static int by_position(const void *a, const void *b) {
     const OnSide *x = a, *y = b;
     return (x->t > y->t) - (x->t < y->t);
 }
@@ -34,18 +34,18 @@ static int by_place(const void *a, const void *b) {
 static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[3]) {
     const Work *work = j->work;
     double d[3], e[3];
-    sub3(work->place[b], work->place[a], d);
-    const double square = dot3(d, d), most = fmax(work->weld, beside * sqrt(square));
-    for (uint32_t v = j->places.head[places_slot(&j->places, box)]; v != MESH_NONE; v = j->places.next[v]) {
+    sub3(work->position[b], work->position[a], d);
+    const double square = dot3(d, d), max = fmax(work->weld, beside * sqrt(square));
+    for (uint32_t v = j->positions.head[positions_slot(&j->positions, box)]; v != MESH_NONE; v = j->positions.next[v]) {
         bool known = false; // also a corner that its own face has already
         for (uint32_t h = work->faces.first[j->face]; h < work->faces.first[j->face + 1]; h++)
             known = known || work->faces.corner[h] == v;
         for (int i = 0; i < j->count && !known; i++) known = j->found[i].vertex == v;
-        if (known || j->count == ON_SIDE_MOST) continue;
-        sub3(work->place[v], work->place[a], e);
+        if (known || j->count == ON_SIDE_MAX) continue;
+        sub3(work->position[v], work->position[a], e);
         double t = dot3(e, d) / square, off[3];
         for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
-        if (t * sqrt(square) <= most || (1 - t) * sqrt(square) <= most || dot3(off, off) > most * most) continue;
+        if (t * sqrt(square) <= max || (1 - t) * sqrt(square) <= max || dot3(off, off) > max * max) continue;
         j->found[j->count++] = (OnSide){t, v};
     }
 }
@@ -53,20 +53,20 @@ static void look_in_box(Junctions *j, uint32_t a, uint32_t b, const int64_t box[
 /// Finds what lies on a side, in its order.
 static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     const Work *work = j->work;
-    const double length = distance3(work->place[a], work->place[b]);
-    const int steps = (int)fmin(1e4, ceil(length / j->places.size));
+    const double length = distance3(work->position[a], work->position[b]);
+    const int steps = (int)fmin(1e4, ceil(length / j->positions.size));
     j->count = 0;
     for (int s = 0; s <= steps && length > 0; s++) {
         double at[3];
-        for (int k = 0; k < 3; k++) at[k] = work->place[a][k] + (work->place[b][k] - work->place[a][k]) * s / steps;
-        int64_t middle[3], box[3];
-        places_box(&j->places, at, middle);
+        for (int k = 0; k < 3; k++) at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
+        int64_t centroid[3], box[3];
+        positions_box(&j->positions, at, centroid);
         for (int i = 0; i < 27; i++) {
-            box[0] = middle[0] + i % 3 - 1, box[1] = middle[1] + i / 3 % 3 - 1, box[2] = middle[2] + i / 9 - 1;
+            box[0] = centroid[0] + i % 3 - 1, box[1] = centroid[1] + i / 3 % 3 - 1, box[2] = centroid[2] + i / 9 - 1;
             look_in_box(j, a, b, box);
         }
     }
-    qsort(j->found, (size_t)j->count, sizeof *j->found, by_place);
+    qsort(j->found, (size_t)j->count, sizeof *j->found, by_position);
 }
 
 static bool open_edge(const Junctions *j, uint32_t a, uint32_t b) {
@@ -106,17 +106,17 @@ static bool list_open(Junctions *j) {
                 continue;
             }
             j->open_first[a + 2]++, j->open_first[b + 2]++;
-            total += distance3(work->place[a], work->place[b]);
+            total += distance3(work->position[a], work->position[b]);
             count++;
         }
         for (uint32_t v = 0; !fill && v < work->vertex_count; v++) j->open_first[v + 2] += j->open_first[v + 1];
     }
     if (!count) return false;
     work_mark_open(work, open);
-    j->places = places_make(work, fmax(total / count, 1e-12));
+    j->positions = positions_make(work, fmax(total / count, 1e-12));
     if (work->no_memory) return false;
     for (uint32_t v = 0; v < work->vertex_count; v++)
-        if (open[v]) places_add(work, &j->places, v);
+        if (open[v]) positions_add(work, &j->positions, v);
     return true;
 }
 

@@ -9,18 +9,18 @@
 static const double beside = 1e-5;
 
 static uint32_t vertex_of(const Loops *loops, uint32_t half) { return loops->cut.faces->corner[half]; }
-static const double *place_of(const Loops *loops, uint32_t half) {
-    return loops->cut.work->place[vertex_of(loops, half)];
+static const double *position_of(const Loops *loops, uint32_t half) {
+    return loops->cut.work->position[vertex_of(loops, half)];
 }
 
 bool loops_begin(Loops *loops, Work *work, const Faces *faces) {
     if (!polygon_begin(&loops->cut, work, faces)) return false;
-    const uint32_t most = loops->cut.capacity;
-    loops->ring = work_new(work, most, sizeof *loops->ring);
-    loops->stack = work_new(work, most, sizeof *loops->stack);
-    loops->corner = work_new(work, 2 * (size_t)most, sizeof *loops->corner);
-    loops->end = work_new(work, (size_t)most + 1, sizeof *loops->end);
-    loops->triangles = work_new(work, (size_t)most + 1, sizeof *loops->triangles);
+    const uint32_t max = loops->cut.capacity;
+    loops->ring = work_new(work, max, sizeof *loops->ring);
+    loops->stack = work_new(work, max, sizeof *loops->stack);
+    loops->corner = work_new(work, 2 * (size_t)max, sizeof *loops->corner);
+    loops->end = work_new(work, (size_t)max + 1, sizeof *loops->end);
+    loops->triangles = work_new(work, (size_t)max + 1, sizeof *loops->triangles);
     return !work->no_memory;
 }
 
@@ -30,7 +30,7 @@ bool loops_begin(Loops *loops, Work *work, const Faces *faces) {
 static bool turns_back(const Loops *loops, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3], n[3];
     if (vertex_of(loops, a) == vertex_of(loops, c) || vertex_of(loops, a) == vertex_of(loops, b)) return true;
-    sub3(place_of(loops, a), place_of(loops, b), p), sub3(place_of(loops, c), place_of(loops, b), q);
+    sub3(position_of(loops, a), position_of(loops, b), p), sub3(position_of(loops, c), position_of(loops, b), q);
     cross3(p, q, n);
     return dot3(p, q) > 0 && dot3(n, n) <= FACE_THIN * FACE_THIN * dot3(p, p) * dot3(q, q);
 }
@@ -66,12 +66,12 @@ static bool has_repeats(const Loops *loops, const uint32_t *ring, uint32_t n) {
 static uint32_t corner_on(const Loops *loops, uint32_t n, uint32_t a, uint32_t b) {
     double d[3], nearest = 1;
     uint32_t found = MESH_NONE;
-    sub3(place_of(loops, b), place_of(loops, a), d);
+    sub3(position_of(loops, b), position_of(loops, a), d);
     const double square = dot3(d, d);
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t half = loops->ring[i];
         double e[3], off[3];
-        sub3(place_of(loops, half), place_of(loops, a), e);
+        sub3(position_of(loops, half), position_of(loops, a), e);
         double t = dot3(e, d) / square;
         if (!(t > beside && t < 1 - beside && t < nearest)) continue;
         for (int k = 0; k < 3; k++) off[k] = e[k] - t * d[k];
@@ -115,14 +115,14 @@ static void fall_apart(Loops *loops, uint32_t n, bool all) {
     double normal[3];
     polygon_normal(&loops->cut, loops->ring, n, normal);
     double left = dot3(normal, normal);
-    const double least = 1e-9 * left;
+    const double min = 1e-9 * left;
     uint32_t depth = 0;
     loops->count = loops->end[0] = 0;
     for (uint32_t i = 0; i < n; i++) {
         for (uint32_t at = depth; at-- > 0;) {
             if (vertex_of(loops, loops->stack[at]) != vertex_of(loops, loops->ring[i])) continue;
             double area = area_along(loops, loops->stack + at, depth - at, normal);
-            if (!all && fabs(area) > least && !(area > 0 && left - area > least)) continue;
+            if (!all && fabs(area) > min && !(area > 0 && left - area > min)) continue;
             end_loop(loops, loops->stack + at, depth - at);
             left -= area;
             depth = at;
@@ -147,9 +147,9 @@ bool loops_is_flat(const Loops *loops, const uint32_t *ring, uint32_t n) {
     double longest = 0, area = 0;
     for (uint32_t i = 0; i < n; i++) {
         double p[3], q[3], m[3];
-        const double *a = place_of(loops, ring[i]), *b = place_of(loops, ring[(i + 1) % n]);
+        const double *a = position_of(loops, ring[i]), *b = position_of(loops, ring[(i + 1) % n]);
         longest = fmax(longest, distance3(a, b));
-        sub3(a, place_of(loops, ring[0]), p), sub3(b, place_of(loops, ring[0]), q);
+        sub3(a, position_of(loops, ring[0]), p), sub3(b, position_of(loops, ring[0]), q);
         cross3(p, q, m);
         area += sqrt(dot3(m, m));
     }

@@ -8,7 +8,7 @@
 
 MeshOptions mesh_default_options(void) { return (MeshOptions){.quads = MESH_QUADS_PAIR, .smallest = MESH_SMALLEST}; }
 
-enum { FACE_CORNERS_MOST = 4096 };
+enum { FACE_CORNERS_MAX = 4096 };
 
 // ---- in
 
@@ -35,12 +35,12 @@ static void take_vertices(Work *work) {
     const uint32_t count = file->vertex_count;
     const size_t attributes = work->attribute_count = file->attribute_count;
     work->vertex_capacity = work->vertex_count = count;
-    work->place = work_new(work, count, sizeof *work->place);
+    work->position = work_new(work, count, sizeof *work->position);
     work->source = work_new(work, count, sizeof *work->source);
     work->became = work_sets(work, count);
     work->attributes = work_new(work, count * attributes, sizeof *work->attributes);
     for (uint32_t v = 0; v < count && !work->no_memory; v++) {
-        for (size_t k = 0; k < 3; k++) work->place[v][k] = (double)file->positions[3 * (size_t)v + k];
+        for (size_t k = 0; k < 3; k++) work->position[v][k] = (double)file->positions[3 * (size_t)v + k];
         for (size_t k = 0; k < attributes; k++) work->attributes[v * attributes + k] = file->attributes[k].values[v];
         work->source[v] = (int32_t)v;
     }
@@ -51,7 +51,7 @@ static double size_of(const Work *work) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t h = 0; h < work->faces.corner_count; h++)
         for (int k = 0; k < 3; k++) {
-            double x = work->place[work->faces.corner[h]][k];
+            double x = work->position[work->faces.corner[h]][k];
             low[k] = fmin(low[k], x), high[k] = fmax(high[k], x);
         }
     return distance3(low, high);
@@ -67,7 +67,7 @@ static SingeResult check_values(const Work *work) {
                           "%s: vertex %llu (from 0) has a position that is not finite", short_name(work->name),
                           (unsigned long long)(i / 3));
     for (uint32_t f = 0; f < file->face_count; f++)
-        if (file->first[f + 1] - file->first[f] > FACE_CORNERS_MOST)
+        if (file->first[f + 1] - file->first[f] > FACE_CORNERS_MAX)
             return work_refuse(work, f, "has more than 4096 corners");
     for (uint32_t i = 0; i < file->corner_count; i++)
         if (file->corners[i] >= file->vertex_count)
@@ -96,7 +96,7 @@ static void count_unused(Work *work) {
         if (!used[v]) work_did(work, MESH_UNUSED, 1, v);
 }
 
-static bool give_attributes(const Work *work, const uint32_t *number, Mesh *mesh) {
+static bool hand_over_attributes(const Work *work, const uint32_t *number, Mesh *mesh) {
     const Polygons *file = work->file;
     if (!work->attribute_count) return true;
     mesh->attributes = store_new(mesh->allocator, work->attribute_count, sizeof *mesh->attributes);
@@ -119,7 +119,7 @@ static bool give_attributes(const Work *work, const uint32_t *number, Mesh *mesh
 }
 
 /// uv of the vertices, the first that a corner has; and of corners, where some vertex has several.
-static void give_uv(Work *work, const uint32_t *number, Mesh *mesh, uint8_t *has) {
+static void hand_over_uv(Work *work, const uint32_t *number, Mesh *mesh, uint8_t *has) {
     const Faces *faces = &work->faces;
     for (uint32_t h = 0; h < faces->corner_count; h++) {
         uint32_t v = number[faces->corner[h]];
@@ -133,7 +133,7 @@ static void give_uv(Work *work, const uint32_t *number, Mesh *mesh, uint8_t *has
     memcpy(mesh->corner_source, faces->id, faces->corner_count * sizeof *faces->id);
 }
 
-static bool give_arrays(Work *work, Mesh *mesh) {
+static bool hand_over_arrays(Work *work, Mesh *mesh) {
     SingeAllocator a = mesh->allocator;
     const size_t vertices = mesh->vertex_count, cells = mesh->cell_count;
     mesh->positions = store_new(a, vertices, 3 * sizeof *mesh->positions);
@@ -150,16 +150,16 @@ static bool give_arrays(Work *work, Mesh *mesh) {
     return good && mesh->uv && mesh->corner_uv && mesh->corner_source;
 }
 
-static bool give(Work *work, Mesh *mesh) {
+static bool hand_over(Work *work, Mesh *mesh) {
     const Faces *faces = &work->faces;
     uint32_t *number = number_vertices(work, &mesh->vertex_count);
     mesh->cell_count = faces->count;
     mesh->source_count = work->file->vertex_count;
     uint8_t *has = work_new(work, mesh->vertex_count, 1);
-    if (work->no_memory || !give_arrays(work, mesh) || !give_attributes(work, number, mesh)) return false;
+    if (work->no_memory || !hand_over_arrays(work, mesh) || !hand_over_attributes(work, number, mesh)) return false;
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         if (number[v] == MESH_NONE) continue;
-        for (size_t k = 0; k < 3; k++) mesh->positions[3 * (size_t)number[v] + k] = (float)work->place[v][k];
+        for (size_t k = 0; k < 3; k++) mesh->positions[3 * (size_t)number[v] + k] = (float)work->position[v][k];
         mesh->source[number[v]] = work->source[v];
     }
     for (uint32_t v = 0; v < mesh->source_count; v++) mesh->became[v] = number[work->became[v]];
@@ -167,7 +167,7 @@ static bool give(Work *work, Mesh *mesh) {
     memcpy(mesh->cell_faces, faces->origin, faces->count * sizeof *mesh->cell_faces);
     for (uint32_t c = 0; c < faces->count && mesh->cell_lines; c++)
         mesh->cell_lines[c] = work->file->lines[faces->origin[c]];
-    if (mesh->uv) give_uv(work, number, mesh, has);
+    if (mesh->uv) hand_over_uv(work, number, mesh, has);
     return true;
 }
 
@@ -224,7 +224,7 @@ static uint32_t unsound_quad(const Work *work) {
         for (int i = 0; i < 4; i++) {
             for (int k = 0; k < i; k++)
                 if (at[i] == at[k]) return f;
-            double length = distance3(work->place[at[i]], work->place[at[(i + 1) & 3]]);
+            double length = distance3(work->position[at[i]], work->position[at[(i + 1) & 3]]);
             longest = fmax(longest, length), shortest = fmin(shortest, length);
         }
         face_area(work, f, normal);
@@ -287,7 +287,7 @@ SingeResult mesh_make(const char *name, const Polygons *polygons, const MeshOpti
         work = (Work){.name = name, .file = polygons, .report = work.report, .error = error};
         result = run_steps(&work, &kept);
     }
-    if (!result && (work.no_memory || !give(&work, mesh))) result = refuse_memory(error, "mesh", name);
+    if (!result && (work.no_memory || !hand_over(&work, mesh))) result = refuse_memory(error, "mesh", name);
     if (!result) simplify(&work, mesh);
     work_free(&work);
     if (result) mesh_free(mesh);

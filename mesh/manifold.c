@@ -36,10 +36,10 @@ static void spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
 static double volume_under(const Work *work, uint32_t face, const double *origin) {
     const Faces *faces = &work->faces;
     double a[3], b[3], c[3], n[3], volume = 0;
-    sub3(work->place[faces->corner[faces->first[face]]], origin, a);
+    sub3(work->position[faces->corner[faces->first[face]]], origin, a);
     for (uint32_t h = faces->first[face] + 1; h + 1 < faces->first[face + 1]; h++) {
-        sub3(work->place[faces->corner[h]], origin, b);
-        sub3(work->place[faces->corner[h + 1]], origin, c);
+        sub3(work->position[faces->corner[h]], origin, b);
+        sub3(work->position[faces->corner[h + 1]], origin, c);
         cross3(b, c, n);
         volume += dot3(a, n);
     }
@@ -49,7 +49,7 @@ static double volume_under(const Work *work, uint32_t face, const double *origin
 /// Most of the area stays as it was; a closed surface has its front outside.
 static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
     const Faces *faces = &work->faces;
-    const double *origin = work->place[faces->corner[faces->first[turn->queue[begin]]]];
+    const double *origin = work->position[faces->corner[faces->first[turn->queue[begin]]]];
     double area[2] = {0, 0}, volume = 0;
     bool closed = true;
     for (uint32_t i = begin; i < end; i++) {
@@ -71,7 +71,7 @@ static void decide(Work *work, Turn *turn, uint32_t begin, uint32_t end) {
 }
 
 /// Where corner h of a face lies once the face is turned over: side h runs backwards, from its old end.
-static uint32_t turned_place(const Faces *faces, uint32_t face, uint32_t h) {
+static uint32_t turned_position(const Faces *faces, uint32_t face, uint32_t h) {
     uint32_t first = faces->first[face], n = faces->first[face + 1] - first;
     return first + (2 * n - 2 - (h - first)) % n;
 }
@@ -85,11 +85,11 @@ static void turn_over(Work *work, const Turn *turn) {
     if (work->no_memory) return;
     for (uint32_t f = 0; f < faces->count; f++)
         for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) {
-            uint32_t side = turn->flip[f] ? turned_place(faces, f, h) : h;
+            uint32_t side = turn->flip[f] ? turned_position(faces, f, h) : h;
             uint32_t from = turn->flip[f] ? faces_next(faces, work->face, h) : h, t = work->twin[h];
             corner[side] = faces->corner[from], id[side] = faces->id[from];
             if (uv) memcpy(uv[side], faces->uv[from], sizeof *uv);
-            twin[side] = t == MESH_NONE ? t : turn->flip[work->face[t]] ? turned_place(faces, work->face[t], t) : t;
+            twin[side] = t == MESH_NONE ? t : turn->flip[work->face[t]] ? turned_position(faces, work->face[t], t) : t;
         }
     faces->corner = corner, faces->id = id, faces->uv = uv, work->twin = twin;
 }
@@ -128,12 +128,12 @@ static void draw_back(Work *work, uint32_t first) {
         double *to = sum[faces->corner[h] - first];
         const uint32_t face = work->face[h], begin = faces->first[face], end = faces->first[face + 1];
         for (uint32_t i = begin; i < end; i++)
-            for (int k = 0; k < 3; k++) to[k] += work->place[faces->corner[i]][k] / (end - begin);
+            for (int k = 0; k < 3; k++) to[k] += work->position[faces->corner[i]][k] / (end - begin);
         to[3]++;
     }
     for (uint32_t v = 0; v < copies; v++)
         for (int k = 0; sum[v][3] > 0 && k < 3; k++)
-            work->place[first + v][k] += PART_GAP * (sum[v][k] / sum[v][3] - work->place[first + v][k]);
+            work->position[first + v][k] += PART_GAP * (sum[v][k] / sum[v][3] - work->position[first + v][k]);
 }
 
 static void part_fans(Work *work) {

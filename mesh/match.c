@@ -54,7 +54,7 @@ static uint32_t common_base(Match *m, uint32_t a, uint32_t b) {
 }
 
 /// Marks the bases on the way from v down to `base`, and turns the way's parents round.
-static void mark_way(Match *m, uint32_t v, uint32_t base, uint32_t child) {
+static void mark_path(Match *m, uint32_t v, uint32_t base, uint32_t child) {
     while (m->base[v] != base) {
         m->blossom[m->base[v]] = m->blossom[m->base[m->mate[v]]] = 1;
         m->parent[v] = child;
@@ -66,8 +66,8 @@ static void mark_way(Match *m, uint32_t v, uint32_t base, uint32_t child) {
 static void shrink_circle(Match *m, uint32_t v, uint32_t u) {
     uint32_t base = common_base(m, v, u);
     for (uint32_t i = 0; i < m->touched_count; i++) m->blossom[m->touched[i]] = 0;
-    mark_way(m, v, base, u);
-    mark_way(m, u, base, v);
+    mark_path(m, v, base, u);
+    mark_path(m, u, base, v);
     for (uint32_t i = 0; i < m->touched_count; i++) {
         uint32_t w = m->touched[i];
         if (!m->blossom[m->base[w]]) continue;

@@ -17,7 +17,7 @@
 #include <string.h>
 
 #define DEGREES (180 / 3.14159265358979323846)
-static const double angle_most = 175, fold_most = 60, straight_gain = 0.5, straight_within = 60;
+static const double angle_max = 175, fold_max = 60, straight_gain = 0.5, straight_within = 60;
 
 typedef struct HeapItem {
     double cost;
@@ -44,7 +44,7 @@ typedef struct Pairs {
 /// Cosine of the angle at b.
 static double cosine_at(const Work *work, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3];
-    sub3(work->place[a], work->place[b], p), sub3(work->place[c], work->place[b], q);
+    sub3(work->position[a], work->position[b], p), sub3(work->position[c], work->position[b], q);
     double square = dot3(p, p) * dot3(q, q);
     return square > 0 ? fmax(-1, fmin(1, dot3(p, q) / sqrt(square))) : 1;
 }
@@ -57,10 +57,10 @@ static double worth_of(const Pairs *pairs, const uint32_t half[3], const double 
     const Work *work = pairs->work;
     const uint32_t a = work->faces.corner[half[0]], b = work->faces.corner[half[1]], c = work->faces.corner[half[2]];
     double p[3], q[3], m[3];
-    sub3(work->place[b], work->place[a], p), sub3(work->place[c], work->place[b], q);
+    sub3(work->position[b], work->position[a], p), sub3(work->position[c], work->position[b], q);
     cross3(p, q, m);
-    double least = fmin(angle_at(work, a, b, c), fmin(angle_at(work, b, c, a), angle_at(work, c, a, b)));
-    return dot3(m, normal) > 0 ? least : -1 - least;
+    double min = fmin(angle_at(work, a, b, c), fmin(angle_at(work, b, c, a), angle_at(work, c, a, b)));
+    return dot3(m, normal) > 0 ? min : -1 - min;
 }
 
 /// Corners are those of the faces before.
@@ -197,15 +197,15 @@ static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
     double angle[4] = {corner_angle(pairs, half) + corner_angle(pairs, next3(twin)),
                        corner_angle(pairs, next3(half)) + corner_angle(pairs, twin), corner_angle(pairs, last3(half)),
                        corner_angle(pairs, last3(twin))};
-    double worst = 0, most = 0, fold = fold_between(pairs, half / 3, twin / 3);
-    for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), most = fmax(most, angle[i]);
+    double worst = 0, max = 0, fold = fold_between(pairs, half / 3, twin / 3);
+    for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), max = fmax(max, angle[i]);
     bool thin_fan = corner[last3(half)] == corner[last3(twin)]; // a vertex inside must keep three cells
     for (int i = 0; i < 2; i++) {
         uint32_t v = corner[i ? next3(half) : half];
         thin_fan = thin_fan || (!pairs->rim[v] && pairs->degree[v] <= 3);
     }
     pairs->cost[half] = worst + fold;
-    pairs->good[half] = most <= angle_most && fold <= fold_most && !thin_fan && !is_seam(pairs, half, twin);
+    pairs->good[half] = max <= angle_max && fold <= fold_max && !thin_fan && !is_seam(pairs, half, twin);
 }
 
 static void cost_all(Pairs *pairs) {
@@ -348,11 +348,11 @@ static void grow(Pairs *pairs, bool all, const uint8_t *open) {
 static uint32_t open_side(const Pairs *pairs, uint32_t triangle) {
     const Work *work = pairs->work;
     uint32_t best = MESH_NONE;
-    double most = -1;
+    double max = -1;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
         if (work->twin[h] != MESH_NONE) continue;
-        double length = distance3(work->place[work->faces.corner[h]], work->place[work->faces.corner[next3(h)]]);
-        if (length > most) most = length, best = h;
+        double length = distance3(work->position[work->faces.corner[h]], work->position[work->faces.corner[next3(h)]]);
+        if (length > max) max = length, best = h;
     }
     return best;
 }
@@ -374,9 +374,9 @@ static bool find_mates(Pairs *pairs) {
 // ---- quads
 
 /// The triangle of `half` with a vertex in the middle of that side.
-static void push_halved(const Faces *old, uint32_t half, uint32_t middle, Faces *out) {
+static void push_halved(const Faces *old, uint32_t half, uint32_t centroid, Faces *out) {
     faces_push(out, old->corner[half], old, half);
-    faces_push_between(out, middle, old, half, next3(half));
+    faces_push_between(out, centroid, old, half, next3(half));
     faces_push(out, old->corner[next3(half)], old, next3(half));
     faces_push(out, old->corner[last3(half)], old, last3(half));
     faces_end(out, old->origin[half / 3]);
@@ -386,9 +386,9 @@ static void halve(Pairs *pairs, uint32_t half, Faces *out) {
     Work *work = pairs->work;
     const Faces *old = &work->faces;
     const uint32_t ends[2] = {old->corner[half], old->corner[next3(half)]};
-    uint32_t middle = work_vertex(work, ends, 2);
-    push_halved(old, half, middle, out);
-    if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], middle, out);
+    uint32_t centroid = work_vertex(work, ends, 2);
+    push_halved(old, half, centroid, out);
+    if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], centroid, out);
     work_did(work, MESH_HALVED, 1, work_face_name(work, old->origin[half / 3]));
 }
 

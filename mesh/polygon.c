@@ -19,33 +19,33 @@
 /// What the worth of a triangle falls to by a diagonal between vertices that have a side already.
 static const double taken_worth = 1e-3;
 /// The sharpest fold of a quad that crosses itself only as it is seen from the mean of its normals.
-static const double fold_most = 150;
+static const double fold_max = 150;
 
 bool polygon_begin(PolygonCut *cut, Work *work, const Faces *faces) {
-    uint32_t most = 3;
+    uint32_t max = 3;
     for (uint32_t f = 0; f < faces->count; f++)
-        if (faces->first[f + 1] - faces->first[f] > most) most = faces->first[f + 1] - faces->first[f];
-    most *= POLYGON_GROWTH;
-    *cut = (PolygonCut){.work = work, .faces = faces, .capacity = most};
-    cut->at = work_new(work, most, sizeof *cut->at);
-    cut->ring = work_new(work, most, sizeof *cut->ring);
-    cut->worth = work_new(work, most, sizeof *cut->worth);
-    cut->triangle = work_new(work, most, sizeof *cut->triangle);
+        if (faces->first[f + 1] - faces->first[f] > max) max = faces->first[f + 1] - faces->first[f];
+    max *= POLYGON_GROWTH;
+    *cut = (PolygonCut){.work = work, .faces = faces, .capacity = max};
+    cut->at = work_new(work, max, sizeof *cut->at);
+    cut->ring = work_new(work, max, sizeof *cut->ring);
+    cut->worth = work_new(work, max, sizeof *cut->worth);
+    cut->triangle = work_new(work, max, sizeof *cut->triangle);
     return !work->no_memory;
 }
 
 // ---- seen along the normal
 
-static const double *place_of(const PolygonCut *cut, uint32_t half) {
-    return cut->work->place[cut->faces->corner[half]];
+static const double *position_of(const PolygonCut *cut, uint32_t half) {
+    return cut->work->position[cut->faces->corner[half]];
 }
 
 void polygon_normal(const PolygonCut *cut, const uint32_t *ring, uint32_t n, double normal[3]) {
-    const double *o = place_of(cut, ring[0]);
+    const double *o = position_of(cut, ring[0]);
     normal[0] = normal[1] = normal[2] = 0;
     for (uint32_t i = 1; i + 1 < n; i++) {
         double a[3], b[3], m[3];
-        sub3(place_of(cut, ring[i]), o, a), sub3(place_of(cut, ring[i + 1]), o, b);
+        sub3(position_of(cut, ring[i]), o, a), sub3(position_of(cut, ring[i + 1]), o, b);
         cross3(a, b, m);
         for (int k = 0; k < 3; k++) normal[k] += m[k];
     }
@@ -58,7 +58,7 @@ static void project(PolygonCut *cut, const uint32_t *ring, uint32_t n, const dou
     if (fabs(normal[2]) > fabs(normal[axis])) axis = 2;
     const int u = (axis + (normal[axis] < 0 ? 2 : 1)) % 3, v = (axis + (normal[axis] < 0 ? 1 : 2)) % 3;
     for (uint32_t i = 0; i < n; i++) {
-        const double *p = place_of(cut, ring[i]);
+        const double *p = position_of(cut, ring[i]);
         cut->at[i][0] = p[u], cut->at[i][1] = p[v];
     }
 }
@@ -70,35 +70,35 @@ static double turn2(const double *a, const double *b, const double *c) {
 
 /// Whether the mean of corners sees all sides of their ring, once around.
 static bool is_star(double (*at)[2], uint32_t n) {
-    double middle[2] = {0, 0};
+    double centroid[2] = {0, 0};
     uint32_t rounds = 0; // a ring that winds twice comes twice to a height from below
     for (uint32_t i = 0; i < n; i++)
-        for (int k = 0; k < 2; k++) middle[k] += at[i][k] / n;
+        for (int k = 0; k < 2; k++) centroid[k] += at[i][k] / n;
     for (uint32_t i = 0; i < n; i++) {
         const double *a = at[i], *b = at[(i + 1) % n];
-        if (!(turn2(middle, a, b) > 0)) return false;
-        rounds += a[1] < middle[1] && b[1] >= middle[1];
+        if (!(turn2(centroid, a, b) > 0)) return false;
+        rounds += a[1] < centroid[1] && b[1] >= centroid[1];
     }
     return rounds == 1;
 }
 
 /// The quad at a corner of a ring that is split (to_quads.c).
-static void corner_quad(double (*at)[2], uint32_t n, uint32_t i, const double middle[2], double quad[4][2]) {
+static void corner_quad(double (*at)[2], uint32_t n, uint32_t i, const double centroid[2], double quad[4][2]) {
     for (int k = 0; k < 2; k++) {
-        quad[0][k] = at[i][k], quad[2][k] = middle[k];
+        quad[0][k] = at[i][k], quad[2][k] = centroid[k];
         quad[1][k] = 0.5 * (at[i][k] + at[(i + 1) % n][k]), quad[3][k] = 0.5 * (at[i][k] + at[(i + n - 1) % n][k]);
     }
 }
 
 bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
-    double normal[3], middle[2] = {0, 0}, quad[4][2];
+    double normal[3], centroid[2] = {0, 0}, quad[4][2];
     polygon_normal(cut, ring, n, normal);
     project(cut, ring, n, normal);
     bool star = is_star(cut->at, n);
     for (uint32_t i = 0; i < n; i++)
-        for (int k = 0; k < 2; k++) middle[k] += cut->at[i][k] / n;
+        for (int k = 0; k < 2; k++) centroid[k] += cut->at[i][k] / n;
     for (uint32_t i = 0; i < n && star; i++) {
-        corner_quad(cut->at, n, i, middle, quad);
+        corner_quad(cut->at, n, i, centroid, quad);
         star = is_star(quad, 4);
     }
     return star;
@@ -108,7 +108,7 @@ bool polygon_is_star(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
 
 static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c) {
     double p[3], q[3];
-    sub3(place_of(cut, a), place_of(cut, b), p), sub3(place_of(cut, c), place_of(cut, b), q);
+    sub3(position_of(cut, a), position_of(cut, b), p), sub3(position_of(cut, c), position_of(cut, b), q);
     double square = dot3(p, p) * dot3(q, q);
     return square > 0 ? DEGREES * acos(fmax(-1, fmin(1, dot3(p, q) / sqrt(square)))) : 0;
 }
@@ -116,8 +116,8 @@ static double angle_at(const PolygonCut *cut, uint32_t a, uint32_t b, uint32_t c
 /// Its smallest angle, in degrees; negative where it is turned over or has no area. Corners are places in the ring.
 static double worth_of(const PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
     const uint32_t a = cut->ring[i], b = cut->ring[k], c = cut->ring[j];
-    double least = fmin(angle_at(cut, a, b, c), fmin(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
-    return turn2(cut->at[i], cut->at[k], cut->at[j]) > 0 ? least : -1 - least;
+    double min = fmin(angle_at(cut, a, b, c), fmin(angle_at(cut, b, c, a), angle_at(cut, c, a, b)));
+    return turn2(cut->at[i], cut->at[k], cut->at[j]) > 0 ? min : -1 - min;
 }
 
 /// Whether some face has a side between the two vertices.
@@ -153,7 +153,7 @@ static void add_triangle(PolygonCut *cut, uint32_t i, uint32_t k, uint32_t j) {
 
 // ---- large polygons
 
-static bool same_place(const double *a, const double *b) { return a[0] == b[0] && a[1] == b[1]; }
+static bool same_position(const double *a, const double *b) { return a[0] == b[0] && a[1] == b[1]; }
 
 /// Whether `p` lies between the directions from `a` to `b` and to `c`, less than half a turn on.
 static bool in_wedge(const double *a, const double *b, const double *c, const double *p) {
@@ -164,7 +164,7 @@ static bool in_wedge(const double *a, const double *b, const double *c, const do
 static bool enters(const PolygonCut *cut, uint32_t n, uint32_t i, const double *const ear[3]) {
     const double *before = cut->at[(i + n - 1) % n], *after = cut->at[(i + 1) % n];
     for (int k = 0; k < 3; k++)
-        if (same_place(cut->at[i], ear[k]))
+        if (same_position(cut->at[i], ear[k]))
             return in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], before) ||
                    in_wedge(ear[k], ear[(k + 1) % 3], ear[(k + 2) % 3], after);
     return turn2(ear[0], ear[1], cut->at[i]) >= 0 && turn2(ear[1], ear[2], cut->at[i]) >= 0 &&
@@ -196,11 +196,11 @@ static uint32_t best_ear(const PolygonCut *cut, uint32_t n) {
 }
 
 /// Cuts off corners until `most` are left. Returns how many there are.
-static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t most) {
-    enum { LOOKS_MOST = 16 }; // an ear may come free when another is gone
-    for (uint32_t looks = 0; looks < LOOKS_MOST && n > most; looks++) {
+static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t max) {
+    enum { LOOKS_MAX = 16 }; // an ear may come free when another is gone
+    for (uint32_t looks = 0; looks < LOOKS_MAX && n > max; looks++) {
         for (uint32_t k = 0; k < n; k++) cut->worth[k] = ear_worth(cut, n, k);
-        while (n > most) {
+        while (n > max) {
             uint32_t best = best_ear(cut, n), after = n - 1 - best;
             if (cut->worth[best] < 0) break;
             add_triangle(cut, (best + n - 1) % n, best, (best + 1) % n);
@@ -217,12 +217,12 @@ static uint32_t cut_ears(PolygonCut *cut, uint32_t n, uint32_t most) {
 
 // ---- small polygons
 
-enum { BEST_CUT_MOST = 40 };
+enum { BEST_CUT_MAX = 40 };
 
 /// The triangles whose worst is best. False where some are turned over.
 static bool cut_best(PolygonCut *cut, uint32_t n) {
-    double worst[BEST_CUT_MOST][BEST_CUT_MOST];
-    uint8_t apex[BEST_CUT_MOST][BEST_CUT_MOST], stack[2 * BEST_CUT_MOST][2];
+    double worst[BEST_CUT_MAX][BEST_CUT_MAX];
+    uint8_t apex[BEST_CUT_MAX][BEST_CUT_MAX], stack[2 * BEST_CUT_MAX][2];
     for (uint32_t span = 1; span < n; span++)
         for (uint32_t i = 0; i + span < n; i++) {
             uint32_t j = i + span;
@@ -249,7 +249,7 @@ static bool cut_best(PolygonCut *cut, uint32_t n) {
 
 /// A quad that is bent so far that its normals say nothing of it: along the diagonal at which it is folded less.
 static bool cut_bent_quad(PolygonCut *cut) {
-    double best = fold_most;
+    double best = fold_max;
     uint32_t start = 4;
     for (uint32_t s = 0; s < 2; s++) {
         const uint32_t a[3] = {cut->ring[s], cut->ring[s + 1], cut->ring[s + 2]};
@@ -271,8 +271,8 @@ bool polygon_cut(PolygonCut *cut, const uint32_t *ring, uint32_t n) {
     polygon_normal(cut, ring, n, normal);
     project(cut, ring, n, normal);
     memcpy(cut->ring, ring, n * sizeof *ring);
-    uint32_t left = cut_ears(cut, n, BEST_CUT_MOST);
-    if (left > BEST_CUT_MOST) return false;
+    uint32_t left = cut_ears(cut, n, BEST_CUT_MAX);
+    if (left > BEST_CUT_MAX) return false;
     return cut_best(cut, left) || (n == 4 && cut_bent_quad(cut));
 }
 

@@ -81,14 +81,14 @@ static void apply(Order *order) {
     Work *work = order->work;
     const Faces *old = &work->faces;
     const size_t attributes = work->attribute_count;
-    double (*place)[3] = work_new(work, work->vertex_count, sizeof *place);
+    double (*position)[3] = work_new(work, work->vertex_count, sizeof *position);
     int32_t *source = work_new(work, work->vertex_count, sizeof *source);
     float *values = work_new(work, work->vertex_count * attributes, sizeof *values);
     Faces out = work_faces(work, old->count, old->corner_count);
     if (work->no_memory) return;
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t to = order->vertex[v];
-        memcpy(place[to], work->place[v], sizeof *place);
+        memcpy(position[to], work->position[v], sizeof *position);
         source[to] = work->source[v];
         if (!attributes) continue;
         memcpy(values + to * attributes, work->attributes + v * attributes, attributes * sizeof *values);
@@ -105,14 +105,14 @@ static void apply(Order *order) {
     }
     out.count = old->count, out.corner_count = old->corner_count;
     for (uint32_t v = 0; v < work->file->vertex_count; v++) work->became[v] = order->vertex[work->became[v]];
-    work->place = place, work->source = source, work->attributes = values, work->faces = out;
+    work->position = position, work->source = source, work->attributes = values, work->faces = out;
     work->vertex_capacity = work->vertex_count;
 }
 
 void mesh_order(Work *work) {
     const uint32_t count = work->faces.count;
     work_edges(work);
-    if (work->no_memory || count < MESH_ORDER_LEAST || in_order(work) >= MESH_IN_ORDER) return;
+    if (work->no_memory || count < MESH_ORDER_MIN || in_order(work) >= MESH_IN_ORDER) return;
     Order order = {.work = work, .vertex = work_new(work, work->vertex_count, sizeof *order.vertex),
                    .face = work_new(work, count, sizeof *order.face), .row = work_new(work, count, sizeof *order.row)};
     if (work->no_memory) return;

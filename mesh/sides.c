@@ -19,12 +19,12 @@ static uint32_t *plain_components(Work *work, const uint32_t *order) {
 static void away_from(const Work *work, uint32_t half, double out[3]) {
     const Faces *faces = &work->faces;
     const uint32_t face = work->face[half], first = faces->first[face], end = faces->first[face + 1];
-    const double *a = work->place[faces->corner[half]];
-    const double *b = work->place[faces->corner[faces_next(faces, work->face, half)]];
-    double middle[3] = {0}, side[3];
+    const double *a = work->position[faces->corner[half]];
+    const double *b = work->position[faces->corner[faces_next(faces, work->face, half)]];
+    double centroid[3] = {0}, side[3];
     for (uint32_t h = first; h < end; h++)
-        for (int k = 0; k < 3; k++) middle[k] += work->place[faces->corner[h]][k] / (end - first);
-    sub3(b, a, side), sub3(middle, a, out);
+        for (int k = 0; k < 3; k++) centroid[k] += work->position[faces->corner[h]][k] / (end - first);
+    sub3(b, a, side), sub3(centroid, a, out);
     double along = dot3(out, side) / dot3(side, side);
     for (int k = 0; k < 3; k++) out[k] -= along * side[k];
     double length = sqrt(dot3(out, out));
@@ -53,9 +53,9 @@ typedef struct Around {
     bool forwards;  ///< runs along the side as the first one does
 } Around;
 
-enum { AROUND_MOST = 64 }; ///< faces at a side that are looked at; more are left alone
+enum { AROUND_MAX = 64 }; ///< faces at a side that are looked at; more are left alone
 /// Faces that fold back on each other by more than this are no sheet, in radians.
-static const double fold_most = 2.6;
+static const double fold_max = 2.6;
 
 static int by_angle(const void *a, const void *b) {
     const Around *x = a, *y = b;
@@ -66,8 +66,8 @@ static int by_angle(const void *a, const void *b) {
 /// The faces at a side in their order around it.
 static void sort_around(const Work *work, const uint32_t *halves, uint32_t size, Around *around) {
     const Faces *faces = &work->faces;
-    const double *a = work->place[faces->corner[halves[0]]];
-    const double *b = work->place[faces->corner[faces_next(faces, work->face, halves[0])]];
+    const double *a = work->position[faces->corner[halves[0]]];
+    const double *b = work->position[faces->corner[faces_next(faces, work->face, halves[0])]];
     double first[3], across[3], side[3], away[3];
     sub3(b, a, side);
     away_from(work, halves[0], first);
@@ -85,16 +85,16 @@ static void sort_around(const Work *work, const uint32_t *halves, uint32_t size,
 /// sheets go through each other there.
 static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
     const double turn = 6.283185307179586;
-    Around around[AROUND_MOST];
-    if (size > AROUND_MOST) return;
+    Around around[AROUND_MAX];
+    if (size > AROUND_MAX) return;
     sort_around(work, halves, size, around);
     while (size >= 2) {
-        double least = fold_most;
+        double min = fold_max;
         uint32_t best = size;
         for (uint32_t i = 0; i < size; i++) {
             const Around *p = &around[i], *q = &around[(i + 1) % size];
             double angle = q->angle - p->angle + (i + 1 == size ? turn : 0), fold = fabs(angle - turn / 2);
-            if (p->forwards != q->forwards && fold < least) least = fold, best = i;
+            if (p->forwards != q->forwards && fold < min) min = fold, best = i;
         }
         if (best == size) return;
         const uint32_t next = (best + 1) % size, p = around[best].half, q = around[next].half;
@@ -146,28 +146,28 @@ static bool is_second(const Work *work, const uint32_t *halves, uint32_t at) {
 }
 
 /// Gives all but the first of the sheets that share a side a vertex in its middle. Returns how many vertices.
-static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *middle) {
+static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *centroid) {
     const Faces *faces = &work->faces;
     uint32_t sheets = 0;
     for (uint32_t i = 0; i < size; i++) {
         const uint32_t half = halves[i], twin = work->twin[half];
         if (is_second(work, halves, i) || sheets++ == 0) continue;
         const uint32_t ends[2] = {faces->corner[half], faces->corner[faces_next(faces, work->face, half)]};
-        middle[half] = work_vertex(work, ends, 2);
-        if (twin != MESH_NONE) middle[twin] = middle[half];
+        centroid[half] = work_vertex(work, ends, 2);
+        if (twin != MESH_NONE) centroid[twin] = centroid[half];
     }
     return sheets - 1;
 }
 
 /// The faces with the new corners.
-static void add_corners(Work *work, const uint32_t *middle, uint32_t added) {
+static void add_corners(Work *work, const uint32_t *centroid, uint32_t added) {
     const Faces *old = &work->faces;
     Faces out = work_faces(work, old->count, old->corner_count + 2 * added);
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
             faces_push(&out, old->corner[h], old, h);
-            if (middle[h] != MESH_NONE)
-                faces_push_between(&out, middle[h], old, h, faces_next(old, work->face, h));
+            if (centroid[h] != MESH_NONE)
+                faces_push_between(&out, centroid[h], old, h, faces_next(old, work->face, h));
         }
         faces_end(&out, old->origin[f]);
     }
@@ -177,12 +177,12 @@ static void add_corners(Work *work, const uint32_t *middle, uint32_t added) {
 void mesh_part_sides(Work *work) {
     const Faces *faces = &work->faces;
     uint32_t *order = work_sorted_edges(work), added = 0;
-    uint32_t *middle = work_new(work, faces->corner_count, sizeof *middle);
-    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) middle[h] = MESH_NONE;
+    uint32_t *centroid = work_new(work, faces->corner_count, sizeof *centroid);
+    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) centroid[h] = MESH_NONE;
     for (uint32_t k = 0, size; !work->no_memory && k < faces->corner_count; k += size) {
         size = work_edge_size(work, order, k);
         const bool two = size == 2 && faces->corner[order[k]] != faces->corner[order[k + 1]]; // which go on
-        if (size > 1 && !two) added += part_side(work, order + k, size, middle);
+        if (size > 1 && !two) added += part_side(work, order + k, size, centroid);
     }
-    if (added && !work->no_memory) add_corners(work, middle, added);
+    if (added && !work->no_memory) add_corners(work, centroid, added);
 }

@@ -79,14 +79,14 @@ static bool work_room(Work *work) {
     if (work->vertex_count < work->vertex_capacity) return true;
     uint32_t capacity = work->vertex_capacity + work->vertex_capacity / 2 + 16;
     size_t attributes = work->attribute_count;
-    double (*place)[3] = work_new(work, capacity, sizeof *place);
+    double (*position)[3] = work_new(work, capacity, sizeof *position);
     int32_t *source = work_new(work, capacity, sizeof *source);
     float *values = work_new(work, capacity * attributes, sizeof *values);
     if (work->no_memory) return false;
-    memcpy(place, work->place, work->vertex_count * sizeof *place);
+    memcpy(position, work->position, work->vertex_count * sizeof *position);
     memcpy(source, work->source, work->vertex_count * sizeof *source);
     memcpy(values, work->attributes, work->vertex_count * attributes * sizeof *values);
-    work->place = place, work->source = source, work->attributes = values, work->vertex_capacity = capacity;
+    work->position = position, work->source = source, work->attributes = values, work->vertex_capacity = capacity;
     return true;
 }
 
@@ -95,7 +95,7 @@ uint32_t work_vertex(Work *work, const uint32_t *of, uint32_t count) {
     uint32_t v = work->vertex_count++;
     const size_t attributes = work->attribute_count;
     for (uint32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) work->place[v][k] += work->place[of[i]][k] / count;
+        for (int k = 0; k < 3; k++) work->position[v][k] += work->position[of[i]][k] / count;
         for (size_t k = 0; k < attributes; k++)
             work->attributes[v * attributes + k] += work->attributes[of[i] * attributes + k] / (float)count;
     }
@@ -177,12 +177,12 @@ double distance3(const double *a, const double *b) {
 
 void face_area(const Work *work, uint32_t face, double normal[3]) {
     const Faces *faces = &work->faces;
-    const double *o = work->place[faces->corner[faces->first[face]]];
+    const double *o = work->position[faces->corner[faces->first[face]]];
     normal[0] = normal[1] = normal[2] = 0;
     for (uint32_t h = faces->first[face] + 1; h + 1 < faces->first[face + 1]; h++) {
         double a[3], b[3], n[3];
-        sub3(work->place[faces->corner[h]], o, a);
-        sub3(work->place[faces->corner[h + 1]], o, b);
+        sub3(work->position[faces->corner[h]], o, a);
+        sub3(work->position[faces->corner[h + 1]], o, b);
         cross3(a, b, n);
         for (int k = 0; k < 3; k++) normal[k] += n[k];
     }

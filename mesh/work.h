@@ -34,7 +34,7 @@ typedef struct Work {
     bool no_memory;
     bool shrunk;          ///< faces vanish because their sides did, which has been said
     uint32_t vertex_count, vertex_capacity, attribute_count;
-    double (*place)[3];
+    double (*position)[3];
     int32_t *source;      ///< vertex of the file, -1 for a new one
     uint32_t *became;     ///< [file's vertices] the vertex that it is now
     float *attributes;    ///< [vertex_capacity * attribute_count]
@@ -117,16 +117,16 @@ void work_rename(Work *work, const uint32_t *to);
 void work_mark_open(const Work *work, uint8_t *open);
 
 /// Vertices by the box of a grid in which they lie, by a hash (weld.c).
-typedef struct Places {
+typedef struct Positions {
     double size;
     uint32_t slots;
     uint32_t *head, *next; ///< [slots] and [vertices], MESH_NONE at the end
-} Places;
+} Positions;
 
-Places places_make(Work *work, double size);
-void places_add(const Work *work, Places *places, uint32_t vertex);
-void places_box(const Places *places, const double *place, int64_t box[3]);
-uint32_t places_slot(const Places *places, const int64_t box[3]);
+Positions positions_make(Work *work, double size);
+void positions_add(const Work *work, Positions *positions, uint32_t vertex);
+void positions_box(const Positions *positions, const double *position, int64_t box[3]);
+uint32_t positions_slot(const Positions *positions, const int64_t box[3]);
 
 // ---- the steps, each of which leaves new faces
 
@@ -156,7 +156,7 @@ void mesh_split(Work *work);
 /// Share of sides between consecutive numbers from which on a mesh keeps its order.
 #define MESH_IN_ORDER 0.25
 /// Cells below which a mesh keeps its order.
-#define MESH_ORDER_LEAST 256
+#define MESH_ORDER_MIN 256
 /// Numbers vertices and quads row by row, unless they are (renumber.c).
 void mesh_order(Work *work);
 

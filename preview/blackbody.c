@@ -30,7 +30,7 @@ static void planck_xyz(double temperature, double xyz[3]) {
     }
 }
 
-void blackbody_fill(V3 table[BLACKBODY_COUNT]) {
+void blackbody_fill(Float3 table[BLACKBODY_COUNT]) {
     double reference[3], xyz[3];
     planck_xyz(1200, reference);
     for (int i = 0; i < BLACKBODY_COUNT; i++) {
@@ -41,14 +41,14 @@ void blackbody_fill(V3 table[BLACKBODY_COUNT]) {
         double b = 0.0557 * x - 0.2040 + 1.0570 * z;
         double strength = pow(xyz[1] / reference[1], 0.55);
         strength *= (double)stepf(BLACKBODY_MIN, BLACKBODY_MIN + 120, (float)temperature);
-        table[i] = v3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
+        table[i] = float3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
     }
 }
 
-V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature) {
+Float3 blackbody_glow(const Float3 table[BLACKBODY_COUNT], float temperature) {
     float x = (temperature - BLACKBODY_MIN) / BLACKBODY_STEP;
-    if (!(x > 0)) return v3(0, 0, 0);
+    if (!(x > 0)) return float3(0, 0, 0);
     if (x >= BLACKBODY_COUNT - 1) return table[BLACKBODY_COUNT - 1];
     int i = (int)x;
-    return v3_mix(table[i], table[i + 1], x - (float)i);
+    return float3_mix(table[i], table[i + 1], x - (float)i);
 }

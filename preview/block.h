@@ -6,7 +6,7 @@
 
 /// What the layers of a pixel are made of.
 typedef struct LayerSum {
-    V3 normal, glow, fire;
+    Float3 normal, glow, fire;
     float fire_hides, temperature, burn, depth;
     int hits, samples;
     int32_t sheet, piece;
@@ -19,12 +19,12 @@ typedef struct Block {
     int x[LANES], y[LANES];
     float turn[LANES][2];
     uint32_t key[LANES];
-    V3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
+    Float3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
     FireTile *tile;                     ///< flame and smoke; NULL: none
     float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are known
-    V3 fire_light[LANES];
+    Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
     float clear[LANES];   ///< of a shadow ray
@@ -34,13 +34,13 @@ typedef struct Block {
     int sky_asked[LANES];
     bool clouded;         ///< whether anything hid sky
     bool sunlit, shaded;  ///< whether any ray to the sun came through, and whether any did not
-    V3 lamp[LANES];       ///< light of flames and embers, summed over samples, as if nothing hid it
-    V3 lamp_place[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where it was found last, and what it was on white
+    Float3 lamp[LANES];       ///< light of flames and embers, summed over samples, as if nothing hid it
+    Float3 lamp_position[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where it was found last, and what it was on white
     float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance of it that a ray found, and that of what it asked for
     LayerSum layer[LANES];
 } Block;
 
-static inline void aim_ray(struct RTCRay16 *ray, int lane, V3 origin, V3 direction, float near, float far,
+static inline void aim_ray(struct RTCRay16 *ray, int lane, Float3 origin, Float3 direction, float near, float far,
                            float time) {
     ray->org_x[lane] = origin.x, ray->org_y[lane] = origin.y, ray->org_z[lane] = origin.z;
     ray->dir_x[lane] = direction.x, ray->dir_y[lane] = direction.y, ray->dir_z[lane] = direction.z;
@@ -48,7 +48,7 @@ static inline void aim_ray(struct RTCRay16 *ray, int lane, V3 origin, V3 directi
     ray->time[lane] = time, ray->mask[lane] = ~0u, ray->id[lane] = (unsigned)lane, ray->flags[lane] = 0;
 }
 
-static inline void rest_ray(struct RTCRay16 *ray, int lane) { aim_ray(ray, lane, v3(0, 0, 0), v3(0, 0, 1), 0, -1, 0); }
+static inline void rest_ray(struct RTCRay16 *ray, int lane) { aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0); }
 
 /// Instead of a sample's number: the middle of the sun and an open sky, for where nothing can hide them.
 enum { SAMPLE_MIDDLE = -1 };
@@ -56,7 +56,7 @@ enum { SAMPLE_MIDDLE = -1 };
 // layers.c
 void layers_begin(LayerSum *sum);
 /// `fire` is the light of flame and smoke before the point, `clear` what they leave of its own.
-void layers_add(const Preview *preview, const Point *point, V3 fire, float clear, V3 direction, LayerSum *sum);
+void layers_add(const Preview *preview, const Point *point, Float3 fire, float clear, Float3 direction, LayerSum *sum);
 void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum);
 
 /// Writes `beauty` from the finished picture.
@@ -64,7 +64,7 @@ void layers_finish(const Preview *preview);
 
 // lighting.c
 /// Reflected share of the light along l, per unit of irradiance: diffuse and a Blinn-Phong lobe.
-V3 light_reflect(const Point *point, V3 l);
+Float3 light_reflect(const Point *point, Float3 l);
 /// Whether light falls on what the lane sees.
 bool light_reaches(const Block *block, const int *active, int lane);
 /// Adds the light of the sun and the sky that reaches the eye from block->point: the sun's by `rays` rays each, the

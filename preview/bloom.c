@@ -7,39 +7,39 @@
 
 enum { SHRINK = 4, RADIUS_LIMIT = 64 };
 
-static bool shrink(const Preview *preview, int w, int h, V3 *out) {
+static bool shrink(const Preview *preview, int w, int h, Float3 *out) {
     bool any = false;
     float exposure = preview->def.exposure;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
-            V3 sum = {0, 0, 0};
+            Float3 sum = {0, 0, 0};
             for (int j = 0; j < SHRINK && y * SHRINK + j < preview->def.height; j++)
                 for (int i = 0; i < SHRINK && x * SHRINK + i < preview->def.width; i++) {
                     size_t at = (size_t)(y * SHRINK + j) * (size_t)preview->def.width + (size_t)(x * SHRINK + i);
-                    V3 c = v3_scale(preview->picture[at], exposure);
+                    Float3 c = float3_scale(preview->picture[at], exposure);
                     // only what glows, not a white sheet in the sun
                     float peak = maxf(c.x, maxf(c.y, c.z)), over = maxf(peak - 1.1f, 0) / maxf(peak, 1e-6f);
-                    sum = v3_mad(sum, c, over);
+                    sum = float3_mad(sum, c, over);
                 }
-            out[(size_t)y * (size_t)w + (size_t)x] = v3_scale(sum, 1.0f / (SHRINK * SHRINK));
+            out[(size_t)y * (size_t)w + (size_t)x] = float3_scale(sum, 1.0f / (SHRINK * SHRINK));
             any = any || sum.x + sum.y + sum.z > 0;
         }
     return any;
 }
 
 /// One direction of a separable Gaussian; `step` is the distance between neighbours, `length` their number.
-static void blur_line(const V3 *in, V3 *out, int length, size_t step, const float *weight, int radius) {
+static void blur_line(const Float3 *in, Float3 *out, int length, size_t step, const float *weight, int radius) {
     for (int i = 0; i < length; i++) {
-        V3 sum = v3_scale(in[(size_t)i * step], weight[0]);
+        Float3 sum = float3_scale(in[(size_t)i * step], weight[0]);
         for (int k = 1; k <= radius; k++) {
-            if (i - k >= 0) sum = v3_mad(sum, in[(size_t)(i - k) * step], weight[k]);
-            if (i + k < length) sum = v3_mad(sum, in[(size_t)(i + k) * step], weight[k]);
+            if (i - k >= 0) sum = float3_mad(sum, in[(size_t)(i - k) * step], weight[k]);
+            if (i + k < length) sum = float3_mad(sum, in[(size_t)(i + k) * step], weight[k]);
         }
         out[(size_t)i * step] = sum;
     }
 }
 
-static void blur(V3 *image, V3 *scratch, int w, int h, float sigma) {
+static void blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
     float weight[RADIUS_LIMIT + 1], sum = 0;
     int radius = (int)ceilf(3 * sigma);
     radius = radius < 1 ? 1 : radius > RADIUS_LIMIT ? RADIUS_LIMIT : radius;
@@ -55,7 +55,7 @@ static void blur(V3 *image, V3 *scratch, int w, int h, float sigma) {
     for (int x = 0; x < w; x++) blur_line(scratch + x, image + x, h, (size_t)w, weight, radius);
 }
 
-static void add(Preview *preview, const V3 *glow, int w, int h, float amount) {
+static void add(Preview *preview, const Float3 *glow, int w, int h, float amount) {
     amount /= preview->def.exposure;
     for (int y = 0; y < preview->def.height; y++) {
         float gy = clampf(((float)y + 0.5f) / SHRINK - 0.5f, 0, (float)(h - 1));
@@ -63,18 +63,18 @@ static void add(Preview *preview, const V3 *glow, int w, int h, float amount) {
         for (int x = 0; x < preview->def.width; x++) {
             float gx = clampf(((float)x + 0.5f) / SHRINK - 0.5f, 0, (float)(w - 1));
             int x0 = (int)gx, x1 = x0 + 1 < w ? x0 + 1 : x0;
-            const V3 *top = glow + (size_t)y0 * (size_t)w, *bottom = glow + (size_t)y1 * (size_t)w;
-            V3 c = v3_mix(v3_mix(top[x0], top[x1], gx - (float)x0), v3_mix(bottom[x0], bottom[x1], gx - (float)x0),
+            const Float3 *top = glow + (size_t)y0 * (size_t)w, *bottom = glow + (size_t)y1 * (size_t)w;
+            Float3 c = float3_mix(float3_mix(top[x0], top[x1], gx - (float)x0), float3_mix(bottom[x0], bottom[x1], gx - (float)x0),
                           gy - (float)y0);
-            V3 *out = preview->picture + (size_t)y * (size_t)preview->def.width + (size_t)x;
-            *out = v3_mad(*out, c, amount);
+            Float3 *out = preview->picture + (size_t)y * (size_t)preview->def.width + (size_t)x;
+            *out = float3_mad(*out, c, amount);
         }
     }
 }
 
 void bloom_apply(Preview *preview) {
     int w = (preview->def.width + SHRINK - 1) / SHRINK, h = (preview->def.height + SHRINK - 1) / SHRINK;
-    V3 *glow = preview->glow[0], *scratch = preview->glow[1];
+    Float3 *glow = preview->glow[0], *scratch = preview->glow[1];
     if (!shrink(preview, w, h, glow)) return;
     float near = 0.005f * (float)preview->def.height / SHRINK, far = 0.022f * (float)preview->def.height / SHRINK;
     blur(glow, scratch, w, h, maxf(near, 0.4f));

@@ -25,7 +25,7 @@ typedef struct Job {
 } Job;
 
 /// A sample's place in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
-static void place_sample(int sample, float at[2]) {
+static void position_sample(int sample, float at[2]) {
     sample_square((uint32_t)sample, 0.5f, 0.5f, at);
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
@@ -46,13 +46,13 @@ static void aim_block(const Preview *preview, Block *block, int sample, const fl
     }
 }
 
-static void start_point(Point *point, const Preview *preview, V3 origin, V3 direction, float distance) {
-    *point = (Point){.lit = true, .view = v3_scale(direction, -1), .distance = distance, .sheet = -1, .piece = -1};
-    point->position = v3_mad(origin, direction, distance);
+static void start_point(Point *point, const Preview *preview, Float3 origin, Float3 direction, float distance) {
+    *point = (Point){.lit = true, .view = float3_scale(direction, -1), .distance = distance, .sheet = -1, .piece = -1};
+    point->position = float3_mad(origin, direction, distance);
     point->footprint = preview->camera.pixel * distance;
 }
 
-static void miss_point(Point *point, const Preview *preview, V3 direction) {
+static void miss_point(Point *point, const Preview *preview, Float3 direction) {
     *point = (Point){.glow = background_colour(preview, direction), .distance = INFINITY, .sheet = -1, .piece = -1};
 }
 
@@ -64,10 +64,10 @@ static bool hit_paper(const Preview *preview, const Block *block, int lane, floa
     const PaperVertex *a = &vertices[t[0]], *b = &vertices[t[1]], *c = &vertices[t[2]];
     float u = hit->u[lane], v = hit->v[lane];
     start_point(point, preview, block->origin[lane], block->direction[lane], distance);
-    V3 geometric = v3_unit(v3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
-    V3 normal = v3_unit(v3_blend(a->normal, b->normal, c->normal, u, v), geometric);
-    point->geometric = v3_dot(geometric, point->view) >= 0 ? geometric : v3_scale(geometric, -1);
-    point->normal = v3_dot(normal, point->geometric) >= 0 ? normal : v3_scale(normal, -1);
+    Float3 geometric = float3_unit_or(float3(hit->Ng_x[lane], hit->Ng_y[lane], hit->Ng_z[lane]), point->view);
+    Float3 normal = float3_unit_or(float3_blend(a->normal, b->normal, c->normal, u, v), geometric);
+    point->geometric = float3_dot(geometric, point->view) >= 0 ? geometric : float3_scale(geometric, -1);
+    point->normal = float3_dot(normal, point->geometric) >= 0 ? normal : float3_scale(normal, -1);
     PaperState state;
     paper_state(&preview->scene, hit->primID[lane], u, v, &state);
     point->hit = true, point->sheet = state.sheet, point->piece = state.piece;
@@ -75,7 +75,7 @@ static bool hit_paper(const Preview *preview, const Block *block, int lane, floa
     return paper_shade(preview, &state, point);
 }
 
-static float hit_ground(const Preview *preview, V3 origin, V3 direction) {
+static float hit_ground(const Preview *preview, Float3 origin, Float3 direction) {
     float height = origin.z - preview->def.ground_height;
     if (!isfinite(preview->def.ground_height) || height <= 0 || direction.z >= -1e-5f) return INFINITY;
     float t = -height / direction.z;
@@ -88,7 +88,7 @@ static size_t pixel_index(const Preview *preview, const Block *block, int lane) 
 
 /// The table, or what lies behind it.
 static void see_ground(const Preview *preview, Block *block, int lane) {
-    V3 d = block->direction[lane];
+    Float3 d = block->direction[lane];
     Point *point = &block->point[lane];
     float distance = hit_ground(preview, block->origin[lane], d);
     if (!isfinite(distance)) {
@@ -101,7 +101,7 @@ static void see_ground(const Preview *preview, Block *block, int lane) {
 
 /// What the ray of a lane sees; false when it passes through a hole and must go on.
 static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
-    V3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
+    Float3 o = block->origin[lane], d = block->direction[lane], normal = {0, 0, 1}, found = {0, 0, 1};
     Point *point = &block->point[lane];
     bool paper = block->rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
     float distance = paper ? block->rays.ray.tfar[lane] : INFINITY;
@@ -116,7 +116,7 @@ static bool resolve(const Preview *preview, Block *block, int lane, bool last) {
     } else if (shape) {
         start_point(point, preview, o, d, distance);
         point->hit = true, point->temperature = shape->temperature;
-        point->normal = point->geometric = v3_dot(found, point->view) >= 0 ? found : v3_scale(found, -1);
+        point->normal = point->geometric = float3_dot(found, point->view) >= 0 ? found : float3_scale(found, -1);
         shape_shade(preview, shape, moment, point);
     } else if (paper) {
         return hit_paper(preview, block, lane, distance, point) || last;
@@ -160,24 +160,24 @@ static void look_through(Block *block, int lane, float distance) {
 /// Adds the colour of block->point in the light of one sample, the sun's by `rays` rays.
 static void add_light(const Preview *preview, Block *block, const int *active, int sample, int rays) {
     float through[LANES];
-    for (int i = 0; i < LANES; i++) block->light[i] = v3(0, 0, 0);
+    for (int i = 0; i < LANES; i++) block->light[i] = float3(0, 0, 0);
     light_add_sun(preview, block, active, sample, rays);
     light_add_sky(preview, block, active, sample, rays > 0);
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         const Point *point = &block->point[i];
-        V3 colour = v3_add(block->light[i], point->glow), fire = {0, 0, 0};
-        float l = v3_luminance(colour), shown = l / (1 + l), clear = 1;
+        Float3 colour = float3_add(block->light[i], point->glow), fire = {0, 0, 0};
+        float l = float3_luminance(colour), shown = l / (1 + l), clear = 1;
         block->low[i] = minf(block->low[i], shown), block->high[i] = maxf(block->high[i], shown);
-        if (point->fade > 0) colour = v3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
+        if (point->fade > 0) colour = float3_mix(colour, background_colour(preview, block->direction[i]), point->fade);
         if (block->tile) {
             look_through(block, i, point->distance);
             fire = block->fire_light[i], clear = block->fire_clear[i];
-            colour = v3_mad(fire, colour, clear);
+            colour = float3_mad(fire, colour, clear);
         }
         through[i] = clear * (1 - point->fade);
-        colour = v3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
-        block->sum[i] = v3_add(block->sum[i], colour);
+        colour = float3(minf(colour.x, 40), minf(colour.y, 40), minf(colour.z, 40));
+        block->sum[i] = float3_add(block->sum[i], colour);
         layers_add(preview, point, fire, clear, block->direction[i], &block->layer[i]);
     }
     lamps_add(preview, block, active, sample, through);
@@ -187,7 +187,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
 static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
-        place_sample(sample, at);
+        position_sample(sample, at);
         aim_block(preview, block, sample, at);
         if (!bare) find_points(preview, block, active);
         for (int i = 0; bare && i < LANES; i++)
@@ -243,10 +243,10 @@ static void start_block(const Preview *preview, Block *block, int *active) {
         active[i] = block->x[i] < def->width && block->y[i] < def->height ? -1 : 0;
         sample_pixel(block->x[i], block->y[i], def->seed, block->turn[i]);
         block->key[i] = sample_key(block->x[i], block->y[i], def->seed);
-        block->sum[i] = v3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
+        block->sum[i] = float3(0, 0, 0), block->low[i] = INFINITY, block->high[i] = -INFINITY;
         block->time[i] = 0.5f;
         block->sky_seen[i] = 0, block->sky_asked[i] = 0;
-        block->lamp[i] = v3(0, 0, 0), block->lamp_seen[i] = block->lamp_asked[i] = 0;
+        block->lamp[i] = float3(0, 0, 0), block->lamp_seen[i] = block->lamp_asked[i] = 0;
         block->fire_from[i] = INFINITY, block->fire_to[i] = -INFINITY;
         layers_begin(&block->layer[i]);
     }
@@ -257,7 +257,7 @@ static void write_block(Preview *preview, const Block *block, const int *active,
     for (int i = 0; i < LANES; i++) {
         if (!active[i]) continue;
         size_t pixel = pixel_index(preview, block, i);
-        preview->picture[pixel] = v3_scale(block->sum[i], 1 / (float)taken[i]);
+        preview->picture[pixel] = float3_scale(block->sum[i], 1 / (float)taken[i]);
         layers_write(preview, pixel, &block->layer[i]);
         lamps_write(preview, pixel, block, i, taken[i]);
     }
@@ -311,15 +311,15 @@ static void fill_table(Preview *preview, Block *block) {
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
     for (int s = 0; s < samples; s++) {
         float at[2];
-        place_sample(s, at);
+        position_sample(s, at);
         aim_block(preview, block, s, at);
         for (int i = 0; i < LANES; i++) {
             float distance = hit_ground(preview, block->origin[i], block->direction[i]);
             if (!isfinite(distance)) continue;
             Table look;
-            V3 place = v3_mad(block->origin[i], block->direction[i], distance);
-            ground_look(preview, place, block->direction[i].z, distance, &look);
-            sum[i].albedo = v3_add(sum[i].albedo, look.albedo), sum[i].polish += look.polish;
+            Float3 position = float3_mad(block->origin[i], block->direction[i], distance);
+            ground_look(preview, position, block->direction[i].z, distance, &look);
+            sum[i].albedo = float3_add(sum[i].albedo, look.albedo), sum[i].polish += look.polish;
             sum[i].tilt[0] += look.tilt[0], sum[i].tilt[1] += look.tilt[1];
             count[i]++;
         }
@@ -328,7 +328,7 @@ static void fill_table(Preview *preview, Block *block) {
         if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
         float share = 1 / maxf((float)count[i], 1);
         preview->table[pixel_index(preview, block, i)] =
-            (Table){.albedo = v3_scale(sum[i].albedo, share), .polish = share * sum[i].polish,
+            (Table){.albedo = float3_scale(sum[i].albedo, share), .polish = share * sum[i].polish,
                     .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
     }
 }

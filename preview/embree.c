@@ -97,7 +97,7 @@ void tracer_release(Preview *preview) {
 /// 1 / x, large but finite at 0 so that no 0 times infinity follows.
 static float inverse(float x) { return fabsf(x) > 1e-12f ? 1 / x : 1e12f; }
 
-bool tracer_near(const Scene *scene, V3 o, V3 d, float far, float margin) {
+bool tracer_near(const Scene *scene, Float3 o, Float3 d, float far, float margin) {
     float ix = inverse(d.x), iy = inverse(d.y), iz = inverse(d.z);
     float x0 = (scene->low.x - margin - o.x) * ix, x1 = (scene->high.x + margin - o.x) * ix;
     float y0 = (scene->low.y - margin - o.y) * iy, y1 = (scene->high.y + margin - o.y) * iy;
@@ -117,16 +117,16 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
         rays->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         wanted[i] = valid[i];
         if (wanted[i] && scene->embree)
-            wanted[i] = -tracer_near(scene, v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
-                                      v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
+            wanted[i] = -tracer_near(scene, float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
+                                      float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
         count += wanted[i] != 0;
     }
     if (!scene->embree || !count) return;
     trace_nearest16(scene->embree, wanted, rays);
 }
 
-static bool shape_blocks(const Preview *preview, float time, V3 o, V3 d, float far) {
-    V3 normal;
+static bool shape_blocks(const Preview *preview, float time, Float3 o, Float3 d, float far) {
+    Float3 normal;
     float moment = shutter_moment(preview, time);
     for (uint32_t k = 0; k < preview->shape_count; k++)
         if (shape_intersect(&preview->shapes[k], moment, o, d, preview->scene.epsilon, far, &normal) > 0) return true;
@@ -140,7 +140,7 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
     for (int i = 0; i < LANES; i++) {
         passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
-        V3 o = v3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = v3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
+        Float3 o = float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
         if (shape_blocks(preview, ray->time[i], o, d, ray->tfar[i])) clear[i] = 0;
         if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;

@@ -9,16 +9,16 @@
 #include <string.h>
 
 static const float FACETS_CREASE = 0.82f; ///< cosine of 35 degrees
-static const V3 UP = {0, 0, 1};           ///< for the normal of what has no area
+static const Float3 UP = {0, 0, 1};           ///< for the normal of what has no area
 
-static V3 facets_corner(const PreviewSolid *solid, uint32_t triangle, int corner) {
-    return v3_load(solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)triangle + (size_t)corner]);
+static Float3 facets_corner(const PreviewSolid *solid, uint32_t triangle, int corner) {
+    return float3_load(solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)triangle + (size_t)corner]);
 }
 
 /// Along the normal, twice the area long.
-static V3 facets_cross(const PreviewSolid *solid, uint32_t t) {
-    V3 a = facets_corner(solid, t, 0);
-    return v3_cross(v3_sub(facets_corner(solid, t, 1), a), v3_sub(facets_corner(solid, t, 2), a));
+static Float3 facets_cross(const PreviewSolid *solid, uint32_t t) {
+    Float3 a = facets_corner(solid, t, 0);
+    return float3_cross(float3_sub(facets_corner(solid, t, 1), a), float3_sub(facets_corner(solid, t, 2), a));
 }
 
 /// Triangles by their vertices: those of vertex v are fan[first[v]] up to fan[first[v + 1]].
@@ -33,25 +33,25 @@ static void facets_fans(const PreviewSolid *solid, uint32_t *first, uint32_t *fa
 static void facets_smooth(Facets *facets, const uint32_t *first, const uint32_t *fan) {
     const PreviewSolid *solid = facets->solid;
     for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
-        V3 own = v3_unit(facets_cross(solid, (uint32_t)(k / 3)), UP), sum = {0, 0, 0};
+        Float3 own = float3_unit_or(facets_cross(solid, (uint32_t)(k / 3)), UP), sum = {0, 0, 0};
         for (uint32_t i = first[solid->triangles[k]]; i < first[solid->triangles[k] + 1]; i++) {
-            V3 other = facets_cross(solid, fan[i]);
-            if (v3_dot(other, own) >= FACETS_CREASE * v3_length(other)) sum = v3_add(sum, other);
+            Float3 other = facets_cross(solid, fan[i]);
+            if (float3_dot(other, own) >= FACETS_CREASE * float3_length(other)) sum = float3_add(sum, other);
         }
-        facets->normals[k] = v3_dot(sum, own) > 0 ? v3_unit(sum, own) : own;
+        facets->normals[k] = float3_dot(sum, own) > 0 ? float3_unit_or(sum, own) : own;
     }
 }
 
 static void facets_bounds(Facets *facets) {
     const PreviewSolid *solid = facets->solid;
-    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t k = 0; k < 3 * (size_t)solid->triangle_count; k++) {
-        V3 v = v3_load(solid->vertices + 3 * (size_t)solid->triangles[k]);
-        low = v3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
-        high = v3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
+        Float3 v = float3_load(solid->vertices + 3 * (size_t)solid->triangles[k]);
+        low = float3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
+        high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
-    facets->middle = v3_scale(v3_add(low, high), 0.5f);
-    facets->extent = 0.5f * v3_length(v3_sub(high, low));
+    facets->middle = float3_scale(float3_add(low, high), 0.5f);
+    facets->extent = 0.5f * float3_length(float3_sub(high, low));
 }
 
 static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *error) {
@@ -140,24 +140,24 @@ void facets_free(Preview *preview) {
 }
 
 /// Whether a ray of unit direction comes near enough.
-static bool facets_near(const Facets *facets, V3 origin, V3 direction) {
-    V3 to = v3_sub(facets->middle, origin);
-    V3 aside = v3_mad(to, direction, -v3_dot(to, direction));
-    return v3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent;
+static bool facets_near(const Facets *facets, Float3 origin, Float3 direction) {
+    Float3 to = float3_sub(facets->middle, origin);
+    Float3 aside = float3_mad(to, direction, -float3_dot(to, direction));
+    return float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent;
 }
 
-float facets_intersect(const Facets *facets, V3 o, V3 d, float near, float far, V3 *normal) {
+float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Float3 *normal) {
     if (!facets_near(facets, o, d)) return -1;
     struct RTCRayHit hit = {.ray = {.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
                                     .tnear = maxf(near, 0), .tfar = far, .mask = ~0u}};
     hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     trace_nearest(facets->embree, &hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;
-    const V3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
+    const Float3 *corner = facets->normals + 3 * (size_t)hit.hit.primID;
     float u = hit.hit.u, v = hit.hit.v;
-    V3 smooth = v3_mad(v3_mad(v3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
-    V3 flat = v3_unit(facets_cross(facets->solid, hit.hit.primID), UP);
+    Float3 smooth = float3_mad(float3_mad(float3_scale(corner[0], 1 - u - v), corner[1], u), corner[2], v);
+    Float3 flat = float3_unit_or(facets_cross(facets->solid, hit.hit.primID), UP);
     // a smooth normal that looks away from the eye where the face does not would be turned round
-    *normal = v3_dot(smooth, d) * v3_dot(flat, d) > 0 ? v3_unit(smooth, flat) : flat;
+    *normal = float3_dot(smooth, d) * float3_dot(flat, d) > 0 ? float3_unit_or(smooth, flat) : flat;
     return hit.ray.tfar;
 }

@@ -50,12 +50,12 @@ static void find_roots(Preview *preview) {
     for (uint32_t i = 0; i < scene->vertex_count; i++) {
         float rate = scene->vertices[i].flaming, rest;
         if (rate < 0.02f) continue;
-        V3 g = v3_scale(v3_sub(v3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
-        int place[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
+        Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
+        int position[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
         bool in = true;
-        for (int c = 0; c < 3; c++) in = in && place[c] > 0 && place[c] < fire->size[c] - 1;
+        for (int c = 0; c < 3; c++) in = in && position[c] > 0 && position[c] < fire->size[c] - 1;
         if (!in) continue;
-        float *root = fire->roots[at(fire, place[0], place[1], place[2])];
+        float *root = fire->roots[at(fire, position[0], position[1], position[2])];
         root[0] += rate, root[1] += rate * scene->positions[i][2];
     }
 }
@@ -97,11 +97,11 @@ static size_t brick_at(const Fire *fire, int x, int y, int z) {
 
 /// Marks the bricks that come nearer than `reach` cells to the box of cell (x, y, z).
 static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t what) {
-    const int place[3] = {x, y, z};
+    const int position[3] = {x, y, z};
     int low[3], high[3];
     for (int c = 0; c < 3; c++) {
-        low[c] = (int)(maxf((float)place[c] - 0.5f - reach, 0) / FIRE_BRICK);
-        int last = (int)(((float)place[c] + 0.5f + reach) / FIRE_BRICK);
+        low[c] = (int)(maxf((float)position[c] - 0.5f - reach, 0) / FIRE_BRICK);
+        int last = (int)(((float)position[c] + 0.5f + reach) / FIRE_BRICK);
         high[c] = last < fire->bricks[c] ? last : fire->bricks[c] - 1;
     }
     for (int k = low[2]; k <= high[2]; k++)
@@ -112,10 +112,10 @@ static void mark_bricks(Fire *fire, int x, int y, int z, float reach, uint8_t wh
 /// Marks the cells about (x, y, z), itself included.
 static void mark_cells(Fire *fire, int x, int y, int z) {
     int reach = 1 + (int)minf(FIRE_WARP_FINE / fire->cell, 1000), low[3], high[3];
-    const int place[3] = {x, y, z};
+    const int position[3] = {x, y, z};
     for (int c = 0; c < 3; c++) {
-        low[c] = place[c] > reach ? place[c] - reach : 0;
-        high[c] = place[c] + reach < fire->size[c] ? place[c] + reach : fire->size[c] - 1;
+        low[c] = position[c] > reach ? position[c] - reach : 0;
+        high[c] = position[c] + reach < fire->size[c] ? position[c] + reach : fire->size[c] - 1;
     }
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
@@ -124,16 +124,16 @@ static void mark_cells(Fire *fire, int x, int y, int z) {
 
 /// The most that the spline can be in a cell's box: the largest of its Bezier points, which are the means of the
 /// cells that meet in its faces, edges and corners.
-static float most_flame(const Fire *fire, int x, int y, int z) {
-    float most = 0;
+static float max_flame(const Fire *fire, int x, int y, int z) {
+    float max = 0;
     for (int k = 0; k < 27; k++) {
         int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
         float sum = 0;
         for (int m = 0; m < 8; m++)
             sum += fire->cells[at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))].flame;
-        most = maxf(most, 0.125f * sum);
+        max = maxf(max, 0.125f * sum);
     }
-    return most;
+    return max;
 }
 
 static void mark_all(Fire *fire) {
@@ -143,7 +143,7 @@ static void mark_all(Fire *fire) {
     for (int z = 1; z < fire->size[2] - 1; z++)
         for (int y = 1; y < fire->size[1] - 1; y++)
             for (int x = 1; x < fire->size[0] - 1; x++) {
-                if (most_flame(fire, x, y, z) > FLAME_SEEN) {
+                if (max_flame(fire, x, y, z) > FLAME_SEEN) {
                     mark_bricks(fire, x, y, z, reach, FIRE_FLAME);
                     mark_cells(fire, x, y, z);
                 }
@@ -153,15 +153,15 @@ static void mark_all(Fire *fire) {
 
 /// Bounds of what is not empty. False where all is.
 static bool find_bounds(Fire *fire) {
-    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     float side = FIRE_BRICK * fire->cell;
     for (int z = 0; z < fire->bricks[2]; z++)
         for (int y = 0; y < fire->bricks[1]; y++)
             for (int x = 0; x < fire->bricks[0]; x++) {
                 if (!fire->seen[brick_at(fire, x, y, z)]) continue;
-                V3 corner = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), side);
-                low = v3(minf(low.x, corner.x), minf(low.y, corner.y), minf(low.z, corner.z));
-                high = v3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
+                Float3 corner = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), side);
+                low = float3(minf(low.x, corner.x), minf(low.y, corner.y), minf(low.z, corner.z));
+                high = float3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
             }
     fire->low = low, fire->high = high;
     return low.x < high.x;
@@ -270,7 +270,7 @@ SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *e
     }
     float shift = (0.5f - FIRE_BORDER) * gas->cell;
     fire->cell = gas->cell;
-    fire->origin = v3_add(v3_load(gas->origin), v3(shift, shift, shift));
+    fire->origin = float3_add(float3_load(gas->origin), float3(shift, shift, shift));
     fill_cells(fire, gas);
     return SINGE_OK;
 }
@@ -280,19 +280,19 @@ void fire_light_smoke(Preview *preview) {
     const EmberLights *lights = &preview->scene.lights;
     if (!fire->visible) return;
     // the sun lights one side, the sky all
-    V3 sky = v3_add(sky_ambient(&preview->sky, v3(0, 0, 1)), sky_ambient(&preview->sky, v3(0, 0, -1)));
-    fire->daylight = v3_mad(v3_scale(sky, 0.5f), preview->sun_light, 0.28f);
+    Float3 sky = float3_add(sky_ambient(&preview->sky, float3(0, 0, 1)), sky_ambient(&preview->sky, float3(0, 0, -1)));
+    fire->daylight = float3_mad(float3_scale(sky, 0.5f), preview->sun_light, 0.28f);
     for (int z = 0; z < fire->size[2]; z++)
         for (int y = 0; y < fire->size[1]; y++)
             for (int x = 0; x < fire->size[0]; x++) {
                 FireCell *cell = &fire->cells[at(fire, x, y, z)];
                 cell->glow = 0;
                 if (cell->smoke <= SMOKE_SEEN) continue;
-                V3 p = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), fire->cell);
+                Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
                 for (int k = 0; k < preview->scene.light_count; k++) {
-                    V3 to = v3_sub(v3(lights->x[k], lights->y[k], lights->z[k]), p);
+                    Float3 to = float3_sub(float3(lights->x[k], lights->y[k], lights->z[k]), p);
                     // scattered to all sides alike: a quarter of what white paper would send back
-                    cell->glow += 0.25f * lights->strength[0][k] / (v3_dot(to, to) + lights->softness[k] + 4e-4f);
+                    cell->glow += 0.25f * lights->strength[0][k] / (float3_dot(to, to) + lights->softness[k] + 4e-4f);
                 }
             }
 }

@@ -29,7 +29,7 @@ typedef struct FireCell {
 typedef struct FireView {
     int count;
     float from[FIRE_STEPS], distance[FIRE_STEPS], clear[FIRE_STEPS];
-    V3 light[FIRE_STEPS];
+    Float3 light[FIRE_STEPS];
 } FireView;
 
 /// Flames have no edges as sharp as a sheet's: one ray for each second pixel across and down, through the corners that
@@ -44,7 +44,7 @@ typedef struct Fire {
     int size[3];      ///< cells with their border; all 0 where there is no gas
     bool visible;     ///< whether any of it is seen
     float cell;       ///< m
-    V3 origin;        ///< m, middle of cell (0, 0, 0), border included
+    Float3 origin;        ///< m, middle of cell (0, 0, 0), border included
     FireCell *cells;
     size_t cell_capacity;
     int bricks[3];
@@ -54,11 +54,11 @@ typedef struct Fire {
     uint8_t *burns;   ///< [cells] whether flame may be in reach of the small eddies alone
     size_t brick_capacity;
     float moment;     ///< s, by which the eddies have risen
-    V3 daylight;      ///< of sun and sky, per unit of the smoke's albedo
-    V3 low, high;     ///< m, bounds of the bricks that are not empty
+    Float3 daylight;      ///< of sun and sky, per unit of the smoke's albedo
+    Float3 low, high;     ///< m, bounds of the bricks that are not empty
     FireTile *tiles;   ///< [def.thread_count] what each thread works on; NULL before the first gas
     float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
-    V3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
+    Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest
 } Fire;
 
 #define FLAME_HEIGHT 0.058f ///< m, about which tongues end
@@ -87,7 +87,7 @@ void fire_light_smoke(Preview *preview);
 
 /// What there is at a place, a metre of it.
 typedef struct Matter {
-    V3 light;
+    Float3 light;
     float dense; ///< 1/m, extinction
     bool flame;
 } Matter;
@@ -95,15 +95,15 @@ typedef struct Matter {
 // fire_shade.c
 void fire_fill_colours(Preview *preview);
 /// Light of a full flame, radiance a metre, for the lamps that stand for it, and how much of it a cell gives.
-V3 fire_emission(const Preview *preview);
+Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
-Matter fire_matter(const Preview *preview, V3 p, int what);
+Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c
 /// Fills a tile whose upper left pixel is (x, y).
 void fire_see(const Preview *preview, int x, int y, FireTile *tile);
 /// The light of the fire as far as `distance` from a pixel of the tile, counted from its upper left, and what it leaves
 /// of the light from there.
-void fire_until(const FireTile *tile, int x, int y, float distance, V3 *light, float *clear);
+void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear);
 
 #endif

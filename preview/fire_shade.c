@@ -43,7 +43,7 @@ static inline Four four_load(const float *p) {
 }
 
 /// Quadratic B-spline over 3 x 3 x 3 cells at g, in cells from the middle of cell (0, 0, 0).
-static FireCell look_up(const Fire *fire, V3 g) {
+static FireCell look_up(const Fire *fire, Float3 g) {
     float f[3], w[3][3];
     int base[3];
     const float at[3] = {g.x, g.y, g.z};
@@ -78,7 +78,7 @@ static inline int split(float x, float *rest) {
 }
 
 /// Four smooth noises from -1 to 1 at q, lattice size 1.
-static inline Noise noise_at(const Fire *fire, V3 q) {
+static inline Noise noise_at(const Fire *fire, Float3 q) {
     float fx, fy, fz;
     int x = split(q.x, &fx), y = split(q.y, &fy), z = split(q.z, &fz);
     fx = fx * fx * (3 - 2 * fx), fy = fy * fy * (3 - 2 * fy), fz = fz * fz * (3 - 2 * fz);
@@ -95,10 +95,10 @@ static inline Noise noise_at(const Fire *fire, V3 q) {
 }
 
 /// Noise of eddies `width` across and `stretch` times as long, that rise; turned so that it lies along no axis.
-static inline Noise eddies(const Fire *fire, V3 p, float time, float width, float stretch) {
+static inline Noise eddies(const Fire *fire, Float3 p, float time, float width, float stretch) {
     const float c = 0.829f, s = 0.559f, tilt = 0.21f; // 34 degrees about the vertical
     float across = 1 / width, z = p.z - RISE * time;
-    return noise_at(fire, v3((c * p.x - s * p.y + tilt * z / stretch) * across,
+    return noise_at(fire, float3((c * p.x - s * p.y + tilt * z / stretch) * across,
                              (s * p.x + c * p.y) * across + 1.3f * time, z * across / stretch));
 }
 
@@ -107,19 +107,19 @@ static inline Noise eddies(const Fire *fire, V3 p, float time, float width, floa
 void fire_fill_colours(Preview *preview) {
     for (int i = 0; i < FIRE_COLOURS; i++) {
         float hot = (float)i / (FIRE_COLOURS - 1);
-        V3 glow = blackbody_glow(preview->blackbody, mixf(FLAME_COOL, FLAME_HOT, hot));
+        Float3 glow = blackbody_glow(preview->blackbody, mixf(FLAME_COOL, FLAME_HOT, hot));
         float brightness = mixf(FLAME_DIM, FLAME_BRIGHT, hot * hot);
-        preview->fire.colours[i] = v3_scale(glow, brightness / maxf(v3_luminance(glow), 1e-6f));
+        preview->fire.colours[i] = float3_scale(glow, brightness / maxf(float3_luminance(glow), 1e-6f));
     }
 }
 
-static V3 flame_colour(const Fire *fire, float hot) {
+static Float3 flame_colour(const Fire *fire, float hot) {
     float x = hot * (FIRE_COLOURS - 1);
     int i = (int)minf(x, FIRE_COLOURS - 2);
-    return v3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
+    return float3_mix(fire->colours[i], fire->colours[i + 1], x - (float)i);
 }
 
-V3 fire_emission(const Preview *preview) { return v3_scale(flame_colour(&preview->fire, 1), 140); }
+Float3 fire_emission(const Preview *preview) { return float3_scale(flame_colour(&preview->fire, 1), 140); }
 
 float fire_share(const FireCell *cell) {
     if (cell->flame <= 0.05f) return 0;
@@ -128,36 +128,36 @@ float fire_share(const FireCell *cell) {
 }
 
 /// Light that a metre of flame adds and the share that it keeps back.
-static V3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise fine, float *opaque) {
+static Float3 shade_flame(const Fire *fire, const FireCell *cell, Noise wide, Noise fine, float *opaque) {
     float rise = cell->rise / cell->flame, stand = stepf(STAND_OFF, 4 * STAND_OFF, rise);
-    if (stand <= 0) return v3(0, 0, 0);
+    if (stand <= 0) return float3(0, 0, 0);
     float tall = maxf(rise, 0) / (FLAME_HEIGHT * (1 + 0.6f * wide.c + 0.25f * fine.c)), torn = stepf(0, 0.03f, rise);
     float present = minf(5 * cell->flame, 1);
     float edge = cell->flame + present * ((0.05f + 0.13f * torn) * wide.c + (0.03f + 0.10f * torn) * fine.c);
     edge -= EDGE + 0.09f * tall * tall;
     float body = stepf(0, 0.08f, edge);
-    if (body <= 0) return v3(0, 0, 0);
+    if (body <= 0) return float3(0, 0, 0);
     float fold = 0.8f * wide.d + 0.35f * fine.c, sheet = maxf(1 - 20 * fold * fold, 0);
     float soot = stepf(SOOT_BEGINS, SOOT_FULL, rise + 0.003f * fine.d), cooling = stepf(0.4f, 1.5f, tall);
     float thin = mixf(0.25f, 0.11f + sheet * sheet, torn) * body;
     float hot = 0.50f + 0.3f * stepf(0.05f, 0.3f, edge) + 0.2f * sheet - 0.45f * cooling + 0.12f * fine.d;
     *opaque = SOOT_OPAQUE * thin * soot;
-    V3 glow = v3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
-    return v3_mad(glow, v3(0.22f, 0.50f, 1.25f), BLUE_DENSE * body * stand * (1 - soot));
+    Float3 glow = float3_scale(flame_colour(fire, clampf(hot, 0, 1)), SOOT_DENSE * thin * soot);
+    return float3_mad(glow, float3(0.22f, 0.50f, 1.25f), BLUE_DENSE * body * stand * (1 - soot));
 }
 
-static V3 smoke_colour(const Preview *preview, float glow) {
+static Float3 smoke_colour(const Preview *preview, float glow) {
     // soot and tar send back about a third, to all sides
-    return v3_mad(v3_scale(preview->fire.daylight, 0.35f), v3(1, 0.5f, 0.16f), 0.35f * glow);
+    return float3_mad(float3_scale(preview->fire.daylight, 0.35f), float3(1, 0.5f, 0.16f), 0.35f * glow);
 }
 
-static FireCell cell_at(const Fire *fire, V3 p) {
-    return look_up(fire, v3_scale(v3_sub(p, fire->origin), 1 / fire->cell));
+static FireCell cell_at(const Fire *fire, Float3 p) {
+    return look_up(fire, float3_scale(float3_sub(p, fire->origin), 1 / fire->cell));
 }
 
 /// Whether the small eddies can bring flame to p.
-static bool may_burn(const Fire *fire, V3 p) {
-    V3 g = v3_scale(v3_sub(p, fire->origin), 1 / fire->cell);
+static bool may_burn(const Fire *fire, Float3 p) {
+    Float3 g = float3_scale(float3_sub(p, fire->origin), 1 / fire->cell);
     int x = (int)clampf(g.x + 0.5f, 0, (float)(fire->size[0] - 1));
     int y = (int)clampf(g.y + 0.5f, 0, (float)(fire->size[1] - 1));
     int z = (int)clampf(g.z + 0.5f, 0, (float)(fire->size[2] - 1));
@@ -165,23 +165,23 @@ static bool may_burn(const Fire *fire, V3 p) {
 }
 
 /// Flame and smoke at p, as the eddies have shifted them.
-static FireCell sample(const Fire *fire, V3 p, int what, V3 *light, float *opaque) {
+static FireCell sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
     Noise wide = eddies(fire, p, fire->moment, 0.019f, 3.0f);
-    V3 shifted = v3_mad(p, v3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
+    Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
     if (!may_burn(fire, shifted)) {
         FireCell cell = {0, 0, 0, 0};
         if (what & FIRE_SMOKE) cell = cell_at(fire, shifted), cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
         return cell;
     }
     Noise fine = eddies(fire, shifted, fire->moment, 0.0075f, 4.0f);
-    shifted = v3_mad(shifted, v3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE);
+    shifted = float3_mad(shifted, float3(fine.a, fine.b, 0), 0.7f * FIRE_WARP_FINE);
     FireCell cell = cell_at(fire, shifted);
     if (cell.flame > 0.05f) *light = shade_flame(fire, &cell, wide, fine, opaque);
     cell.smoke *= maxf(1 + 0.9f * wide.d, 0);
     return cell;
 }
 
-Matter fire_matter(const Preview *preview, V3 p, int what) {
+Matter fire_matter(const Preview *preview, Float3 p, int what) {
     const Fire *fire = &preview->fire;
     Matter m = {{0, 0, 0}, 0, false};
     FireCell cell;
@@ -192,7 +192,7 @@ Matter fire_matter(const Preview *preview, V3 p, int what) {
         cell = cell_at(fire, p);
         cell.smoke *= maxf(1 + 0.9f * eddies(fire, p, fire->moment, 0.02f, 1.6f).d, 0);
     }
-    if (cell.smoke > 0) m.light = v3_mad(m.light, smoke_colour(preview, cell.glow), cell.smoke);
+    if (cell.smoke > 0) m.light = float3_mad(m.light, smoke_colour(preview, cell.glow), cell.smoke);
     m.dense += cell.smoke;
     return m;
 }

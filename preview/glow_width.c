@@ -15,23 +15,23 @@ typedef struct GlowPicture {
     const PreviewLayers *layers;
     Camera camera;
     int width, height;
-    float least; ///< luminance of what glows
+    float min; ///< luminance of what glows
 } GlowPicture;
 
 static float luminance(const GlowPicture *picture, size_t pixel) {
-    return picture->layers->sheet[pixel] < 0 ? 0 : v3_luminance(v3_load(picture->layers->glow[pixel]));
+    return picture->layers->sheet[pixel] < 0 ? 0 : float3_luminance(float3_load(picture->layers->glow[pixel]));
 }
 
-static V3 place(const GlowPicture *picture, int x, int y) {
+static Float3 position(const GlowPicture *picture, int x, int y) {
     const Camera *camera = &picture->camera;
     float u = 2 * ((float)x + 0.5f) / (float)picture->width - 1, v = 1 - 2 * ((float)y + 0.5f) / (float)picture->height;
-    V3 ray = v3_mad(v3_mad(camera->forward, camera->right, u), camera->up, v);
-    return v3_mad(camera->eye, ray, picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x]);
+    Float3 ray = float3_mad(float3_mad(camera->forward, camera->right, u), camera->up, v);
+    return float3_mad(camera->eye, ray, picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x]);
 }
 
 static bool glows(const GlowPicture *picture, int x, int y) {
     if (x < 0 || y < 0 || x >= picture->width || y >= picture->height) return false;
-    return luminance(picture, (size_t)y * (size_t)picture->width + (size_t)x) >= picture->least;
+    return luminance(picture, (size_t)y * (size_t)picture->width + (size_t)x) >= picture->min;
 }
 
 /// The last pixel that glows on the way from (x, y) along (dx, dy).
@@ -46,17 +46,17 @@ static void walk(const GlowPicture *picture, int x, int y, float dx, float dy, i
 
 /// m
 static float width_at(const GlowPicture *picture, int x, int y) {
-    float least = INFINITY;
+    float min = INFINITY;
     for (int k = 0; k < DIRECTIONS; k++) {
         float angle = PI_F * (float)k / DIRECTIONS, dx = cosf(angle), dy = sinf(angle);
         int a[2], b[2];
         walk(picture, x, y, dx, dy, a), walk(picture, x, y, -dx, -dy, b);
         float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
         // between the middles of the last pixels, and half of each
-        float width = v3_length(v3_sub(place(picture, a[0], a[1]), place(picture, b[0], b[1])));
-        least = minf(least, width + depth * picture->camera.pixel);
+        float width = float3_length(float3_sub(position(picture, a[0], a[1]), position(picture, b[0], b[1])));
+        min = minf(min, width + depth * picture->camera.pixel);
     }
-    return least;
+    return min;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -76,7 +76,7 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
     }
     if (lit) {
         qsort(values, lit, sizeof *values, ascending);
-        picture.least = 0.1f * values[lit - 1 - lit / 100];
+        picture.min = 0.1f * values[lit - 1 - lit / 100];
         lit = 0;
         for (int y = 0; y < def->height; y++)
             for (int x = 0; x < def->width; x++)

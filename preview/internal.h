@@ -63,15 +63,15 @@ typedef struct EmberLights {
 /// The light of the sky and what the ground sends back of it, as seen from a place in the open.
 enum { SKY_ACROSS = 48, SKY_DOWN = 24 };
 typedef struct Sky {
-    V3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
-    V3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as a dull surface mirrors it
-    V3 ambient[9];                     ///< spherical harmonics of what white paper sends back
+    Float3 radiance[SKY_DOWN][SKY_ACROSS]; ///< latitudes from the top
+    Float3 blurred[SKY_DOWN][SKY_ACROSS];  ///< as a dull surface mirrors it
+    Float3 ambient[9];                     ///< spherical harmonics of what white paper sends back
 } Sky;
 
 /// The light of embers and flames in a pixel, before what hides it is taken away.
 typedef struct Lamp {
-    V3 light;       ///< as it reaches the eye
-    V3 normal;      ///< of the last sample
+    Float3 light;       ///< as it reaches the eye
+    Float3 normal;      ///< of the last sample
     float distance; ///< m, the same
     float seen;     ///< share of it that nothing hides, by few rays
     int32_t sheet;
@@ -79,14 +79,14 @@ typedef struct Lamp {
 
 /// The table at a pixel.
 typedef struct Table {
-    V3 albedo;
+    Float3 albedo;
     float tilt[2]; ///< slope of its surface along x and y
     float polish;  ///< how much it mirrors
 } Table;
 
 typedef struct Camera {
-    V3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
-    V3 lens_right, lens_up;     ///< the lens' radius
+    Float3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
+    Float3 lens_right, lens_up;     ///< the lens' radius
     float lens, focus;          ///< m, its radius and the distance that is sharp
     float pixel;                ///< size of a pixel at distance 1
     float reach;                ///< m, eye to target
@@ -100,7 +100,7 @@ typedef struct Scene {
     uint32_t (*triangles)[3];
     uint32_t vertex_count, triangle_count;
     uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
-    V3 low, high;    ///< bounds of the drawn triangles
+    Float3 low, high;    ///< bounds of the drawn triangles
     float epsilon;   ///< m, distance by which secondary rays leave a surface
     EmberLights lights;
     int light_count;
@@ -110,8 +110,8 @@ typedef struct Scene {
 typedef struct Facets {
     const PreviewSolid *solid;
     RTCScene embree;
-    V3 *normals;  ///< [3 * triangle_count] of each triangle's corners
-    V3 middle;    ///< of its bounds, in its own frame
+    Float3 *normals;  ///< [3 * triangle_count] of each triangle's corners
+    Float3 middle;    ///< of its bounds, in its own frame
     float extent; ///< m, from the middle
     uint32_t triangle_count;
     struct Facets *next;
@@ -122,8 +122,8 @@ struct Preview {
     SingeAllocator allocator;
     RTCDevice device;
     Camera camera;
-    V3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
-    V3 sun_light;              ///< what white paper sends back of it
+    Float3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
+    Float3 sun_light;              ///< what white paper sends back of it
     Sky sky;
     float sun_spread;          ///< tangent of the light's apparent radius
     PreviewShape *shapes;
@@ -131,14 +131,14 @@ struct Preview {
     Facets *facets;            ///< of the solids that were drawn
     Texture *textures;         ///< [def.sheet_count]
     float linear[256];         ///< sRGB byte to linear
-    V3 blackbody[BLACKBODY_COUNT];
-    V3 *picture;               ///< [height * width] radiance
+    Float3 blackbody[BLACKBODY_COUNT];
+    Float3 *picture;               ///< [height * width] radiance
     Lamp *lamps;               ///< [height * width]
     float *seen;               ///< [height * width] of the lamps, smoothed along rows
     Table *table;              ///< [height * width], once `table_known`
     bool table_known;
     uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
-    V3 *glow[2];               ///< [quarter height * quarter width] for the bloom
+    Float3 *glow[2];               ///< [quarter height * quarter width] for the bloom
     Scene scene;
     Fire fire;
     PreviewLayers layers;      ///< being drawn
@@ -147,8 +147,8 @@ struct Preview {
 
 /// A point to be lit. All normals face the viewer.
 typedef struct Point {
-    V3 position, normal, geometric, view; ///< view: unit, towards the eye
-    V3 albedo, glow;    ///< glow: what it gives off itself
+    Float3 position, normal, geometric, view; ///< view: unit, towards the eye
+    Float3 albedo, glow;    ///< glow: what it gives off itself
     float transmission; ///< share of the light from behind that comes through
     float gloss, shininess; ///< Blinn-Phong lobe of the sun
     float mirror;       ///< share of the blurred sky that it mirrors
@@ -169,7 +169,7 @@ void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_si
 // lens.c
 Camera camera_make(const PreviewDef *def);
 /// A ray through a point of the lens, `disc` within the unit circle.
-void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 *origin, V3 *direction);
+void camera_ray(const Camera *camera, float x, float y, const float disc[2], Float3 *origin, Float3 *direction);
 /// Radius, in pixels, over which a point at that depth is spread.
 float camera_blur(const Camera *camera, float depth);
 /// Point `index` of a low-discrepancy sequence in the square, turned by (a, b).
@@ -181,14 +181,14 @@ float sample_time(uint32_t index, uint32_t key);
 uint32_t sample_key(int x, int y, uint32_t seed);
 /// Two numbers for a pixel that differ well from its neighbours'.
 void sample_pixel(int x, int y, uint32_t seed, float out[2]);
-V3 sample_cosine(V3 normal, const float square[2]);
+Float3 sample_cosine(Float3 normal, const float square[2]);
 void sample_disc(const float square[2], float out[2]);
 
 // texture.c
 SingeResult texture_create(Preview *preview, Texture *texture, const Image *image, SingeError *error);
 void texture_free(const Preview *preview, Texture *texture);
 /// Linear colour; `texels` is a sample's width in texels of level 0.
-V3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
+Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels);
 
 // mesh_in.c
 SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeError *error);
@@ -198,7 +198,7 @@ void tracer_free(Preview *preview);
 SingeResult tracer_build(Preview *preview, SingeError *error);
 void tracer_release(Preview *preview);
 /// Whether the ray comes nearer than `margin` to the surface's bounds before `far`.
-bool tracer_near(const Scene *scene, V3 origin, V3 direction, float far, float margin);
+bool tracer_near(const Scene *scene, Float3 origin, Float3 direction, float far, float margin);
 /// Nearest hits of the lanes with valid = -1; `geomID` is RTC_INVALID_GEOMETRY_ID where there is none.
 void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit16 *rays);
 /// clear[i] tells of the lanes with valid = -1 what share of the light comes through whatever is in the way, shapes
@@ -208,8 +208,8 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *rays, f
 // environment.c
 void sky_fill(Preview *preview);
 /// What white paper with that normal sends back of all the light but the sun's.
-V3 sky_ambient(const Sky *sky, V3 normal);
-V3 sky_mirrored(const Sky *sky, V3 direction);
+Float3 sky_ambient(const Sky *sky, Float3 normal);
+Float3 sky_mirrored(const Sky *sky, Float3 direction);
 
 // facets.c
 
@@ -217,17 +217,17 @@ V3 sky_mirrored(const Sky *sky, V3 direction);
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **facets, SingeError *error);
 void facets_free(Preview *preview);
 /// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
-float facets_intersect(const Facets *facets, V3 origin, V3 direction, float near, float far, V3 *normal);
+float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Float3 *normal);
 
 // shape.c
 /// Seconds from the middle of the exposure, for a ray's time in [0, 1].
 static inline float shutter_moment(const Preview *preview, float time) { return (time - 0.5f) * preview->def.shutter; }
 /// Distance to the shape in (near, far), or -1; *normal points outward.
-float shape_intersect(const PreviewShape *shape, float moment, V3 origin, V3 direction, float near, float far,
-                      V3 *normal);
+float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
+                      Float3 *normal);
 
 /// Middle of a sphere that holds the shape in the middle of the frame's time.
-V3 shape_middle(const PreviewShape *shape);
+Float3 shape_middle(const PreviewShape *shape);
 /// Radius of a sphere about its middle that holds the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
 
@@ -241,13 +241,13 @@ bool mask_covers(const Preview *preview, int x, int y);
 void light_gather(Preview *preview);
 
 // blackbody.c
-void blackbody_fill(V3 table[BLACKBODY_COUNT]);
-V3 blackbody_glow(const V3 table[BLACKBODY_COUNT], float temperature);
+void blackbody_fill(Float3 table[BLACKBODY_COUNT]);
+Float3 blackbody_glow(const Float3 table[BLACKBODY_COUNT], float temperature);
 
 // shade_paper.c
 /// What the look of a hit depends on, interpolated.
 typedef struct PaperState {
-    V3 rest;
+    Float3 rest;
     float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
     float glowing; ///< 1/s, of burn_rate what char without fuel burns at
     float age; ///< s since it caught fire, as a fire of real pace has it; 0: not yet
@@ -275,12 +275,12 @@ static inline float ember_temperature(float mean) { return mean + 110; }
 /// How readily a place glows, 0 to 1, by its rate of burning (1/s).
 static inline float ember_activity(float burn_rate) { return burn_rate > 0 ? burn_rate / (burn_rate + 0.12f) : 0; }
 /// The air that reaches a place now, about 1: it comes and goes.
-float ember_air(const Preview *preview, V3 position);
+float ember_air(const Preview *preview, Float3 position);
 
 // shade_ground.c
-void ground_look(const Preview *preview, V3 place, float cosine, float distance, Table *table);
+void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table);
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point);
-V3 background_colour(const Preview *preview, V3 direction);
+Float3 background_colour(const Preview *preview, Float3 direction);
 void shape_shade(const Preview *preview, const PreviewShape *shape, float moment, Point *point);
 
 // bloom.c, tonemap.c

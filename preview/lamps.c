@@ -30,8 +30,8 @@ static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
 /// What white paper at the point sends back of all lights, and the luminance in each. A normal that faces away from a
 /// light is lit through the sheet.
-static V3 gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
-    V3 p = point->position, n = point->normal;
+static Float3 gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
+    Float3 p = point->position, n = point->normal;
     Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
     for (int k = 0; k < count; k += 4) {
         Four x = four(l->x + k) - p.x, y = four(l->y + k) - p.y, z = four(l->z + k) - p.z;
@@ -44,7 +44,7 @@ static V3 gather(const EmberLights *l, const Point *point, int count, float weig
         seen *= four(l->power + k);
         memcpy(weight + k, &seen, sizeof seen);
     }
-    return v3(four_sum(r), four_sum(g), four_sum(b));
+    return float3(four_sum(r), four_sum(g), four_sum(b));
 }
 
 /// The lamp in which a random number in [0, 1) falls.
@@ -64,12 +64,12 @@ static void aim(const Preview *preview, Block *block, int lane, int sample, int 
     sample_square((uint32_t)sample, block->turn[lane][1], block->turn[lane][0], square);
     float z = 1.6f * square[0] - 0.8f, disc[2];
     sample_disc((const float[2]){0.6f, square[1]}, disc);
-    V3 to = v3_add(v3(l->x[lamp], l->y[lamp], l->z[lamp]), v3_scale(v3(disc[0], disc[1], z), 0.8f * extent));
-    V3 centre = v3_sub(v3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position), way = v3_sub(to, point->position);
-    float distance = v3_length(way), free = v3_length(centre) - extent;
+    Float3 to = float3_add(float3(l->x[lamp], l->y[lamp], l->z[lamp]), float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
+    Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position), to_light = float3_sub(to, point->position);
+    float distance = float3_length(to_light), free = float3_length(centre) - extent;
     if (free < 0.1f * extent || distance < 1e-6f) return; // beside it, or in it
-    float side = v3_dot(point->geometric, way) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
-    aim_ray(&block->shadow, lane, v3_mad(point->position, point->geometric, side), v3_scale(way, 1 / distance), 0,
+    float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
+    aim_ray(&block->shadow, lane, float3_mad(point->position, point->geometric, side), float3_scale(to_light, 1 / distance), 0,
             minf(free, distance), block->time[lane]);
     block->valid[lane] = -1;
 }
@@ -91,13 +91,13 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
 
 /// What white paper sends back at the lane's point. It is known where the last one was next to it and faced as it does,
 /// or where that makes little of a difference, on char.
-static V3 white_light(const Preview *preview, Block *block, int lane, bool ask, float weight[LIGHT_LIMIT]) {
+static Float3 white_light(const Preview *preview, Block *block, int lane, bool ask, float weight[LIGHT_LIMIT]) {
     const Point *point = &block->point[lane];
-    V3 moved = v3_sub(point->position, block->lamp_place[lane]);
-    if (!ask && v3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
-        (v3_dot(point->normal, block->lamp_normal[lane]) > 0.99f || v3_luminance(point->albedo) < 0.08f))
+    Float3 moved = float3_sub(point->position, block->lamp_position[lane]);
+    if (!ask && float3_dot(moved, moved) < 4 * point->footprint * point->footprint &&
+        (float3_dot(point->normal, block->lamp_normal[lane]) > 0.99f || float3_luminance(point->albedo) < 0.08f))
         return block->lamp_white[lane];
-    block->lamp_place[lane] = point->position, block->lamp_normal[lane] = point->normal;
+    block->lamp_position[lane] = point->position, block->lamp_normal[lane] = point->normal;
     return block->lamp_white[lane] = gather(&preview->scene.lights, point, preview->scene.light_count, weight);
 }
 
@@ -108,10 +108,10 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
     for (int i = 0; i < LANES; i++) {
         wanted[i] = 0;
         if (!light_reaches(block, active, i)) continue;
-        V3 light = v3_mul(white_light(preview, block, i, ask_now, weight[i]), block->point[i].albedo);
-        light = v3_scale(v3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
-        block->lamp[i] = v3_add(block->lamp[i], light);
-        float luminance = v3_luminance(light);
+        Float3 light = float3_mul(white_light(preview, block, i, ask_now, weight[i]), block->point[i].albedo);
+        light = float3_scale(float3(minf(light.x, 40), minf(light.y, 40), minf(light.z, 40)), through[i]);
+        block->lamp[i] = float3_add(block->lamp[i], light);
+        float luminance = float3_luminance(light);
         if (luminance > too_faint) wanted[i] = luminance, any = true;
     }
     if (!any || !ask_now) return;
@@ -122,7 +122,7 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples) {
     const Point *point = &block->point[lane];
     preview->lamps[pixel] = (Lamp){
-        .light = v3_scale(block->lamp[lane], 1 / (float)samples), .normal = point->geometric,
+        .light = float3_scale(block->lamp[lane], 1 / (float)samples), .normal = point->geometric,
         .distance = point->distance, .sheet = point->sheet,
         .seen = block->lamp_asked[lane] > 0 ? block->lamp_seen[lane] / block->lamp_asked[lane] : 1};
 }
@@ -132,7 +132,7 @@ void lamps_write(const Preview *preview, size_t pixel, const Block *block, int l
 /// Whether two pixels show one face.
 static bool is_same(const Lamp *a, const Lamp *b) {
     return a->sheet == b->sheet && fabsf(a->distance - b->distance) < 0.02f * a->distance &&
-           v3_dot(a->normal, b->normal) > 0.8f;
+           float3_dot(a->normal, b->normal) > 0.8f;
 }
 
 /// Mean of `values` along a line of pixels `stride` apart, from `before` of them to `after`, each at its nearness.
@@ -174,6 +174,6 @@ void lamps_finish(Preview *preview, Block *block) {
         if (lamp->light.x + lamp->light.y + lamp->light.z <= 0) continue;
         float seen = smooth(lamp, &preview->seen[pixel], sizeof(float), w, lesser(y, reach), lesser(h - 1 - y, reach),
                             reach);
-        preview->picture[pixel] = v3_mad(preview->picture[pixel], lamp->light, seen);
+        preview->picture[pixel] = float3_mad(preview->picture[pixel], lamp->light, seen);
     }
 }

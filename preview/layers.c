@@ -7,33 +7,33 @@
 
 void layers_begin(LayerSum *sum) { *sum = (LayerSum){.depth = INFINITY, .sheet = -1, .piece = -1}; }
 
-void layers_add(const Preview *preview, const Point *point, V3 fire, float clear, V3 direction, LayerSum *sum) {
+void layers_add(const Preview *preview, const Point *point, Float3 fire, float clear, Float3 direction, LayerSum *sum) {
     if (!sum->samples++) {
-        sum->depth = point->distance * v3_dot(direction, preview->camera.forward);
+        sum->depth = point->distance * float3_dot(direction, preview->camera.forward);
         sum->sheet = point->sheet, sum->piece = point->piece;
     }
-    sum->fire = v3_add(sum->fire, fire), sum->fire_hides += 1 - clear;
+    sum->fire = float3_add(sum->fire, fire), sum->fire_hides += 1 - clear;
     if (!point->hit) return;
     sum->hits++;
-    sum->glow = v3_mad(sum->glow, point->glow, clear);
-    sum->normal = v3_add(sum->normal, point->normal);
+    sum->glow = float3_mad(sum->glow, point->glow, clear);
+    sum->normal = float3_add(sum->normal, point->normal);
     sum->temperature += point->temperature, sum->burn += point->burn;
 }
 
-static void store(float (*layer)[3], size_t pixel, V3 value) {
+static void store(float (*layer)[3], size_t pixel, Float3 value) {
     if (layer) layer[pixel][0] = value.x, layer[pixel][1] = value.y, layer[pixel][2] = value.z;
 }
 
 void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum) {
     const PreviewLayers *layers = &preview->layers;
     float sample = 1 / maxf((float)sum->samples, 1), hit = 1 / maxf((float)sum->hits, 1);
-    store(layers->glow, pixel, v3_scale(sum->glow, sample));
+    store(layers->glow, pixel, float3_scale(sum->glow, sample));
     if (layers->fire) {
         const float fire[4] = {sum->fire.x * sample, sum->fire.y * sample, sum->fire.z * sample,
                                sum->fire_hides * sample};
         memcpy(layers->fire[pixel], fire, sizeof fire);
     }
-    store(layers->normal, pixel, v3_unit(sum->normal, v3(0, 0, 0)));
+    store(layers->normal, pixel, float3_unit_or(sum->normal, float3(0, 0, 0)));
     if (layers->coverage) layers->coverage[pixel] = (float)sum->hits * sample;
     if (layers->temperature) layers->temperature[pixel] = sum->temperature * hit;
     if (layers->burn) layers->burn[pixel] = sum->burn * hit;

@@ -12,36 +12,36 @@
 #include "preview/internal.h"
 
 Camera camera_make(const PreviewDef *def) {
-    V3 eye = v3_load(def->camera.eye), forward = v3_sub(v3_load(def->camera.target), eye);
-    Camera camera = {.eye = eye, .reach = v3_length(forward)};
-    camera.forward = v3_unit(forward, v3(0, 1, 0));
-    V3 up = v3_unit(v3_load(def->camera.up), v3(0, 0, 1));
-    V3 right = v3_cross(camera.forward, up);
+    Float3 eye = float3_load(def->camera.eye), forward = float3_sub(float3_load(def->camera.target), eye);
+    Camera camera = {.eye = eye, .reach = float3_length(forward)};
+    camera.forward = float3_unit_or(forward, float3(0, 1, 0));
+    Float3 up = float3_unit_or(float3_load(def->camera.up), float3(0, 0, 1));
+    Float3 right = float3_cross(camera.forward, up);
     // looking along `up`: any other direction will do
-    if (v3_dot(right, right) < 1e-8f)
-        right = v3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? v3(0, 1, 0) : v3(1, 0, 0));
-    right = v3_unit(right, v3(1, 0, 0));
+    if (float3_dot(right, right) < 1e-8f)
+        right = float3_cross(camera.forward, fabsf(camera.forward.y) < 0.9f ? float3(0, 1, 0) : float3(1, 0, 0));
+    right = float3_unit_or(right, float3(1, 0, 0));
     float half = tanf(0.5f * def->camera.fov), aspect = (float)def->width / (float)def->height;
-    camera.up = v3_scale(v3_cross(right, camera.forward), half);
-    camera.right = v3_scale(right, half * aspect);
+    camera.up = float3_scale(float3_cross(right, camera.forward), half);
+    camera.right = float3_scale(right, half * aspect);
     camera.pixel = 2 * half / (float)def->height;
     camera.lens = 0.5f * def->camera.aperture;
     camera.focus = def->camera.focus > 0 ? def->camera.focus : camera.reach;
-    camera.lens_right = v3_scale(right, camera.lens);
-    camera.lens_up = v3_scale(v3_cross(right, camera.forward), camera.lens);
+    camera.lens_right = float3_scale(right, camera.lens);
+    camera.lens_up = float3_scale(float3_cross(right, camera.forward), camera.lens);
     return camera;
 }
 
 /// x and y run from -1 to 1, left to right and bottom to top.
-void camera_ray(const Camera *camera, float x, float y, const float disc[2], V3 *origin, V3 *direction) {
-    V3 d = v3_mad(v3_mad(camera->forward, camera->right, x), camera->up, y);
+void camera_ray(const Camera *camera, float x, float y, const float disc[2], Float3 *origin, Float3 *direction) {
+    Float3 d = float3_mad(float3_mad(camera->forward, camera->right, x), camera->up, y);
     *origin = camera->eye;
     if (camera->lens > 0) {
-        V3 aside = v3_mad(v3_scale(camera->lens_right, disc[0]), camera->lens_up, disc[1]);
-        *origin = v3_add(camera->eye, aside);
-        d = v3_mad(d, aside, -1 / camera->focus);
+        Float3 aside = float3_mad(float3_scale(camera->lens_right, disc[0]), camera->lens_up, disc[1]);
+        *origin = float3_add(camera->eye, aside);
+        d = float3_mad(d, aside, -1 / camera->focus);
     }
-    *direction = v3_scale(d, 1 / v3_length(d));
+    *direction = float3_scale(d, 1 / float3_length(d));
 }
 
 float camera_blur(const Camera *camera, float depth) {
@@ -86,11 +86,11 @@ void sample_disc(const float square[2], float out[2]) {
     out[0] = r * sine(quarter > 1 ? quarter - 2 : quarter), out[1] = r * sine(x);
 }
 
-V3 sample_cosine(V3 normal, const float square[2]) {
-    V3 a, b;
+Float3 sample_cosine(Float3 normal, const float square[2]) {
+    Float3 a, b;
     float disc[2];
-    v3_frame(normal, &a, &b);
+    float3_frame(normal, &a, &b);
     sample_disc(square, disc);
     float height = sqrtf(maxf(0.0f, 1 - square[0]));
-    return v3_mad(v3_mad(v3_scale(normal, height), a, disc[0]), b, disc[1]);
+    return float3_mad(float3_mad(float3_scale(normal, height), a, disc[0]), b, disc[1]);
 }

@@ -9,7 +9,7 @@
 
 enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
 
-typedef struct Cluster { V3 place, strength; float weight; } Cluster;
+typedef struct Cluster { Float3 position, strength; float weight; } Cluster;
 
 /// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held
 /// back, and an eye in the dark sees it better than a camera set for daylight does.
@@ -23,15 +23,15 @@ static float coverage(const PaperVertex *a, const PaperVertex *b, const PaperVer
     return overlap > 0 ? overlap / maxf(high - low, 2 * half) : 0;
 }
 
-static void add_to_cluster(Cluster *clusters, V3 low, V3 high, V3 place, V3 strength, float weight) {
-    V3 size = v3_sub(high, low);
+static void add_to_cluster(Cluster *clusters, Float3 low, Float3 high, Float3 position, Float3 strength, float weight) {
+    Float3 size = float3_sub(high, low);
     int cell[3];
-    float at[3] = {(place.x - low.x) / maxf(size.x, 1e-6f), (place.y - low.y) / maxf(size.y, 1e-6f),
-                   (place.z - low.z) / maxf(size.z, 1e-6f)};
+    float at[3] = {(position.x - low.x) / maxf(size.x, 1e-6f), (position.y - low.y) / maxf(size.y, 1e-6f),
+                   (position.z - low.z) / maxf(size.z, 1e-6f)};
     for (int i = 0; i < 3; i++) cell[i] = (int)clampf(at[i] * GRID, 0, GRID - 1);
     Cluster *cluster = &clusters[(cell[2] * GRID + cell[1]) * GRID + cell[0]];
-    cluster->place = v3_mad(cluster->place, place, weight);
-    cluster->strength = v3_add(cluster->strength, strength);
+    cluster->position = float3_mad(cluster->position, position, weight);
+    cluster->strength = float3_add(cluster->strength, strength);
     cluster->weight += weight;
 }
 
@@ -41,26 +41,26 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float hottest = maxf(a->temperature, maxf(b->temperature, c->temperature));
     float share = hottest > BLACKBODY_MIN ? coverage(a, b, c) : 0;
     if (share <= 0) return;
-    V3 pa = v3_load(scene->positions[t[0]]), pb = v3_load(scene->positions[t[1]]), pc = v3_load(scene->positions[t[2]]);
-    float area = 0.5f * v3_length(v3_cross(v3_sub(pb, pa), v3_sub(pc, pa)));
+    Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]), pc = float3_load(scene->positions[t[2]]);
+    float area = 0.5f * float3_length(float3_cross(float3_sub(pb, pa), float3_sub(pc, pa)));
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
-    V3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
-    V3 radiance = v3_scale(glow, EMBER_CAST * EMBER_GAIN * ember_activity(rate));
-    V3 place = v3_scale(v3_add(pa, v3_add(pb, pc)), 1.0f / 3);
-    V3 strength = v3_scale(radiance, ember_air(preview, place) * area * share / (2 * PI_F));
-    float weight = v3_luminance(strength);
+    Float3 glow = blackbody_glow(preview->blackbody, ember_temperature(temperature));
+    Float3 radiance = float3_scale(glow, EMBER_CAST * EMBER_GAIN * ember_activity(rate));
+    Float3 position = float3_scale(float3_add(pa, float3_add(pb, pc)), 1.0f / 3);
+    Float3 strength = float3_scale(radiance, ember_air(preview, position) * area * share / (2 * PI_F));
+    float weight = float3_luminance(strength);
     if (!(weight > 0)) return;
-    add_to_cluster(clusters, scene->low, scene->high, place, strength, weight);
+    add_to_cluster(clusters, scene->low, scene->high, position, strength, weight);
 }
 
-static void add_light(Scene *scene, V3 place, V3 strength, float softness, float extent) {
+static void add_light(Scene *scene, Float3 position, Float3 strength, float softness, float extent) {
     EmberLights *lights = &scene->lights;
     int k = scene->light_count++;
-    lights->x[k] = place.x, lights->y[k] = place.y, lights->z[k] = place.z;
+    lights->x[k] = position.x, lights->y[k] = position.y, lights->z[k] = position.z;
     lights->strength[0][k] = strength.x, lights->strength[1][k] = strength.y, lights->strength[2][k] = strength.z;
     lights->softness[k] = softness;
-    lights->extent[k] = extent, lights->power[k] = v3_luminance(strength);
+    lights->extent[k] = extent, lights->power[k] = float3_luminance(strength);
 }
 
 static void add_shapes(Preview *preview) {
@@ -69,26 +69,26 @@ static void add_shapes(Preview *preview) {
         const PreviewShape *shape = &preview->shapes[k];
         if (!(shape->temperature > BLACKBODY_MIN) || shape->kind == SINGE_COLLIDER_PLANE) continue;
         float r = shape->facets ? 0.5f * shape->facets->extent : shape->radius;
-        if (shape->kind == SINGE_COLLIDER_BOX) r = v3_length(v3_load(shape->half_size)) * 0.6f;
-        V3 glow = blackbody_glow(preview->blackbody, shape->temperature);
-        V3 place = shape_middle(shape);
-        add_light(scene, place, v3_scale(glow, 1.6f * r * r), 0.3f * r * r, 1.02f * shape_extent(shape, preview->def.shutter));
+        if (shape->kind == SINGE_COLLIDER_BOX) r = float3_length(float3_load(shape->half_size)) * 0.6f;
+        Float3 glow = blackbody_glow(preview->blackbody, shape->temperature);
+        Float3 position = shape_middle(shape);
+        add_light(scene, position, float3_scale(glow, 1.6f * r * r), 0.3f * r * r, 1.02f * shape_extent(shape, preview->def.shutter));
     }
 }
 
 static void gather_flames(const Preview *preview, Cluster *clusters) {
     const Fire *fire = &preview->fire;
     float volume = fire->cell * fire->cell * fire->cell;
-    V3 strength = v3_scale(fire_emission(preview), 0.14f * volume / PI_F);
+    Float3 strength = float3_scale(fire_emission(preview), 0.14f * volume / PI_F);
     const FireCell *cell = fire->cells;
     for (int z = 0; z < fire->size[2]; z++)
         for (int y = 0; y < fire->size[1]; y++)
             for (int x = 0; x < fire->size[0]; x++, cell++) {
                 float share = fire_share(cell);
                 if (share <= 0) continue;
-                V3 place = v3_mad(fire->origin, v3((float)x, (float)y, (float)z), fire->cell);
-                V3 light = v3_scale(strength, share);
-                add_to_cluster(clusters, fire->low, fire->high, place, light, v3_luminance(light));
+                Float3 position = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);
+                Float3 light = float3_scale(strength, share);
+                add_to_cluster(clusters, fire->low, fire->high, position, light, float3_luminance(light));
             }
 }
 
@@ -103,8 +103,8 @@ static void choose_lights(Scene *scene, Cluster *clusters, int limit, float soft
             if (clusters[i].weight > clusters[best].weight) best = i;
         Cluster *cluster = &clusters[best];
         if (!(cluster->weight > 0)) break;
-        V3 place = v3_scale(cluster->place, 1 / cluster->weight);
-        add_light(scene, place, cluster->strength, softness, 1.5f * sqrtf(softness));
+        Float3 position = float3_scale(cluster->position, 1 / cluster->weight);
+        add_light(scene, position, cluster->strength, softness, 1.5f * sqrtf(softness));
         kept += cluster->weight;
         cluster->weight = 0;
     }
@@ -123,12 +123,12 @@ void light_gather(Preview *preview) {
     if (preview->fire.visible) {
         Cluster flames[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
         gather_flames(preview, flames);
-        float side = v3_length(v3_sub(preview->fire.high, preview->fire.low)) / GRID;
+        float side = float3_length(float3_sub(preview->fire.high, preview->fire.low)) / GRID;
         int limit = scene->light_count + FLAME_LIGHTS;
         choose_lights(scene, flames, limit, 0.1f * side * side + 1e-4f);
     }
     Cluster clusters[CELLS] = {{{0, 0, 0}, {0, 0, 0}, 0}};
     for (uint32_t t = 0; t < scene->triangle_count; t++) gather_triangle(preview, scene->triangles[t], clusters);
-    float cell = v3_length(v3_sub(scene->high, scene->low)) / GRID;
+    float cell = float3_length(float3_sub(scene->high, scene->low)) / GRID;
     choose_lights(scene, clusters, LIGHT_LIMIT, 0.02f * cell * cell + 4e-6f);
 }

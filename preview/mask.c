@@ -18,16 +18,16 @@ static int blocks_down(const Preview *preview) { return (preview->def.height + B
 size_t mask_size(const Preview *preview) { return (size_t)blocks_across(preview) * (size_t)blocks_down(preview); }
 
 /// Widens the rectangle, in pixels, to hold a point as the lens spreads it. Behind the camera or too near: everything.
-static void include(const Preview *preview, V3 p, Rectangle *r) {
+static void include(const Preview *preview, Float3 p, Rectangle *r) {
     const Camera *camera = &preview->camera;
-    V3 d = v3_sub(p, camera->eye);
-    float depth = v3_dot(d, camera->forward);
+    Float3 d = float3_sub(p, camera->eye);
+    float depth = float3_dot(d, camera->forward);
     if (!(depth > 1e-3f * camera->reach + camera->lens)) {
         *r = everywhere;
         return;
     }
-    float x = v3_dot(d, camera->right) / (v3_dot(camera->right, camera->right) * depth);
-    float y = v3_dot(d, camera->up) / (v3_dot(camera->up, camera->up) * depth);
+    float x = float3_dot(d, camera->right) / (float3_dot(camera->right, camera->right) * depth);
+    float y = float3_dot(d, camera->up) / (float3_dot(camera->up, camera->up) * depth);
     float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
     float blur = camera_blur(camera, depth);
     for (int c = 0; c < 2; c++)
@@ -54,18 +54,18 @@ void mask_fill(Preview *preview) {
         for (int k = 0; k < 3; k++) {
             uint32_t v = scene->triangles[t][k];
             if (moves)
-                include(preview, v3_load(scene->moved[0][v]), &r), include(preview, v3_load(scene->moved[1][v]), &r);
-            else include(preview, v3_load(scene->positions[v]), &r);
+                include(preview, float3_load(scene->moved[0][v]), &r), include(preview, float3_load(scene->moved[1][v]), &r);
+            else include(preview, float3_load(scene->positions[v]), &r);
         }
         mark(preview, &r);
     }
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        V3 centre = shape_middle(&preview->shapes[k]);
+        Float3 centre = shape_middle(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Rectangle r = nowhere;
         for (int corner = 0; corner < 8; corner++)
             include(preview,
-                    v3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
+                    float3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
                        centre.z + (corner & 4 ? extent : -extent)),
                     &r);
         mark(preview, &r);

@@ -21,11 +21,11 @@ static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint
 
 static bool reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
     Scene *scene = &preview->scene;
-    size_t place = sizeof *scene->positions;
+    size_t position = sizeof *scene->positions;
     bool done = grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
-                grow(preview, &scene->positions, &scene->position_capacity, vertices, place);
+                grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
     for (int i = 0; done && preview->def.shutter > 0 && i < 2; i++)
-        done = grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, place);
+        done = grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
     return done && grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
 }
 
@@ -62,7 +62,7 @@ static void pack_vertex(const Preview *preview, const SingeSurface *surface, uin
                         float position[4]) {
     const float zero[3] = {0, 0, 0};
     const float *rest = near_enough(surface->rest_position[i]) ? surface->rest_position[i] : zero;
-    V3 normal = v3_unit(v3_load(surface->normal[i]), v3(0, 0, 0));
+    Float3 normal = float3_unit_or(float3_load(surface->normal[i]), float3(0, 0, 0));
     *out = (PaperVertex){
         .normal = {normal.x, normal.y, normal.z},
         .rest = {rest[0], rest[1], rest[2]},
@@ -97,11 +97,11 @@ static void move_vertex(Preview *preview, const SingeSurface *surface, uint32_t 
 }
 
 /// Gradient of a field with these values at the corners, times |N|^2.
-static V3 gradient(V3 e1, V3 e2, V3 n, float f0, float f1, float f2) {
-    return v3_mad(v3_scale(v3_cross(e2, n), f1 - f0), v3_cross(n, e1), f2 - f0);
+static Float3 gradient(Float3 e1, Float3 e2, Float3 n, float f0, float f1, float f2) {
+    return float3_mad(float3_scale(float3_cross(e2, n), f1 - f0), float3_cross(n, e1), f2 - f0);
 }
 
-static void add3(float sum[3], V3 v, float weight) {
+static void add3(float sum[3], Float3 v, float weight) {
     sum[0] += weight * v.x, sum[1] += weight * v.y, sum[2] += weight * v.z;
 }
 
@@ -109,12 +109,12 @@ static void add3(float sum[3], V3 v, float weight) {
 /// `gradient`.
 static void add_gradient(Scene *scene, const uint32_t t[3]) {
     PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
-    V3 origin = v3_load(v[0]->rest), e1 = v3_sub(v3_load(v[1]->rest), origin), e2 = v3_sub(v3_load(v[2]->rest), origin);
-    V3 n = v3_cross(e1, e2);
-    float n2 = v3_dot(n, n);
+    Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin), e2 = float3_sub(float3_load(v[2]->rest), origin);
+    Float3 n = float3_cross(e1, e2);
+    float n2 = float3_dot(n, n);
     if (!(n2 > 1e-24f)) return;
-    V3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
-    V3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
+    Float3 burn = gradient(e1, e2, n, v[0]->burn, v[1]->burn, v[2]->burn);
+    Float3 heat = gradient(e1, e2, n, v[0]->peak, v[1]->peak, v[2]->peak);
     float area = 0.5f * sqrtf(n2);
     for (int k = 0; k < 3; k++) {
         add3(v[k]->slope, burn, area / n2), add3(v[k]->warming, heat, area / n2);
@@ -127,37 +127,37 @@ static void add_gradient(Scene *scene, const uint32_t t[3]) {
 static void add_angles(Scene *scene, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++) {
         PaperVertex *v = &scene->vertices[t[k]];
-        V3 a = v3_sub(v3_load(scene->vertices[t[(k + 1) % 3]].rest), v3_load(v->rest));
-        V3 b = v3_sub(v3_load(scene->vertices[t[(k + 2) % 3]].rest), v3_load(v->rest));
-        v->rim += atan2f(v3_length(v3_cross(a, b)), v3_dot(a, b));
+        Float3 a = float3_sub(float3_load(scene->vertices[t[(k + 1) % 3]].rest), float3_load(v->rest));
+        Float3 b = float3_sub(float3_load(scene->vertices[t[(k + 2) % 3]].rest), float3_load(v->rest));
+        v->rim += atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
     }
 }
 
 static bool keep_triangle(const SingeSurface *surface, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++)
         if (!near_enough(surface->position[t[k]])) return false;
-    V3 a = v3_load(surface->position[t[0]]), b = v3_load(surface->position[t[1]]), c = v3_load(surface->position[t[2]]);
-    V3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
-    return v3_dot(n, n) > 1e-30f;
+    Float3 a = float3_load(surface->position[t[0]]), b = float3_load(surface->position[t[1]]), c = float3_load(surface->position[t[2]]);
+    Float3 n = float3_cross(float3_sub(b, a), float3_sub(c, a));
+    return float3_dot(n, n) > 1e-30f;
 }
 
-static void bound_vertex(const float *p, V3 *low, V3 *high) {
-    *low = v3(minf(low->x, p[0]), minf(low->y, p[1]), minf(low->z, p[2]));
-    *high = v3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
+static void bound_vertex(const float *p, Float3 *low, Float3 *high) {
+    *low = float3(minf(low->x, p[0]), minf(low->y, p[1]), minf(low->z, p[2]));
+    *high = float3(maxf(high->x, p[0]), maxf(high->y, p[1]), maxf(high->z, p[2]));
 }
 
 static void bound(Scene *scene, bool moves) {
-    V3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    Float3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t t = 0; t < scene->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             uint32_t v = scene->triangles[t][k];
             bound_vertex(scene->positions[v], &low, &high);
             for (int end = 0; moves && end < 2; end++) bound_vertex(scene->moved[end][v], &low, &high);
         }
-    if (!scene->triangle_count) low = high = v3(0, 0, 0);
-    scene->epsilon = maxf(2e-4f * v3_length(v3_sub(high, low)), 1e-6f);
-    V3 margin = v3(scene->epsilon, scene->epsilon, scene->epsilon);
-    scene->low = v3_sub(low, margin), scene->high = v3_add(high, margin);
+    if (!scene->triangle_count) low = high = float3(0, 0, 0);
+    scene->epsilon = maxf(2e-4f * float3_length(float3_sub(high, low)), 1e-6f);
+    Float3 margin = float3(scene->epsilon, scene->epsilon, scene->epsilon);
+    scene->low = float3_sub(low, margin), scene->high = float3_add(high, margin);
     if (!scene->triangle_count) scene->epsilon = 1e-4f;
 }
 
@@ -173,8 +173,8 @@ static void measure_textures(Preview *preview) {
             float bu = b->uv[0] - a->uv[0], bv = b->uv[1] - a->uv[1];
             float cu = c->uv[0] - a->uv[0], cv = c->uv[1] - a->uv[1];
             texels += fabs((double)bu * (double)cv - (double)bv * (double)cu);
-            V3 o = v3_load(a->rest);
-            area += (double)v3_length(v3_cross(v3_sub(v3_load(b->rest), o), v3_sub(v3_load(c->rest), o)));
+            Float3 o = float3_load(a->rest);
+            area += (double)float3_length(float3_cross(float3_sub(float3_load(b->rest), o), float3_sub(float3_load(c->rest), o)));
         }
         texels *= (double)texture->width[0] * (double)texture->height[0];
         texture->texels_per_metre = area > 0 && texels < 1e12 ? (float)sqrt(texels / area) : 0;
@@ -223,8 +223,8 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
         PaperVertex *v = &scene->vertices[i];
         // a triangle of area A has edges of about sqrt(2 A)
         v->spacing = v->spacing > 0 ? sqrtf(2 * v->gradient / v->spacing) : 0;
-        v->heat_gradient = v->gradient > 0 ? v3_length(v3_load(v->warming)) / v->gradient : 0;
-        v->gradient = v->gradient > 0 ? v3_length(v3_load(v->slope)) / v->gradient : 0;
+        v->heat_gradient = v->gradient > 0 ? float3_length(float3_load(v->warming)) / v->gradient : 0;
+        v->gradient = v->gradient > 0 ? float3_length(float3_load(v->slope)) / v->gradient : 0;
         v->rim = 1 - stepf(1.6f * PI_F, 1.95f * PI_F, v->rim);
         // no triangle of the scene uses these; the builder still reads them
         float *p = scene->positions[i];

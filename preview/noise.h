@@ -38,7 +38,7 @@ static inline float noise2(float x, float y, uint32_t seed) {
 }
 
 /// Smooth noise in [-1, 1], lattice size 1, in space.
-static inline float noise3(V3 p, uint32_t seed) {
+static inline float noise3(Float3 p, uint32_t seed) {
     float fx, fy, fz;
     uint32_t ix = (uint32_t)noise_floor(p.x, &fx) * 0x8da6b343u, iy = (uint32_t)noise_floor(p.y, &fy) * 0xd8163841u;
     uint32_t iz = (uint32_t)noise_floor(p.z, &fz) * 0xcb1ab31fu, s = seed * 0x165667b1u;
@@ -53,15 +53,15 @@ static inline float noise3(V3 p, uint32_t seed) {
 }
 
 /// Gradient of noise3 by forward differences from its value n at p.
-static inline V3 noise3_gradient(V3 p, float n, uint32_t seed) {
+static inline Float3 noise3_gradient(Float3 p, float n, uint32_t seed) {
     const float e = 0.25f;
-    return v3((noise3(v3(p.x + e, p.y, p.z), seed) - n) / e, (noise3(v3(p.x, p.y + e, p.z), seed) - n) / e,
-              (noise3(v3(p.x, p.y, p.z + e), seed) - n) / e);
+    return float3((noise3(float3(p.x + e, p.y, p.z), seed) - n) / e, (noise3(float3(p.x, p.y + e, p.z), seed) - n) / e,
+              (noise3(float3(p.x, p.y, p.z + e), seed) - n) / e);
 }
 
 /// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice
 /// (Worley 1996): 0 on the walls between their regions, about 0.5 in the middles.
-static inline float noise_walls(V3 p, uint32_t seed) {
+static inline float noise_walls(Float3 p, uint32_t seed) {
     float fx, fy, fz, first = 9, second = 9;
     uint32_t ix = (uint32_t)noise_floor(p.x, &fx), iy = (uint32_t)noise_floor(p.y, &fy);
     uint32_t iz = (uint32_t)noise_floor(p.z, &fz);

@@ -52,9 +52,9 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
     if (!all_between(camera->eye, 3, -1e4f, 1e4f) || !all_between(camera->target, 3, -1e4f, 1e4f) ||
         !all_between(camera->up, 3, -1e4f, 1e4f))
         return refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
-    V3 up = v3_load(camera->up), view = v3_sub(v3_load(camera->target), v3_load(camera->eye));
-    if (!(v3_dot(view, view) > 1e-12f)) return refuse(error, -1, "camera: eye and target are the same point");
-    if (!(v3_dot(up, up) > 1e-12f)) return refuse(error, -1, "camera: up has no direction");
+    Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
+    if (!(float3_dot(view, view) > 1e-12f)) return refuse(error, -1, "camera: eye and target are the same point");
+    if (!(float3_dot(up, up) > 1e-12f)) return refuse(error, -1, "camera: up has no direction");
     if (!(camera->fov > 0.001f && camera->fov < 3.1f))
         return refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
     if (!(camera->aperture >= 0 && camera->aperture <= 10))
@@ -99,8 +99,8 @@ static bool image_is_good(const Image *image) {
 }
 
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
-    V3 sun = v3_load(def->sun_direction);
-    if (!v3_finite(sun) || !(v3_dot(sun, sun) > 1e-20f) || !(v3_dot(sun, sun) < 1e20f))
+    Float3 sun = float3_load(def->sun_direction);
+    if (!float3_finite(sun) || !(float3_dot(sun, sun) > 1e-20f) || !(float3_dot(sun, sun) < 1e20f))
         return refuse(error, -1, "sun_direction must be finite and not zero");
     if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
         return refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
@@ -151,12 +151,12 @@ static size_t glow_count(const PreviewDef *def) {
 static SingeResult allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
-    preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(V3));
+    preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
     preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Table));
     preview->lamps = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
     preview->seen = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(float));
     preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
-    for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(V3));
+    for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
     if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
@@ -172,9 +172,9 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
 
 static void aim(Preview *preview) {
     preview->camera = camera_make(&preview->def);
-    preview->sun = v3_unit(v3_load(preview->def.sun_direction), v3(0, 0, 1));
-    v3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
-    preview->sun_light = v3_scale(v3_load(preview->def.sun_colour), FILM_SPEED);
+    preview->sun = float3_unit_or(float3_load(preview->def.sun_direction), float3(0, 0, 1));
+    float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
+    preview->sun_light = float3_scale(float3_load(preview->def.sun_colour), FILM_SPEED);
     preview->sun_spread = tanf(preview->def.sun_angle);
     tonemap_fill_linear(preview->linear);
     blackbody_fill(preview->blackbody);
@@ -234,11 +234,11 @@ void preview_destroy(Preview *preview) {
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
     preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
     preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
-    preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(V3), 0);
+    preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
     preview_resize(&allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
     preview_resize(&allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
     preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
     preview_resize(&allocator, preview->mask, mask_size(preview), 0);
-    for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(V3), 0);
+    for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
     preview_resize(&allocator, preview, sizeof *preview, 0);
 }

@@ -46,16 +46,16 @@ static float year_rings(const Plank *p, uint32_t seed, float footprint) {
     return mixf(0.33f, late, visible(0.0035f / slope, footprint)) * strength;
 }
 
-static void wood(const Preview *preview, V3 place, float footprint, Table *table) {
+static void wood(const Preview *preview, Float3 position, float footprint, Table *table) {
     uint32_t seed = preview->def.seed + 77;
-    Plank p = find_plank(seed, place.x, place.y);
+    Plank p = find_plank(seed, position.x, position.y);
     float u = p.along + p.shift, late = year_rings(&p, seed, footprint);
     float bow = 0.011f * noise2(u * 2.3f, p.across * 9, seed); // fibres follow the rings
-    float fibre = noise2(u * 9, (place.y + 0.4f * bow) * 520, seed + 3) * visible(0.0022f, footprint);
-    float pores = noise2(u * 75, (place.y + 0.4f * bow) * 1700, seed + 4) * visible(0.0008f, footprint);
-    float hair = noise2(u * 16, place.y * 2100, seed + 7) * visible(0.0006f, footprint);
-    fibre += 0.8f * noise2(u * 14, (place.y + 0.4f * bow) * 1100, seed + 8) * visible(0.001f, footprint);
-    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(place.x * 5, place.y * 5, seed + 6);
+    float fibre = noise2(u * 9, (position.y + 0.4f * bow) * 520, seed + 3) * visible(0.0022f, footprint);
+    float pores = noise2(u * 75, (position.y + 0.4f * bow) * 1700, seed + 4) * visible(0.0008f, footprint);
+    float hair = noise2(u * 16, position.y * 2100, seed + 7) * visible(0.0006f, footprint);
+    fibre += 0.8f * noise2(u * 14, (position.y + 0.4f * bow) * 1100, seed + 8) * visible(0.001f, footprint);
+    float blotch = noise2(u * 3.1f, p.across * 14, seed + 5), wear = noise2(position.x * 5, position.y * 5, seed + 6);
     float value = 1.10f + 0.34f * (p.tone - 0.5f) - 0.50f * late + 0.055f * fibre + 0.10f * blotch + 0.05f * wear;
     value += 0.05f * hair;
     value *= 1 - 0.38f * stepf(0.25f, 0.7f, pores);
@@ -64,7 +64,7 @@ static void wood(const Preview *preview, V3 place, float footprint, Table *table
     value *= 1 - 0.8f * joint * minf(1, 0.0016f / footprint);
     // late wood is redder, early wood more golden; planks differ
     float red = clampf(0.35f * late + 0.5f * (p.hue - 0.5f), -0.3f, 0.5f);
-    table->albedo = v3_scale(v3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
+    table->albedo = float3_scale(float3(1 + 0.22f * red, 1 - 0.10f * red, 1 - 0.42f * red), maxf(value, 0.04f));
     table->polish = (0.42f - 0.18f * late + 0.10f * wear) * (1 - 0.8f * joint);
     table->tilt[0] = 0.004f * wear;
     table->tilt[1] = 0.012f * blotch + 0.012f * fibre;
@@ -80,9 +80,9 @@ static float uneven(float x, float y, float millimetres, float height, uint32_t 
     return shown * n;
 }
 
-static void stone(const Preview *preview, V3 place, float footprint, Table *table) {
+static void stone(const Preview *preview, Float3 position, float footprint, Table *table) {
     uint32_t seed = preview->def.seed + 177;
-    float x = 0.921f * place.x - 0.389f * place.y, y = 0.389f * place.x + 0.921f * place.y;
+    float x = 0.921f * position.x - 0.389f * position.y, y = 0.389f * position.x + 0.921f * position.y;
     float warp = 0.03f * noise2(x * 9, y * 9, seed), fold = 0.012f * noise2(x * 31 + 7, y * 31, seed + 1);
     float cloud = noise2(x * 7, y * 7, seed + 2), patch = uneven(x, y, 38, 0.010f, seed + 3, footprint, table);
     float rough = uneven(x, y, 9, 0.022f, seed + 4, footprint, table);
@@ -97,14 +97,14 @@ static void stone(const Preview *preview, V3 place, float footprint, Table *tabl
     vein *= stepf(-0.45f, 0.25f, noise2(x * 3, y * 3, seed + 9));
     value += 1.1f * vein * minf(1, 0.003f / footprint + 0.35f);
     float warm = 0.5f * cloud - 0.3f * patch;
-    table->albedo = v3_scale(v3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
+    table->albedo = float3_scale(float3(1 + 0.05f * warm, 1, 1 - 0.07f * warm), maxf(value, 0.1f));
     table->polish = 0.42f + 0.12f * patch - 0.1f * vein;
 }
 
-V3 background_colour(const Preview *preview, V3 direction) {
-    V3 base = v3_load(preview->def.background);
+Float3 background_colour(const Preview *preview, Float3 direction) {
+    Float3 base = float3_load(preview->def.background);
     float height = clampf(direction.z * 1.6f, -0.6f, 1);
-    return v3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
+    return float3_scale(base, height > 0 ? mixf(1.12f, 0.62f, height) : mixf(1.12f, 0.75f, -height));
 }
 
 /// A pixel's size on the table: the mean of along and across.
@@ -112,12 +112,12 @@ static float footprint(const Preview *preview, float distance, float cosine) {
     return preview->camera.pixel * distance / sqrtf(maxf(fabsf(cosine), 0.02f));
 }
 
-void ground_look(const Preview *preview, V3 place, float cosine, float distance, Table *table) {
+void ground_look(const Preview *preview, Float3 position, float cosine, float distance, Table *table) {
     float size = footprint(preview, distance, cosine);
     *table = (Table){.albedo = {1, 1, 1}, .polish = 0.1f};
-    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, place, size, table);
-    if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, place, size, table);
-    table->albedo = v3_mul(table->albedo, v3_load(preview->def.ground_colour));
+    if (preview->def.ground == PREVIEW_GROUND_WOOD) wood(preview, position, size, table);
+    if (preview->def.ground == PREVIEW_GROUND_STONE) stone(preview, position, size, table);
+    table->albedo = float3_mul(table->albedo, float3_load(preview->def.ground_colour));
 }
 
 void ground_shade(const Preview *preview, float distance, const Table *table, Point *point) {
@@ -125,8 +125,8 @@ void ground_shade(const Preview *preview, float distance, const Table *table, Po
     point->footprint = footprint(preview, distance, maxf(fabsf(point->view.z), 0.02f));
     float far = distance / (9 * preview->camera.reach);
     point->fade = 1 - expf(-far * far * far);
-    point->geometric = v3(0, 0, side);
-    point->normal = v3_unit(v3(table->tilt[0], table->tilt[1], side), point->geometric);
+    point->geometric = float3(0, 0, side);
+    point->normal = float3_unit_or(float3(table->tilt[0], table->tilt[1], side), point->geometric);
     point->albedo = table->albedo;
     point->gloss = 0.10f * table->polish, point->shininess = 26;
     point->mirror = table->polish;

@@ -15,7 +15,7 @@
 #include "preview/shade_paper.h"
 
 /// Linear colours that multiply the paper's, by how far it is scorched in [0, 1].
-static V3 scorch_colour(float s) {
+static Float3 scorch_colour(float s) {
     static const float stop[7][4] = {
         {0.00f, 1.00f, 1.00f, 1.00f},    {0.14f, 0.965f, 0.90f, 0.74f},   {0.32f, 0.85f, 0.655f, 0.36f},
         {0.50f, 0.55f, 0.315f, 0.105f},  {0.69f, 0.225f, 0.098f, 0.032f}, {0.86f, 0.062f, 0.031f, 0.018f},
@@ -23,21 +23,21 @@ static V3 scorch_colour(float s) {
     int i = 1;
     while (i < 6 && s > stop[i][0]) i++;
     float f = clampf((s - stop[i - 1][0]) / (stop[i][0] - stop[i - 1][0]), 0, 1);
-    return v3_mix(v3_load(stop[i - 1] + 1), v3_load(stop[i] + 1), f);
+    return float3_mix(float3_load(stop[i - 1] + 1), float3_load(stop[i] + 1), f);
 }
 
 /// Where noise is read: the rest position turned, so that the noise's lattice lies askew to sheets and their grids.
-static V3 askew(V3 r) {
-    return v3(0.7654f * r.x - 0.5321f * r.y + 0.3622f * r.z, 0.6133f * r.x + 0.7718f * r.y - 0.1673f * r.z,
+static Float3 askew(Float3 r) {
+    return float3(0.7654f * r.x - 0.5321f * r.y + 0.3622f * r.z, 0.6133f * r.x + 0.7718f * r.y - 0.1673f * r.z,
               -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
     const uint32_t *t = scene->triangles[triangle];
     const PaperVertex *a = &scene->vertices[t[0]], *b = &scene->vertices[t[1]], *c = &scene->vertices[t[2]];
-    float w = 1 - u - v, least = minf(a->rim, minf(b->rim, c->rim));
+    float w = 1 - u - v, min = minf(a->rim, minf(b->rim, c->rim));
     *state = (PaperState){
-        .rest = v3_blend(a->rest, b->rest, c->rest, u, v),
+        .rest = float3_blend(a->rest, b->rest, c->rest, u, v),
         .uv = {w * a->uv[0] + u * b->uv[0] + v * c->uv[0], w * a->uv[1] + u * b->uv[1] + v * c->uv[1]},
         .temperature = w * a->temperature + u * b->temperature + v * c->temperature,
         .peak = w * a->peak + u * b->peak + v * c->peak,
@@ -49,16 +49,16 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .spacing = w * a->spacing + u * b->spacing + v * c->spacing,
         .age = w * a->age + u * b->age + v * c->age,
         // a triangle with no corner inside tells nothing of the distance: a strip or a crumb, which is to stay
-        .rim = least > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
+        .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
         .sheet = a->sheet, .piece = a->piece,
     };
 }
 
 static Bent bend(const PaperState *state, float footprint) {
-    Bent bent = {.place = askew(state->rest)};
-    bent.coarse = paper_noise(bent.place, 4.0f, footprint, 1);
-    bent.middle = paper_noise(bent.place, 1.3f, footprint, 2);
-    bent.fine = paper_noise(bent.place, 0.45f, footprint, 3);
+    Bent bent = {.position = askew(state->rest)};
+    bent.coarse = paper_noise(bent.position, 4.0f, footprint, 1);
+    bent.middle = paper_noise(bent.position, 1.3f, footprint, 2);
+    bent.fine = paper_noise(bent.position, 0.45f, footprint, 3);
     float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.middle + 0.22e-3f * bent.fine;
     delta *= clampf(state->spacing / 1.8e-3f, 0.3f, 1);
     float slope = minf(state->gradient, 400.0f);
@@ -74,35 +74,35 @@ static Bent bend(const PaperState *state, float footprint) {
 }
 
 float paper_cracks(const Bent *bent, float millimetres, float width, float footprint) {
-    V3 p = v3_mad(bent->place, v3(bent->middle, bent->fine, bent->coarse), 0.5e-3f);
-    float least = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
+    Float3 p = float3_mad(bent->position, float3(bent->middle, bent->fine, bent->coarse), 0.5e-3f);
+    float min = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
     float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->middle);
-    float wall = noise_walls(v3_scale(p, 1000 / millimetres), 13);
-    return minf(1, open / least) * (1 - stepf(0.4f, 1, wall / maxf(open, least)));
+    float wall = noise_walls(float3_scale(p, 1000 / millimetres), 13);
+    return minf(1, open / min) * (1 - stepf(0.4f, 1, wall / maxf(open, min)));
 }
 
 /// `folded`: the height is the noise's size, with an edge where it changes sign, and steep slopes are flattened.
-static void tilt(V3 place, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
+static void tilt(Float3 position, float millimetres, float height, bool folded, uint32_t seed, Point *point) {
     height *= clampf(1.6f - point->footprint * 1000 / millimetres, 0, 1);
     if (height < 0.02f) return;
-    V3 p = v3_scale(place, 1000 / millimetres);
+    Float3 p = float3_scale(position, 1000 / millimetres);
     float n = noise3(p, seed);
-    V3 slope = noise3_gradient(p, n, seed);
+    Float3 slope = noise3_gradient(p, n, seed);
     if (folded) {
-        float edge = clampf(n * 14, -1, 1), steep = v3_length(slope);
-        slope = v3_scale(slope, edge / (0.5f + 0.5f * steep));
+        float edge = clampf(n * 14, -1, 1), steep = float3_length(slope);
+        slope = float3_scale(slope, edge / (0.5f + 0.5f * steep));
     }
-    slope = v3_mad(slope, point->normal, -v3_dot(slope, point->normal));
-    V3 tilted = v3_unit(v3_mad(point->normal, slope, -height), point->normal);
-    if (v3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
+    slope = float3_mad(slope, point->normal, -float3_dot(slope, point->normal));
+    Float3 tilted = float3_unit_or(float3_mad(point->normal, slope, -height), point->normal);
+    if (float3_dot(tilted, point->view) > 0.02f) point->normal = tilted;
 }
 
-void paper_crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
-    tilt(place, millimetres, height, false, seed, point);
+void paper_crumple(Float3 position, float millimetres, float height, uint32_t seed, Point *point) {
+    tilt(position, millimetres, height, false, seed, point);
 }
 
-void paper_fold(V3 place, float millimetres, float height, uint32_t seed, Point *point) {
-    tilt(place, millimetres, height, true, seed, point);
+void paper_fold(Float3 position, float millimetres, float height, uint32_t seed, Point *point) {
+    tilt(position, millimetres, height, true, seed, point);
 }
 
 /// Burnt borders crumble, so that the cut's straight pieces turn ragged within a triangle, and ash wears.
@@ -125,17 +125,17 @@ float paper_transmittance(const Preview *preview, int32_t sheet) {
 }
 
 static void fresh(const Preview *preview, const PaperState *state, Point *point) {
-    V3 white = v3(0.86f, 0.852f, 0.832f), colour = {1, 1, 1};
+    Float3 white = float3(0.86f, 0.852f, 0.832f), colour = {1, 1, 1};
     if (state->sheet >= 0 && (uint32_t)state->sheet < preview->def.sheet_count) {
         const Texture *texture = preview->textures ? &preview->textures[state->sheet] : NULL;
         if (texture && texture->count)
             colour = texture_sample(preview, texture, state->uv[0], state->uv[1],
                                     0.45f * point->footprint * texture->texels_per_metre);
-        if (preview->def.colours) colour = v3_mul(colour, v3_load(preview->def.colours[state->sheet]));
+        if (preview->def.colours) colour = float3_mul(colour, float3_load(preview->def.colours[state->sheet]));
     }
     // the cloudiness of its fibres
     float cloud = 1 + 0.018f * paper_noise(askew(state->rest), 2.4f, point->footprint, 5);
-    point->albedo = v3_scale(v3_mul(white, colour), cloud);
+    point->albedo = float3_scale(float3_mul(white, colour), cloud);
     point->transmission = paper_transmittance(preview, state->sheet);
 }
 
@@ -147,25 +147,25 @@ static float heat_scorch(float peak) {
 }
 
 /// Char: browner where it is thin, bluer where it is done; print (1) stays readable on it, as a dull grey.
-static V3 char_colour(const Bent *bent, float ink, float footprint) {
+static Float3 char_colour(const Bent *bent, float ink, float footprint) {
     float value = 1 + 0.35f * bent->middle + 0.3f * bent->fine + 0.35f * bent->coarse;
-    V3 soot = v3_mix(v3(0.034f, 0.020f, 0.012f), v3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
+    Float3 soot = float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 2.1f, 0.05f, footprint);
-    V3 colour = v3_scale(soot, value * (1 - 0.6f * craze));
-    return v3_mad(colour, v3(0.024f, 0.024f, 0.026f), ink);
+    Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
+    return float3_mad(colour, float3(0.024f, 0.024f, 0.026f), ink);
 }
 
-static void char_shade(const Bent *bent, V3 burnt, float ink, Point *point) {
+static void char_shade(const Bent *bent, Float3 burnt, float ink, Point *point) {
     float black = stepf(0.12f, 0.46f, bent->burn);
     point->albedo = burnt;
     if (black <= 0) return;
-    point->albedo = v3_mix(burnt, char_colour(bent, ink, point->footprint), black);
+    point->albedo = float3_mix(burnt, char_colour(bent, ink, point->footprint), black);
     // tar makes it shine
     float tar = clampf(0.75f + 0.5f * bent->coarse - 0.5f * ink, 0.2f, 1.2f);
     point->gloss = 0.055f * black * tar, point->shininess = 14;
     point->mirror = 0.45f * black * tar;
-    paper_fold(bent->place, 3.6f, 0.34f * black, 32, point);
-    paper_crumple(bent->place, 0.9f, 0.11f * black, 31, point);
+    paper_fold(bent->position, 3.6f, 0.34f * black, 32, point);
+    paper_crumple(bent->position, 0.9f, 0.11f * black, 31, point);
 }
 
 bool paper_shade(const Preview *preview, const PaperState *state, Point *point) {
@@ -177,8 +177,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     if (is_hole(state, &bent, point->footprint)) return false;
     float by_heat = heat_scorch(bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
     float scorch = 1 - (1 - by_heat) * (1 - by_burn);
-    float ink = 1 - clampf(v3_luminance(point->albedo), 0, 1), print = stepf(0.45f, 0.8f, ink);
-    V3 burnt = v3_mul(scorch_colour(scorch), v3_mix(point->albedo, v3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
+    float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.45f, 0.8f, ink);
+    Float3 burnt = float3_mul(scorch_colour(scorch), float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     char_shade(&bent, burnt, print, point);
     ash_shade(state, &bent, print, point);

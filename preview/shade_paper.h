@@ -6,16 +6,16 @@
 
 /// The paper at a hit as the picture's scale has it.
 typedef struct Bent {
-    V3 place;                      ///< where noise is read
+    Float3 position;                      ///< where noise is read
     float burn, temperature, peak; ///< b', T' and P'
     float coarse, middle, fine;    ///< the noise that bent them, [-1, 1]
 } Bent;
 
 /// Noise whose features are `millimetres` wide, gone where a pixel no longer resolves it.
-static inline float paper_noise(V3 place, float millimetres, float footprint, uint32_t seed) {
+static inline float paper_noise(Float3 position, float millimetres, float footprint, uint32_t seed) {
     float visible = 1.6f - footprint * 1000 / millimetres * 0.8f;
     if (visible <= 0) return 0;
-    return minf(visible, 1) * noise3(v3_scale(place, 1000 / millimetres), seed);
+    return minf(visible, 1) * noise3(float3_scale(position, 1000 / millimetres), seed);
 }
 
 /// Thin lines where noise changes sign. 1 on the line.
@@ -24,9 +24,9 @@ static inline float ridge(float n, float width) { return 1 - stepf(0, width, fab
 /// Lines between scattered scales, wider and narrower by turns. 1 on a line.
 float paper_cracks(const Bent *bent, float millimetres, float width, float footprint);
 /// Tilts the normal by the gradient of noise of that size, as crumpling does.
-void paper_crumple(V3 place, float millimetres, float height, uint32_t seed, Point *point);
+void paper_crumple(Float3 position, float millimetres, float height, uint32_t seed, Point *point);
 /// The same with sharp folds between faces that are nearly flat.
-void paper_fold(V3 place, float millimetres, float height, uint32_t seed, Point *point);
+void paper_fold(Float3 position, float millimetres, float height, uint32_t seed, Point *point);
 
 // shade_ash.c
 /// How far the paper is ash, 0 to 1.

@@ -53,7 +53,7 @@ void texture_free(const Preview *preview, Texture *texture) {
     *texture = (Texture){0};
 }
 
-V3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels) {
+Float3 texture_sample(const Preview *preview, const Texture *texture, float u, float v, float texels) {
     int level = 0;
     while (level + 1 < texture->count && texels > 1.0f) texels *= 0.5f, level++;
     int w = texture->width[level], h = texture->height[level];
@@ -68,5 +68,5 @@ V3 texture_sample(const Preview *preview, const Texture *texture, float u, float
     for (int i = 0; i < 3; i++)
         out[i] = mixf(mixf(linear[a[i]], linear[b[i]], x - (float)x0), mixf(linear[c[i]], linear[d[i]], x - (float)x0),
                       y - (float)y0);
-    return v3(out[0], out[1], out[2]);
+    return float3(out[0], out[1], out[2]);
 }

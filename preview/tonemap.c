@@ -50,7 +50,7 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
     }
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; i < count; i++) {
-        V3 c = v3_scale(preview->picture[i], preview->def.exposure);
+        Float3 c = float3_scale(preview->picture[i], preview->def.exposure);
         float leak = LEAK * (c.x + c.y + c.z) / 3;
         uint32_t key = (uint32_t)i * 3u + preview->def.seed * 0x9e3779b1u;
         rgb[3 * i] = quantise(look_up(curve, (1 - LEAK) * c.x + leak), key);

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { BASES_MOST = 16 }; ///< one in the other
+enum { BASES_MAX = 16 }; ///< one in the other
 
 /// A file that is being read, and the one that names it.
 typedef struct BaseChain {
@@ -80,7 +80,7 @@ static SceneText *base_builtin(Reader *reader, const Node *node) {
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
     }
     char seen[NODE_WORDS], hint[80], names[160];
-    message_add(reader->messages, reader->text, node->place,
+    message_add(reader->messages, reader->text, node->location,
                 "there is no material %s; built in are %s, and a file of your own is named with its ending "
                 "(mine.yaml)%s",
                 node_describe(node, seen, sizeof seen), base_names(names, sizeof names),
@@ -99,8 +99,8 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
         return NULL;
     if ((text = base_known(reader, file->path)))
         return text;
-    if (file_read_most(file->path, SCENE_BYTES_MOST, (SingeAllocator){0}, &bytes, &error))
-        message_add(reader->messages, reader->text, node->place, "a material cannot be read: %s", error.message);
+    if (file_read_max(file->path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error))
+        message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
     else
         text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
@@ -114,14 +114,14 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
                                           outer->status.st_dev == link->status.st_dev)) {
-            message_add(reader->messages, reader->text, node->place, "%s begins as itself, by way of %s",
+            message_add(reader->messages, reader->text, node->location, "%s begins as itself, by way of %s",
                         shown_path(link->text->name).text, shown_path(reader->chain->text->name).text);
             return false;
         }
-    if (link->depth <= BASES_MOST)
+    if (link->depth <= BASES_MAX)
         return true;
-    message_add(reader->messages, reader->text, node->place, "materials begin as each other more than %d deep",
-                BASES_MOST);
+    message_add(reader->messages, reader->text, node->location, "materials begin as each other more than %d deep",
+                BASES_MAX);
     return false;
 }
 
@@ -149,14 +149,14 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
     inner.prefix = base_folder(reader->arena, &file);
     if (!text->was_read)
         text->root = tree_read(reader->arena, reader->text, text->bytes, text->size,
-                               (ScenePlace){.file = text->number}, reader->messages);
+                               (SceneLocation){.file = text->number}, reader->messages);
     text->was_read = true;
     Node *root = text->root;
     if (!root || !inner.prefix)
         return;
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, root->place, "a material must be a map (key: value), not %s",
+        message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
         return;
     }

@@ -14,8 +14,8 @@ typedef struct SceneBuilder {
     SceneMessages *messages;
 } SceneBuilder;
 
-static SingeResult build_fail(SceneBuilder *builder, SingeResult result, ScenePlace place, const SingeError *error) {
-    message_add(builder->messages, builder->scene->text, place, "%s: %s", error->stage[0] ? error->stage : "simulation",
+static SingeResult build_fail(SceneBuilder *builder, SingeResult result, SceneLocation location, const SingeError *error) {
+    message_add(builder->messages, builder->scene->text, location, "%s: %s", error->stage[0] ? error->stage : "simulation",
                 error->message[0] ? error->message : singe_result_name(result));
     return result;
 }
@@ -32,8 +32,8 @@ static SingePoseKey *poses(const SceneKey *keys, uint32_t count) {
     return path;
 }
 
-static SingeResult no_memory(SceneBuilder *builder, ScenePlace place) {
-    message_add(builder->messages, builder->scene->text, place, "out of memory");
+static SingeResult no_memory(SceneBuilder *builder, SceneLocation location) {
+    message_add(builder->messages, builder->scene->text, location, "out of memory");
     return SINGE_ERROR_MEMORY;
 }
 
@@ -56,7 +56,7 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->material = sheet->material.def;
     SceneParam param;
     for (int i = 0; scene_param(i, &param); i++)
-        scene_param_at(&def->material, &param)->picture = assets->params[index][param.slot];
+        scene_param_at(&def->material, &param)->texture = assets->params[index][param.slot];
     for (int c = 0; c < 3; c++)
         def->velocity[c] = sheet->velocity[c];
     def->drop_pieces_below = sheet->drop_pieces_below;
@@ -66,18 +66,18 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
 static SingeResult build_sheets(SceneBuilder *builder) {
     const Scene *scene = builder->scene;
     SingeResult result = SINGE_OK;
-    ScenePlace place = {0};
+    SceneLocation location = {0};
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         SingeSheetDef def;
         scene_sheet_def(scene, builder->assets, i, &def);
-        place = scene->sheets[i].place;
+        location = scene->sheets[i].location;
         result = singe_sim_add_sheet(builder->sim, &def, &builder->sheets[i]);
     }
     if (!result && (result = singe_sim_commit(builder->sim)) && scene->sheet_count > 1)
-        place = (ScenePlace){0};
+        location = (SceneLocation){0};
     if (result && (result == SINGE_ERROR_MEMORY ||
                    !sheet_faults(scene, builder->assets, FAULTS_OF_SHEETS, builder->messages)))
-        return build_fail(builder, result, place, singe_sim_error(builder->sim));
+        return build_fail(builder, result, location, singe_sim_error(builder->sim));
     return result;
 }
 
@@ -86,16 +86,16 @@ static SingeResult build_source(SceneBuilder *builder, uint32_t index) {
     SingeSourceDef def = source->def;
     SingePoseKey *path = poses(source->keys, source->key_count);
     if (!path)
-        return no_memory(builder, source->place);
+        return no_memory(builder, source->location);
     def.path_count = source->key_count;
     def.path = path;
-    def.picture = builder->assets->source_pictures[index];
+    def.texture = builder->assets->source_textures[index];
     def.strength_count = source->strength_count;
     def.strength = source->strength;
     SingeSourceId id;
     SingeResult result = singe_sim_add_source(builder->sim, &def, &id);
     free(path);
-    return result ? build_fail(builder, result, source->place, singe_sim_error(builder->sim)) : SINGE_OK;
+    return result ? build_fail(builder, result, source->location, singe_sim_error(builder->sim)) : SINGE_OK;
 }
 
 static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
@@ -103,7 +103,7 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     SingeColliderDef def = collider->def;
     SingePoseKey *path = poses(collider->keys, collider->key_count);
     if (!path)
-        return no_memory(builder, collider->place);
+        return no_memory(builder, collider->location);
     def.path_count = collider->key_count;
     def.path = path;
     const SceneSolid *solid = &builder->assets->solids[index];
@@ -113,7 +113,7 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     SingeColliderId id;
     SingeResult result = singe_sim_add_collider(builder->sim, &def, &id);
     free(path);
-    return result ? build_fail(builder, result, collider->place, singe_sim_error(builder->sim)) : SINGE_OK;
+    return result ? build_fail(builder, result, collider->location, singe_sim_error(builder->sim)) : SINGE_OK;
 }
 
 /// The sheet's vertices that those of the file have become, with the copies of one that was parted. NULL when out of
@@ -146,14 +146,14 @@ static SingeResult pin_by_file(SceneBuilder *builder, const ScenePin *pin, Singe
     SingePinId id;
     uint32_t *vertices = sheet_vertices(&builder->assets->meshes[pin->sheet_index], pin, &def->vertex_count, &bad);
     if (!vertices)
-        return no_memory(builder, pin->place);
+        return no_memory(builder, pin->location);
     SingeResult result = SINGE_ERROR_ARGUMENT;
     def->vertices = vertices;
     if (bad != UINT32_MAX)
-        message_add(builder->messages, builder->scene->text, pin->place,
+        message_add(builder->messages, builder->scene->text, pin->location,
                     "pin: vertex %u is out of range or of no face of the mesh", (unsigned)bad);
     else if ((result = singe_sim_add_pin(builder->sim, def, &id)))
-        build_fail(builder, result, pin->place, singe_sim_error(builder->sim));
+        build_fail(builder, result, pin->location, singe_sim_error(builder->sim));
     free(vertices);
     return result;
 }
@@ -163,7 +163,7 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     SingePinDef def = singe_default_pin();
     SingePoseKey *path = poses(pin->keys, pin->key_count);
     if (!path)
-        return no_memory(builder, pin->place);
+        return no_memory(builder, pin->location);
     def.sheet = builder->sheets[pin->sheet_index];
     def.point_count = pin->point_count;
     def.points = pin->points ? pin->points->position : NULL; // points lie one after the other
@@ -180,7 +180,7 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     }
     SingeResult result = singe_sim_add_pin(builder->sim, &def, &id);
     free(path);
-    return result ? build_fail(builder, result, pin->place, singe_sim_error(builder->sim)) : SINGE_OK;
+    return result ? build_fail(builder, result, pin->location, singe_sim_error(builder->sim)) : SINGE_OK;
 }
 
 static SingeResult build_all(SceneBuilder *builder) {
@@ -207,10 +207,10 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
     def.thread_count = hooks->thread_count;
     builder.sheets = calloc(scene->sheet_count ? scene->sheet_count : 1, sizeof *builder.sheets);
     if (!builder.sheets)
-        return no_memory(&builder, (ScenePlace){0});
+        return no_memory(&builder, (SceneLocation){0});
     SingeResult result = singe_sim_create(&def, &builder.sim, &error);
     if (result)
-        build_fail(&builder, result, (ScenePlace){0}, &error);
+        build_fail(&builder, result, (SceneLocation){0}, &error);
     else
         result = build_all(&builder);
     free(builder.sheets);

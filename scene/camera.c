@@ -42,15 +42,15 @@ static void unit3(double v[3]) {
 /// Unit vectors from the box to the camera and, across it, to the right and up in the picture. What lies flat is
 /// seen from above, what stands from the front (-y), a little from the side.
 static void look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
-    double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, most = 0;
+    double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, max = 0;
     unit3(vertical);
     if (fabs(vertical[1]) > 0.9)
         front[1] = 0, front[2] = 1;
     for (int i = 0; i < 3; i++) {
         height += fabs(vertical[i]) * (box->high[i] - box->low[i]);
-        most = fmax(most, box->high[i] - box->low[i]);
+        max = fmax(max, box->high[i] - box->low[i]);
     }
-    double lift = 0.15 + 0.85 * (1 - fmin(height / most, 1));
+    double lift = 0.15 + 0.85 * (1 - fmin(height / max, 1));
     cross3(vertical, front, right); // for the picture's right, seen from the front
     unit3(right);
     cross3(right, vertical, front);

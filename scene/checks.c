@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-static void complain(Reader *reader, ScenePlace place, const char *what) {
-    message_add(reader->messages, reader->text, place, "%s", what);
+static void complain(Reader *reader, SceneLocation location, const char *what) {
+    message_add(reader->messages, reader->text, location, "%s", what);
 }
 
 // Entries of a list whose times do not increase.
@@ -16,7 +16,7 @@ static void check_times(Reader *reader, const Node *list, const void *items, siz
         float time; // the first member of every kind of entry
         memcpy(&time, (const char *)items + i * size, sizeof time);
         if (time <= before && node_find(node, "time"))
-            complain(reader, node_find(node, "time")->place, "times must increase from one entry to the next");
+            complain(reader, node_find(node, "time")->location, "times must increase from one entry to the next");
         before = time;
     }
 }
@@ -26,10 +26,10 @@ static bool check_path(Reader *reader, const Node *map, const SceneKey *keys, ui
     const Node *path = node_find(map, "path"), *position = node_find(map, "position");
     const Node *rotation = node_find(map, "rotation"), *other = position ? position : rotation;
     if (path && other)
-        message_add(reader->messages, reader->text, other->key_place,
+        message_add(reader->messages, reader->text, other->key_location,
                     "'%s' is short for a path of one entry; give it or 'path'", other->key);
     if (path && path->kind == NODE_LIST && path->count == 0)
-        complain(reader, path->place, "a path needs at least one entry");
+        complain(reader, path->location, "a path needs at least one entry");
     check_times(reader, path, keys, sizeof *keys, count);
     return path || position;
 }
@@ -45,23 +45,23 @@ void finish_material(Reader *reader, const Node *map, void *object) {
     static const char *const keys[] = {"speed", "temperature", "residue"};
     for (int i = 0; i < 3; i++)
         if (measured && node_find(measured, keys[i]) && ranges[i][0] > ranges[i][1])
-            message_add(reader->messages, reader->text, node_find(measured, keys[i])->place,
+            message_add(reader->messages, reader->text, node_find(measured, keys[i])->location,
                         "%s must not begin above its end", keys[i]);
     const Node *thickening = node_find(map, "thickening");
     float value = material->def.thickening;
     if (thickening && value > 0 && value < 1)
-        complain(reader, thickening->place, "thickening must be 0 (as little as the cells need) or 1 and more");
+        complain(reader, thickening->location, "thickening must be 0 (as little as the cells need) or 1 and more");
 }
 
 void finish_sheet(Reader *reader, const Node *map, void *object) {
     SceneSheet *sheet = object;
     const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
     if (mesh && grid)
-        complain(reader, grid->key_place, "'grid' and 'mesh' exclude each other; give one");
+        complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
     if (!mesh && !grid)
-        complain(reader, map->place, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
+        complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
     if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
-        complain(reader, grid->place, "a grid has at most 100 million cells");
+        complain(reader, grid->location, "a grid has at most 100 million cells");
 }
 
 void finish_source(Reader *reader, const Node *map, void *object) {
@@ -69,10 +69,10 @@ void finish_source(Reader *reader, const Node *map, void *object) {
     if (!node_find(map, "kind"))
         return;
     if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
-        complain(reader, map->place, "a ball needs 'path' or 'position'");
+        complain(reader, map->location, "a ball needs 'path' or 'position'");
     const Node *end = node_find(map, "end");
     if (source->def.end < source->def.start)
-        complain(reader, end ? end->place : map->place, "a source must not end before its start");
+        complain(reader, end ? end->location : map->location, "a source must not end before its start");
     check_times(reader, node_find(map, "strength"), source->strength, sizeof *source->strength, source->strength_count);
 }
 
@@ -84,7 +84,7 @@ void finish_collider(Reader *reader, const Node *map, void *object) {
 void finish_pin(Reader *reader, const Node *map, void *object) {
     ScenePin *pin = object;
     if (!node_find(map, "points") && !node_find(map, "vertices"))
-        complain(reader, map->place, "a pin needs 'points' or 'vertices'");
+        complain(reader, map->location, "a pin needs 'points' or 'vertices'");
     const Node *path = node_find(map, "path");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
 }
@@ -105,15 +105,15 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
         across += cross[i] * cross[i];
     }
     const float *up = camera->up;
-    const double least = 1.1e-12; // as the preview has it, which squares floats
-    if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < least)
-        complain(reader, map->place, "the camera's up must be longer than 1e-6");
+    const double min = 1.1e-12; // as the preview has it, which squares floats
+    if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < min)
+        complain(reader, map->location, "the camera's up must be longer than 1e-6");
     else if (!camera_given(map))
         return;
-    else if (length < least)
-        complain(reader, map->place, "the camera's eye and target are the same point");
+    else if (length < min)
+        complain(reader, map->location, "the camera's eye and target are the same point");
     else if (!(across > 0))
-        complain(reader, map->place, "the camera's up must point away from the line of sight");
+        complain(reader, map->location, "the camera's up must point away from the line of sight");
 }
 
 void finish_preview(Reader *reader, const Node *map, void *object) {
@@ -122,7 +122,7 @@ void finish_preview(Reader *reader, const Node *map, void *object) {
     const Node *light = node_find(map, "light"), *direction = node_find(light, "direction");
     const float *d = preview->light_direction;
     if (direction && (double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] + (double)d[2] * (double)d[2] < 1e-18)
-        complain(reader, direction->place, "the light's direction must be longer than 1e-9");
+        complain(reader, direction->location, "the light's direction must be longer than 1e-9");
 }
 
 // Sheets without a name are numbered; two must not share one.
@@ -137,7 +137,7 @@ static void check_names(Reader *reader, const Node *list, Scene *scene) {
         for (uint32_t j = 0; j < i && scene->sheets[i].name && scene->sheets[j].name; j++)
             if (strcmp(scene->sheets[i].name, scene->sheets[j].name) == 0) {
                 const Node *name = node_find(node, "name");
-                message_add(reader->messages, reader->text, name ? name->place : node->place,
+                message_add(reader->messages, reader->text, name ? name->location : node->location,
                             "two sheets are called '%s'; give each its own name", shown(scene->sheets[i].name).text);
                 break;
             }
@@ -170,7 +170,7 @@ static void resolve_pin(Reader *reader, const Node *node, Scene *scene, ScenePin
         return;
     const Node *sheet = node_find(node, "sheet");
     char hint[80];
-    message_add(reader->messages, reader->text, sheet ? sheet->place : node->place, "there is no sheet '%s'%s",
+    message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
                 shown(pin->sheet).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
@@ -180,7 +180,7 @@ static void check_step(Reader *reader, const Node *map, const Scene *scene) {
     const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *node = fps ? fps : steps;
     if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6))
         return;
-    message_add(reader->messages, reader->text, node ? node->place : map->place,
+    message_add(reader->messages, reader->text, node ? node->location : map->location,
                 "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
                 (double)scene->fps, scene->steps, rate);
 }
@@ -192,9 +192,9 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
     const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
     if (sheets && sheets->kind == NODE_LIST) {
         if (!sheets->count)
-            complain(reader, sheets->place, "a scene needs at least one sheet");
+            complain(reader, sheets->location, "a scene needs at least one sheet");
         else if (sheets->count > 1000)
-            complain(reader, sheets->place, "a scene has at most 1000 sheets");
+            complain(reader, sheets->location, "a scene has at most 1000 sheets");
         else
             check_names(reader, sheets, scene);
     }

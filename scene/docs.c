@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SECTION_MOST = 40 };
+enum { SECTION_MAX = 40 };
 
 typedef struct Sections {
-    const Schema *items[SECTION_MOST];
+    const Schema *items[SECTION_MAX];
     int count;
 } Sections;
 
@@ -57,7 +57,7 @@ static const char after_units[] =
     "\n"
     "```yaml\n"
     "mass_rate: {from: 0.004, to: 0.012, noise: {scale: 4 mm, octaves: 4, seed: 1}}\n"
-    "thickness: {from: 1 mm, to: 2 mm, picture: thickness.png}   # from where it is black, to where it is white\n"
+    "thickness: {from: 1 mm, to: 2 mm, texture: thickness.png}   # from where it is black, to where it is white\n"
     "mass_loss: {from: 20 %, to: 30 %, attribute: density}       # a number per vertex of the mesh, 0 from, 1 to\n"
     "```\n"
     "\n"
@@ -71,7 +71,7 @@ static void add_section(Sections *sections, const Schema *schema) {
     for (int i = 0; i < sections->count; i++)
         if (sections->items[i] == schema)
             return;
-    if (sections->count == SECTION_MOST)
+    if (sections->count == SECTION_MAX)
         return;
     sections->items[sections->count++] = schema;
     for (int i = 0; i < schema->row_count; i++) {

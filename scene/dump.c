@@ -51,7 +51,7 @@ static void put_numbers(FILE *file, const float *values, int count, Dimension di
     fputc(']', file);
 }
 
-static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param, const SceneFile *picture) {
+static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param, const SceneFile *texture) {
     if (param->field == SINGE_FIELD_NONE) {
         put_number(file, param->value, row->dimension);
         return;
@@ -65,9 +65,9 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
         put_number(file, param->noise.scale, DIM_LENGTH);
         fprintf(file, ", \"octaves\": %d, \"seed\": %" PRIu32 "}", param->noise.octaves, param->noise.seed);
     } else {
-        bool is_picture = param->field == SINGE_FIELD_PICTURE;
-        const char *name = is_picture ? picture->name : param->attribute;
-        fprintf(file, ", \"%s\": ", is_picture ? "picture" : "attribute");
+        bool is_texture = param->field == SINGE_FIELD_TEXTURE;
+        const char *name = is_texture ? texture->name : param->attribute;
+        fprintf(file, ", \"%s\": ", is_texture ? "texture" : "attribute");
         put_text(file, name ? name : "");
     }
     fputc('}', file);

@@ -10,7 +10,7 @@
 static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
 /// Bytes of a cell of the gas, how many cells it has where the scene leaves them to it, and at most; and how far it
 /// reaches beyond the sheets to the sides and down, m.
-static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_most = 2e6, gas_margin = 0.045;
+static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
 static const double pixel_bytes = 80;
 static const double program_bytes = 40e6;
 
@@ -64,7 +64,7 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
         const double room = i == 2 ? gas_margin + (double)scene->sim.gas.height : 2 * gas_margin;
         cells *= (fmax(box.high[i] - box.low[i], 0) + room) / cell + 8; // a multiple of 8
     }
-    return fmin(cells, gas_cells_most);
+    return fmin(cells, gas_cells_max);
 }
 
 SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
@@ -90,7 +90,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest))
             largest = i;
-    message_add(messages, scene->text, scene->sheets[largest].place, // there is at least one
+    message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one
                 "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
                 1e-9 * wanted, 1e-9 * room);
     return false;

@@ -98,7 +98,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         add(buffer, size, "a ");
         add_quantity(buffer, size, row);
         if (row->type == ROW_PARAM)
-            add(buffer, size, " or a map {from, to, picture | attribute | noise}");
+            add(buffer, size, " or a map {from, to, texture | attribute | noise}");
         break;
     case ROW_POSITION:
     case ROW_ROTATION:

@@ -43,14 +43,14 @@ static void mesh_fault(const Scene *scene, uint32_t index, const Mesh *mesh, con
     uint32_t cell = fault_cell(mesh, error);
     char face[40] = "";
     if (!file->name) {
-        message_add(messages, scene->text, scene->sheets[index].place, "the grid cannot be used: %s", what);
+        message_add(messages, scene->text, scene->sheets[index].location, "the grid cannot be used: %s", what);
         return;
     }
     if (cell < mesh->cell_count && mesh->cell_lines)
         snprintf(face, sizeof face, ":%u", (unsigned)mesh->cell_lines[cell]);
     else if (cell < mesh->cell_count)
         snprintf(face, sizeof face, ": face %u", (unsigned)(mesh->cell_faces ? mesh->cell_faces[cell] : cell) + 1);
-    message_add(messages, scene->text, file->place, "%s%s: %s (cells and vertices counted from 0)",
+    message_add(messages, scene->text, file->location, "%s%s: %s (cells and vertices counted from 0)",
                 shown_path(file->name).text, face, what);
 }
 
@@ -79,7 +79,7 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
         if (mesh)
             mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);
         else
-            message_add(messages, scene->text, scene->sheets[i].place, "%s",
+            message_add(messages, scene->text, scene->sheets[i].location, "%s",
                         what[0] ? what : singe_result_name(result));
         any = true;
     }

@@ -17,7 +17,7 @@ typedef struct Loader {
 } Loader;
 
 static SingeResult loader_fail(Loader *loader, const SceneFile *file, SingeResult result, const char *why) {
-    message_add(loader->messages, loader->scene->text, file->place, "%s", why);
+    message_add(loader->messages, loader->scene->text, file->location, "%s", why);
     if (result == SINGE_ERROR_MEMORY)
         loader->no_memory = true;
     return result;
@@ -33,7 +33,7 @@ static SingeResult load_image(Loader *loader, const SceneFile *file, Image *imag
     return result ? loader_fail(loader, file, result, error.message) : SINGE_OK;
 }
 
-static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *picture) {
+static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *picture) {
     Image image = {0};
     SingeError error = {0};
     if (load_image(loader, file, &image))
@@ -45,7 +45,7 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingePicture *
 }
 
 /// What lies farther out the simulation takes for a failure.
-static const float place_most = 1e4f;
+static const float location_max = 1e4f;
 
 /// Grids are in metres.
 static double metres_per_unit(int unit, float scale) {
@@ -72,7 +72,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
         for (int i = 0; i < 3 && turned; i++)
             q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
-            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < place_most && near;
+            near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < location_max && near;
     }
     return near;
 }
@@ -107,7 +107,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
     if (file.name) {
         result = load_file(sheet, mesh, report, &error);
     } else {
-        file.place = sheet->place;
+        file.location = sheet->location;
         result = mesh_grid(sheet->grid.size[0], sheet->grid.size[1], (uint32_t)sheet->grid.cells[0],
                            (uint32_t)sheet->grid.cells[1], (SingeAllocator){0}, mesh, &error);
         if (!result)
@@ -117,7 +117,7 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
     if (result)
         loader_fail(loader, &file, result, error.message);
     else if (!near)
-        message_add(loader->messages, loader->scene->text, file.place, "%s", too_far);
+        message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
 }
 
 static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
@@ -129,10 +129,10 @@ static void check_attribute(Loader *loader, const char *key, const SingeParam *p
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
-    if (file->place.file) // what stands in other files than the scene is not told
-        message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no such attribute", key);
+    if (file->location.file) // what stands in other files than the scene is not told
+        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
     else
-        message_add(loader->messages, loader->scene->text, file->place, "%s: the mesh has no attribute '%s'%s", key,
+        message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,
                     shown(param->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
@@ -146,17 +146,17 @@ static void load_sheet(Loader *loader, uint32_t index) {
     if (sheet->picture.name && !load_image(loader, &sheet->picture, &assets->images[index]))
         assets->pictures[index] = &assets->images[index];
     SingeMaterialDef material = sheet->material.def;
-    SceneParam place;
-    for (int i = 0; scene_param(i, &place); i++) {
-        const SingeParam *param = scene_param_at(&material, &place);
-        const SceneFile *file = &sheet->material.pictures[place.slot];
-        if (param->field == SINGE_FIELD_PICTURE) {
-            load_luminance(loader, file, &assets->params[index][place.slot]);
+    SceneParam location;
+    for (int i = 0; scene_param(i, &location); i++) {
+        const SingeParam *param = scene_param_at(&material, &location);
+        const SceneFile *file = &sheet->material.textures[location.slot];
+        if (param->field == SINGE_FIELD_TEXTURE) {
+            load_luminance(loader, file, &assets->params[index][location.slot]);
             if (mesh->positions && !mesh->uv)
-                message_add(loader->messages, loader->scene->text, file->place,
-                            "%s follows a picture, but the mesh has no uv", place.key);
+                message_add(loader->messages, loader->scene->text, file->location,
+                            "%s follows a texture, but the mesh has no uv", location.key);
         } else if (param->field == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
-            check_attribute(loader, place.key, param, file, mesh);
+            check_attribute(loader, location.key, param, file, mesh);
         }
     }
 }
@@ -176,7 +176,7 @@ static void load_solid(Loader *loader, uint32_t index) {
                                      metres_per_unit(collider->units, collider->scale), solid, &error);
         bytes_free(&bytes);
     } else if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD) {
-        SingePicture picture = {0};
+        SingeTexture picture = {0};
         file = &collider->picture;
         load_luminance(loader, file, &picture);
         if (picture.values)
@@ -205,15 +205,15 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
     assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
     assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
-    assets->source_pictures = many(&loader, scene->source_count, sizeof *assets->source_pictures);
+    assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
     if (loader.no_memory)
-        message_add(messages, scene->text, (ScenePlace){0}, "out of memory");
+        message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
         load_sheet(&loader, i);
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
-        if (scene->sources[i].picture.name)
-            load_luminance(&loader, &scene->sources[i].picture, &assets->source_pictures[i]);
+        if (scene->sources[i].texture.name)
+            load_luminance(&loader, &scene->sources[i].texture, &assets->source_textures[i]);
     for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++)
         load_solid(&loader, i);
     if (scene->preview.environment_picture.name && !loader.no_memory)
@@ -227,9 +227,9 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
 }
 
-static void picture_free(SingePicture *picture) {
+static void picture_free(SingeTexture *picture) {
     free((void *)picture->values); // image_luminance allocated them with libc's allocator
-    *picture = (SingePicture){0};
+    *picture = (SingeTexture){0};
 }
 
 void scene_assets_free(SceneAssets *assets) {
@@ -241,8 +241,8 @@ void scene_assets_free(SceneAssets *assets) {
         for (int p = 0; p < SCENE_PARAM_SLOTS && assets->params; p++)
             picture_free(&assets->params[i][p]);
     }
-    for (uint32_t i = 0; i < assets->source_count && assets->source_pictures; i++)
-        picture_free(&assets->source_pictures[i]);
+    for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
+        picture_free(&assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++)
         solid_free(&assets->solids[i]);
     image_free(&assets->sky);
@@ -254,6 +254,6 @@ void scene_assets_free(SceneAssets *assets) {
     free(assets->colours);
     free(assets->transmittances);
     free(assets->params);
-    free(assets->source_pictures);
+    free(assets->source_textures);
     *assets = (SceneAssets){0};
 }

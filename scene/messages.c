@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGES_MOST = 200, LINE_WIDTH = 110 };
+enum { MESSAGES_MAX = 200, LINE_WIDTH = 110 };
 
 // A copy as it may be printed (formats/printable.h); tabs are blanks.
 static char *text_printable(const char *text, size_t length) {
@@ -77,35 +77,35 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
 }
 
 // The file that a place is in.
-static const SceneText *text_of(const SceneText *text, ScenePlace place) {
-    const SceneText *file = text && place.file ? text->files : text;
-    while (file && file->number != place.file)
+static const SceneText *text_of(const SceneText *text, SceneLocation location) {
+    const SceneText *file = text && location.file ? text->files : text;
+    while (file && file->number != location.file)
         file = file->next;
     return file;
 }
 
-static char *text_origin(const SceneText *text, ScenePlace place) {
-    const SceneText *file = text_of(text, place);
+static char *text_origin(const SceneText *text, SceneLocation location) {
+    const SceneText *file = text_of(text, location);
     const char *name = file && file->name ? file->name : "scene";
     char origin[sizeof(Shown) + 40];
-    if (place.set > 0 && text && place.set <= text->set_count)
-        snprintf(origin, sizeof origin, "--set %s", shown(text->sets[place.set - 1]).text);
-    else if (place.line > 0)
-        snprintf(origin, sizeof origin, "%s:%d:%d", shown_path(name).text, place.line, place.column);
+    if (location.set > 0 && text && location.set <= text->set_count)
+        snprintf(origin, sizeof origin, "--set %s", shown(text->sets[location.set - 1]).text);
+    else if (location.line > 0)
+        snprintf(origin, sizeof origin, "%s:%d:%d", shown_path(name).text, location.line, location.column);
     else
         snprintf(origin, sizeof origin, "%s", shown_path(name).text);
     return text_printable(origin, strlen(origin));
 }
 
-static bool told_already(const SceneMessages *messages, const SceneMessage *message) {
+static bool already_reported(const SceneMessages *messages, const SceneMessage *message) {
     for (uint32_t i = 0; i < messages->count; i++)
         if (!strcmp(messages->items[i].origin, message->origin) && !strcmp(messages->items[i].text, message->text))
             return true;
     return false;
 }
 
-void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...) {
-    if (messages->count >= MESSAGES_MOST) {
+void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...) {
+    if (messages->count >= MESSAGES_MAX) {
         messages->left_out++;
         return;
     }
@@ -115,34 +115,34 @@ void message_add(SceneMessages *messages, const SceneText *text, ScenePlace plac
         return;
     }
     messages->items = items;
-    SceneMessage message = {.place = place};
+    SceneMessage message = {.location = location};
     va_list arguments;
     va_start(arguments, format);
     message.text = text_format(format, arguments);
     va_end(arguments);
-    message.origin = text_origin(text, place);
+    message.origin = text_origin(text, location);
     if (!message.text || !message.origin) {
         free(message.text);
         free(message.origin);
         messages->left_out++;
         return;
     }
-    if (place.file && told_already(messages, &message)) {
+    if (location.file && already_reported(messages, &message)) {
         free(message.text);
         free(message.origin);
         return;
     }
-    const SceneText *file = text_of(text, place);
+    const SceneText *file = text_of(text, location);
     // a line is shown of the scene alone: other files may be none of whoever sees the message
-    if (file && place.line > 0 && place.set == 0 && place.file == 0)
-        message.source = source_line(file, place.line, place.column, &message.caret);
+    if (file && location.line > 0 && location.set == 0 && location.file == 0)
+        message.source = source_line(file, location.line, location.column, &message.caret);
     items[messages->count++] = message;
 }
 
-void message_warn(const SingeLog *log, const SceneText *text, ScenePlace place, const char *format, ...) {
+void message_warn(const SingeLog *log, const SceneText *text, SceneLocation location, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    char *what = text_format(format, arguments), *origin = text_origin(text, place);
+    char *what = text_format(format, arguments), *origin = text_origin(text, location);
     va_end(arguments);
     const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
     char *line = size ? malloc(size) : NULL;
@@ -155,7 +155,7 @@ void message_warn(const SingeLog *log, const SceneText *text, ScenePlace place, 
     free(origin);
 }
 
-static bool place_before(ScenePlace a, ScenePlace b) {
+static bool location_before(SceneLocation a, SceneLocation b) {
     if (a.set != b.set)
         return a.set < b.set;
     if (a.file != b.file)
@@ -167,7 +167,7 @@ void messages_sort(SceneMessages *messages, uint32_t first) {
     for (uint32_t i = first + 1; i < messages->count; i++) {
         SceneMessage moved = messages->items[i];
         uint32_t j = i;
-        for (; j > first && place_before(moved.place, messages->items[j - 1].place); j--)
+        for (; j > first && location_before(moved.location, messages->items[j - 1].location); j--)
             messages->items[j] = messages->items[j - 1];
         messages->items[j] = moved;
     }

@@ -20,11 +20,11 @@ typedef struct SceneText {
 
 /// Adds a mistake at a place; one in a material file that several sheets use is told once. Never fails: what memory
 /// does not suffice for is counted in left_out.
-void message_add(SceneMessages *messages, const SceneText *text, ScenePlace place, const char *format, ...)
+void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
 /// Tells the log a warning with its place. A log that is zeroed is told nothing.
-void message_warn(const SingeLog *log, const SceneText *text, ScenePlace place, const char *format, ...)
+void message_warn(const SingeLog *log, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
 /// Puts the messages from `first` on into the order of the file, those of material files and of --set behind them.

@@ -4,13 +4,13 @@
 
 #include <string.h>
 
-enum { WORD_MOST = 40 };
+enum { WORD_MAX = 40 };
 
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 'a' - 'A') : c == '-' || c == ' ' ? '_' : c; }
 static int smaller(int a, int b) { return a < b ? a : b; }
 
 static int word_distance(const char *a, const char *b) {
-    int m = (int)strlen(a), n = (int)strlen(b), d[WORD_MOST + 1][WORD_MOST + 1];
+    int m = (int)strlen(a), n = (int)strlen(b), d[WORD_MAX + 1][WORD_MAX + 1];
     for (int i = 0; i <= m; i++)
         d[i][0] = i;
     for (int j = 0; j <= n; j++)
@@ -27,11 +27,11 @@ static int word_distance(const char *a, const char *b) {
 
 void nearest_offer(Nearest *nearest, const char *candidate) {
     size_t length = strlen(nearest->word), other = strlen(candidate);
-    if (!length || length > WORD_MOST || other > WORD_MOST)
+    if (!length || length > WORD_MAX || other > WORD_MAX)
         return;
     int distance = word_distance(nearest->word, candidate);
-    int most = (int)(length > other ? length : other) / 3;
-    if (distance <= (most > 1 ? most : 1) && distance < (int)other &&
+    int max = (int)(length > other ? length : other) / 3;
+    if (distance <= (max > 1 ? max : 1) && distance < (int)other &&
         (!nearest->best || distance < nearest->distance)) {
         nearest->best = candidate;
         nearest->distance = distance;

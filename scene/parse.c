@@ -42,7 +42,7 @@ static void take_name(Reader *reader, const Node *root) {
     row_expected(&row, expected, sizeof expected);
     reader->scene->name = stem(reader->arena, reader->text->name);
     if (reader->scene->name && !node_find(root, "name") && !value_names_files(reader->scene->name))
-        message_add(reader->messages, reader->text, (ScenePlace){.line = 1, .column = 1},
+        message_add(reader->messages, reader->text, (SceneLocation){.line = 1, .column = 1},
                     "the outputs cannot be called '%s' as the file is; give the scene a name: %s",
                     shown(reader->scene->name).text, expected);
 }
@@ -51,7 +51,7 @@ static void scene_fill(Reader *reader, const Node *root) {
     Scene *scene = reader->scene;
     if (root->kind != NODE_MAP) {
         char seen[NODE_WORDS];
-        message_add(reader->messages, reader->text, root->place, "a scene must be a map (key: value), not %s",
+        message_add(reader->messages, reader->text, root->location, "a scene must be a map (key: value), not %s",
                     node_describe(root, seen, sizeof seen));
         return;
     }
@@ -70,7 +70,7 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     if (!text || !scene || (base_dir && !folder))
         return SINGE_ERROR_MEMORY;
     uint32_t before = message_total(messages), first = messages->count;
-    Node *root = tree_read(arena, text, text->bytes, text->size, (ScenePlace){0}, messages);
+    Node *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
     if (root)
         schema_spell_out(arena, &schema_scene, root);
     if (root && !tree_set(arena, text, root, messages))
@@ -97,14 +97,14 @@ SingeResult scene_parse(const char *name, const char *bytes, size_t size, const 
     SceneText text = {.name = name ? name : "scene", .bytes = bytes, .size = size, .sets = sets,
                       .set_count = set_count > 0 ? set_count : 0};
     *scene = NULL;
-    if (size > SCENE_BYTES_MOST) {
-        message_add(messages, &text, (ScenePlace){.line = 1, .column = 1}, "a scene has at most 1 MiB, this one has %zu bytes", size);
+    if (size > SCENE_BYTES_MAX) {
+        message_add(messages, &text, (SceneLocation){.line = 1, .column = 1}, "a scene has at most 1 MiB, this one has %zu bytes", size);
         return SINGE_ERROR_LIMIT;
     }
     SceneArena *arena = arena_create();
     SingeResult result = arena ? parse_into(arena, &text, base_dir, scene, messages) : SINGE_ERROR_MEMORY;
     if (result == SINGE_ERROR_MEMORY)
-        message_add(messages, &text, (ScenePlace){0}, "out of memory");
+        message_add(messages, &text, (SceneLocation){0}, "out of memory");
     if (result)
         arena_destroy(arena);
     return result;
@@ -116,16 +116,16 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
     Bytes bytes = {0};
     SingeError error;
     *scene = NULL;
-    SingeResult result = file_read_most(path, SCENE_BYTES_MOST, (SingeAllocator){0}, &bytes, &error);
+    SingeResult result = file_read_max(path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error);
     if (result) {
-        message_add(messages, &text, (ScenePlace){0}, "%s", error.message);
+        message_add(messages, &text, (SceneLocation){0}, "%s", error.message);
         return result;
     }
     const char *slash = strrchr(path, '/');
     char folder[4096] = ".";
     size_t length = slash ? (size_t)(slash - path) : 1;
     if (length >= sizeof folder) {
-        message_add(messages, &text, (ScenePlace){0}, "the path is too long");
+        message_add(messages, &text, (SceneLocation){0}, "the path is too long");
         result = SINGE_ERROR_LIMIT;
     } else {
         if (slash)

@@ -9,7 +9,7 @@ static void *at(void *object, size_t offset) { return (char *)object + offset; }
 
 static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param) {
     if (node->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, node->place, "%s.noise must be a map {scale: , octaves: , seed: }",
+        message_add(reader->messages, reader->text, node->location, "%s.noise must be a map {scale: , octaves: , seed: }",
                     row->key);
         return;
     }
@@ -19,17 +19,19 @@ static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, S
 
 // What the parameter follows; returns how many such keys there are.
 static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeParam *param, SceneFile *file) {
-    const Node *picture = node_find(map, "picture"), *attribute = node_find(map, "attribute"),
+    const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
-    if (picture) {
-        SchemaRow part = {.key = "picture", .type = ROW_FILE};
-        param->field = SINGE_FIELD_PICTURE;
-        value_file(reader, &part, picture, file);
+    if (!texture)
+        texture = node_find(map, "picture"); // its name before
+    if (texture) {
+        SchemaRow part = {.key = "texture", .type = ROW_FILE};
+        param->field = SINGE_FIELD_TEXTURE;
+        value_file(reader, &part, texture, file);
     }
     if (attribute) {
         SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
         param->field = SINGE_FIELD_ATTRIBUTE;
-        file->place = attribute->place;
+        file->location = attribute->location;
         if (value_is_text(attribute))
             param->attribute = attribute->text;
         else
@@ -37,14 +39,14 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
     }
     if (noise) {
         param->field = SINGE_FIELD_NOISE;
-        file->place = noise->place;
+        file->location = noise->location;
         read_noise(reader, row, noise, param);
     }
-    return !!picture + !!attribute + !!noise;
+    return !!texture + !!attribute + !!noise;
 }
 
 static void read_param(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param, SceneFile *file) {
-    static const char *const keys[] = {"from", "to", "picture", "attribute", "noise"};
+    static const char *const keys[] = {"from", "to", "texture", "attribute", "noise"};
     SingeParam result = singe_param(param->value);
     *file = (SceneFile){0}; // of the material that this one began as
     if (node->kind != NODE_MAP) {
@@ -56,16 +58,17 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     }
     unsigned given = 0;
     for (const Node *child = node->first; child; child = child->next) {
-        Nearest nearest = {.word = child->key};
+        const char *name = renamed(reader, RENAMED_PARAM, child->key, child->key_location);
+        Nearest nearest = {.word = name};
         int i = 0;
-        for (; i < 5 && strcmp(child->key, keys[i]) != 0; i++)
+        for (; i < 5 && strcmp(name, keys[i]) != 0; i++)
             nearest_offer(&nearest, keys[i]);
         char hint[80], key[NODE_WORDS];
         if (i == 5)
-            message_add(reader->messages, reader->text, child->key_place, "unknown key%s in %s%s",
+            message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
                         node_key(child, key, sizeof key), row->key, nearest_hint(&nearest, hint, sizeof hint));
         else if (given & 1u << i)
-            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", keys[i],
+            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", keys[i],
                         row->key);
         else
             given |= 1u << i;
@@ -78,8 +81,8 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     good = (!to || value_float(reader, &end, to, &result.to)) && good;
     int fields = read_field(reader, row, node, &result, file);
     if (!from || !to || fields != 1)
-        message_add(reader->messages, reader->text, node->place,
-                    "%s as a map needs 'from', 'to' and one of 'picture', 'attribute' and 'noise'", row->key);
+        message_add(reader->messages, reader->text, node->location,
+                    "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);
     else if (good)
         *param = result;
 }
@@ -103,13 +106,13 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
     for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
         if (schema->defaults && !schema->defaults(reader->arena, items))
             return;
-        if (schema->place)
-            *schema->place(items) = child->place;
+        if (schema->location)
+            *schema->location(items) = child->location;
         if (child->kind == NODE_MAP) {
             schema_read(reader, schema, child, items);
         } else {
             char seen[NODE_WORDS];
-            message_add(reader->messages, reader->text, child->place, "an entry of '%s' must be a map, not %s",
+            message_add(reader->messages, reader->text, child->location, "an entry of '%s' must be a map, not %s",
                         row->key, node_describe(child, seen, sizeof seen));
         }
     }
@@ -249,7 +252,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
 static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, const SchemaRow *other,
                         const Node *child) {
     if (reader->messages->left_out) { // no need to say it well
-        message_add(reader->messages, reader->text, child->key_place, "unknown key");
+        message_add(reader->messages, reader->text, child->key_location, "unknown key");
         return;
     }
     if (other) {
@@ -257,7 +260,7 @@ static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, con
         int mine = 0;
         while (kind > 1u << mine)
             mine++;
-        message_add(reader->messages, reader->text, child->key_place, "a %s has no '%s'", names[mine], other->key);
+        message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
         return;
     }
     char hint[80], key[NODE_WORDS];
@@ -265,23 +268,24 @@ static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, con
     for (int i = 0; i < schema->row_count; i++)
         if (row_allowed(&schema->rows[i], kind))
             nearest_offer(&nearest, schema->rows[i].key);
-    message_add(reader->messages, reader->text, child->key_place, "unknown key%s in %s%s",
+    message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
                 node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
 }
 
 static void read_child(Reader *reader, const Schema *schema, unsigned kind, const Node *child, void *object,
                        uint64_t *given) {
     const SchemaRow *other = NULL;
+    const char *key = renamed(reader, schema->title, child->key, child->key_location);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (strcmp(row->key, child->key) != 0)
+        if (strcmp(row->key, key) != 0)
             continue;
         if (!row_allowed(row, kind)) {
             other = row;
             continue;
         }
         if (*given & 1ull << i)
-            message_add(reader->messages, reader->text, child->key_place, "'%s' is given twice in %s", row->key,
+            message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", row->key,
                         schema->title);
         else
             read_row(reader, row, child, object);
@@ -313,7 +317,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         const SchemaRow *row = &schema->rows[i];
         bool due = (row->flags & ROW_REQUIRED) && row_allowed(row, kind) && (kind != ~0u || !row->kinds);
         if (due && !(given & 1ull << i))
-            message_add(reader->messages, reader->text, map->place, "%s needs '%s': %s", schema->title, row->key,
+            message_add(reader->messages, reader->text, map->location, "%s needs '%s': %s", schema->title, row->key,
                         row->doc);
     }
     if (schema->finish)
@@ -328,7 +332,7 @@ static void spell_out_word(SceneArena *arena, const Schema *schema, Node *node) 
     *word = *node;
     word->next = NULL;
     word->key = key;
-    word->key_place = node->place;
+    word->key_location = node->location;
     node->kind = NODE_MAP;
     node->text = NULL;
     node->first = node->last = word;

@@ -20,17 +20,17 @@
 // ---- places and messages
 
 /// Where something in a scene was written. A zeroed place is nowhere.
-typedef struct ScenePlace {
+typedef struct SceneLocation {
     int line, column; ///< counted from 1; 0 for nothing
     int set;          ///< 1 + index of the --set that it came from, 0 for a file
     int file;         ///< number of the material file that it is in, 0 for the scene's own
-} ScenePlace;
+} SceneLocation;
 
 /// One mistake. `source` and the caret are absent (NULL, 0) where there is no line to show.
 typedef struct SceneMessage {
     char *origin; ///< "letter.yaml:12:9", "letter.yaml" or "--set frames=x"
     char *text;   ///< what is wrong and what was expected
-    ScenePlace place;
+    SceneLocation location;
     char *source; ///< the line of the file, or NULL
     int caret;    ///< column of `source`, from 1, that the mistake begins at; 0 for none
 } SceneMessage;
@@ -52,7 +52,7 @@ void scene_messages_free(SceneMessages *messages);
 typedef struct SceneFile {
     char *name; ///< as written; NULL when not given
     char *path; ///< resolved against the scene's folder
-    ScenePlace place;
+    SceneLocation location;
 } SceneFile;
 
 /// A moment of a motion as it is written: the rotation turns about x, then y, then z (fixed axes).
@@ -85,7 +85,7 @@ typedef struct SceneMeasured {
 
 typedef struct SceneMaterial {
     SingeMaterialDef def;                  ///< pictures have no values before scene_load
-    SceneFile pictures[SCENE_PARAM_SLOTS]; ///< of parameters that follow a picture
+    SceneFile textures[SCENE_PARAM_SLOTS]; ///< of parameters that follow a texture
     char *name;                            ///< for messages, may be NULL
     SceneMeasured measured;
 } SceneMaterial;
@@ -95,7 +95,7 @@ typedef enum SceneUnits { SCENE_UNITS_M, SCENE_UNITS_CM, SCENE_UNITS_MM, SCENE_U
 typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 
 typedef struct SceneSheet {
-    ScenePlace place;
+    SceneLocation location;
     char *name;
     SceneFile mesh;       ///< or grid
     SceneGrid grid;
@@ -115,18 +115,18 @@ typedef struct SceneSheet {
 } SceneSheet;
 
 typedef struct SceneSource {
-    ScenePlace place;
-    SingeSourceDef def;   ///< path, picture and strength pointers are empty
+    SceneLocation location;
+    SingeSourceDef def;   ///< path, texture and strength pointers are empty
     uint32_t key_count;
     SceneKey *keys;
-    SceneFile picture;
+    SceneFile texture;
     uint32_t strength_count;
     SingeValueKey *strength;
     bool visible;         ///< balls: drawn in the preview
 } SceneSource;
 
 typedef struct SceneCollider {
-    ScenePlace place;
+    SceneLocation location;
     SingeColliderDef def; ///< its pointers are empty
     SceneFile mesh;       ///< of a mesh
     float scale;          ///< times what `units` says
@@ -144,7 +144,7 @@ typedef struct ScenePoint {
 } ScenePoint;
 
 typedef struct ScenePin {
-    ScenePlace place;
+    SceneLocation location;
     char *sheet;          ///< a sheet's name or number from 0; NULL is the first
     uint32_t sheet_index;
     uint32_t point_count;
@@ -179,7 +179,16 @@ typedef struct SceneOutput {
     OutputSet formats;
 } SceneOutput;
 
+/// A key or a word that the scene still calls by the name it had before this release.
+typedef struct SceneRenamed {
+    SceneLocation location;
+    const char *before, *now;
+    const struct SceneText *text; ///< that the location is in
+    struct SceneRenamed *next;
+} SceneRenamed;
+
 typedef struct Scene {
+    SceneRenamed *renamed; ///< the last one first
     char *name;   ///< of the outputs; the scene file's name without its ending by default
     int frames;   ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
     float fps;    ///< frames a second
@@ -243,8 +252,8 @@ typedef struct SceneAssets {
     const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
     float (*colours)[3];          ///< [sheet_count], for PreviewDef
     float *transmittances;        ///< the same
-    SingePicture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
-    SingePicture *source_pictures; ///< [source_count]
+    SingeTexture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
+    SingeTexture *source_textures; ///< [source_count]
     SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives
     Image sky;                    ///< zeroed where there is none
 } SceneAssets;

@@ -65,7 +65,7 @@ typedef struct Reader {
     Scene *scene;
 } Reader;
 
-enum { SCENE_BYTES_MOST = 1 << 20 }; ///< of a scene or a material file
+enum { SCENE_BYTES_MAX = 1 << 20 }; ///< of a scene or a material file
 
 typedef struct Schema {
     const char *title; ///< "a sheet": for messages and headings
@@ -83,7 +83,7 @@ typedef struct Schema {
     /// Checks what one row cannot see.
     void (*finish)(Reader *reader, const Node *map, void *object);
     /// Where the object keeps its place; NULL when it does not.
-    ScenePlace *(*place)(void *object);
+    SceneLocation *(*location)(void *object);
 } Schema;
 
 extern const Schema schema_scene;
@@ -110,6 +110,11 @@ bool scene_param(int index, SceneParam *param);
 static inline SingeParam *scene_param_at(SingeMaterialDef *def, const SceneParam *param) {
     return (SingeParam *)((char *)def + param->offset);
 }
+
+/// What a word is called now: the word itself, or the name that has taken its place in this release, which is noted in
+/// the scene (renamed.c). `in`: a schema's title, RENAMED_PARAM for a parameter's map, or the key that has the word.
+#define RENAMED_PARAM "a parameter"
+const char *renamed(Reader *reader, const char *in, const char *word, SceneLocation location);
 
 /// Reads a map into an object whose defaults are set.
 void schema_read(Reader *reader, const Schema *schema, const Node *map, void *object);

@@ -18,7 +18,7 @@ const Schema schema_noise = {
 
 // A value that may vary over the sheet; its picture's place follows from the member.
 #define PARAM(name, member, dim, range_, text)                                                                         \
-    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, pictures[SCENE_PARAM_SLOT(member)]),    \
+    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, textures[SCENE_PARAM_SLOT(member)]),    \
      range_, .doc = text}
 static const SchemaRow weight_rows[] = {
     PARAM("red", weight[SINGE_RED], DIM_FRACTION, WITHIN(0, 1), "centre to corner: thickness"),
@@ -142,7 +142,7 @@ static const SchemaRow material_rows[] = {
           "sharpest bend beyond the rest shape that unburnt mesh takes (solver `strand`); 0: any. Thin sheets that "
           "shrink fold along rows of cells without it"),
     PARAM("strength", strength, DIM_STIFFNESS, OVER_OR_INF(0),
-          "line force at which the sheet tears before it burns; a picture may scale it: perforations, folds. The "
+          "line force at which the sheet tears before it burns; a texture may scale it: perforations, folds. The "
           "model's own, far below real paper's ([equations.md](equations.md#tearing))"),
     PARAM("char_strength", char_strength, DIM_STIFFNESS, OVER(0),
           "the same of char, and without char of what is burnt to mass_min; geometric between the two. Ash has a "
@@ -158,7 +158,7 @@ const Schema schema_material = {
     .finish = finish_material,
     .doc = "What a sheet is made of and how it burns. `material: newsprint` takes one as it is, `material: {base: "
            "newsprint, thickness: 2 mm}` changes it; the defaults are those of office-paper, 80 g/m2 at its real pace. "
-           "Mass is always a fraction of the mass at the start. A value marked *varies* may also follow a picture, an "
+           "Mass is always a fraction of the mass at the start. A value marked *varies* may also follow a texture, an "
            "attribute or a noise (see *Values that vary*)."};
 
 static bool param_in(const Schema *schema, const char *prefix, int *index, SceneParam *param) {
@@ -172,7 +172,7 @@ static bool param_in(const Schema *schema, const char *prefix, int *index, Scene
             continue;
         snprintf(param->key, sizeof param->key, "%s%s", prefix, row->key);
         param->offset = row->offset - offsetof(SceneMaterial, def);
-        param->slot = (row->extra - offsetof(SceneMaterial, pictures)) / sizeof(SceneFile);
+        param->slot = (row->extra - offsetof(SceneMaterial, textures)) / sizeof(SceneFile);
         return true;
     }
     return false;

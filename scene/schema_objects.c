@@ -2,7 +2,7 @@
 #include "scene/schema_rows.h"
 
 static const char *const source_names[] = {
-    [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_PICTURE] = "picture", [SINGE_SOURCE_SPOT] = "spot", NULL};
+    [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_TEXTURE] = "texture", [SINGE_SOURCE_SPOT] = "spot", NULL};
 static const char *const units_names[] = {
     [SCENE_UNITS_M] = "m", [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm", [SCENE_UNITS_IN] = "in",
     [SCENE_UNITS_FT] = "ft", NULL};
@@ -15,7 +15,7 @@ static const char *const collider_names[] = {
 static const char *const sides_names[] = {[SINGE_SIDES_TOUCHING] = "touching", [SINGE_SIDES_BOTH] = "both", NULL};
 
 enum {
-    BALL = 1 << SINGE_SOURCE_BALL, PICTURE = 1 << SINGE_SOURCE_PICTURE, SPOT = 1 << SINGE_SOURCE_SPOT,
+    BALL = 1 << SINGE_SOURCE_BALL, TEXTURE = 1 << SINGE_SOURCE_TEXTURE, SPOT = 1 << SINGE_SOURCE_SPOT,
     PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
     BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
     HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD, MESH = 1 << SINGE_COLLIDER_MESH,
@@ -26,7 +26,7 @@ enum {
 
 static const SchemaRow key_rows[] = {
     {"time", ROW_FLOAT, DIM_TIME, AT(SceneKey, time), .min = 0, .max = 1e6, .flags = ROW_REQUIRED, .doc = "when"},
-    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, PLACE, .doc = "where"},
+    {"position", ROW_VECTOR, DIM_LENGTH, AT(SceneKey, position), .length = 3, LOCATION, .doc = "where"},
     {"rotation", ROW_VECTOR, DIM_ANGLE, AT(SceneKey, rotation), .length = 3, TURN,
      .doc = "turned about the x axis, then y, then z, all fixed in the world"},
 };
@@ -42,7 +42,7 @@ static const SchemaRow strength_rows[] = {
 };
 static const Schema schema_strength = {
     .title = "a strength's entry", .size = sizeof(SingeValueKey), ROWS(strength_rows),
-    .doc = "How strong a picture source is at a time; straight lines in between. Times must increase."};
+    .doc = "How strong a texture source is at a time; straight lines in between. Times must increase."};
 
 // ---- sheets
 
@@ -54,7 +54,7 @@ static const SchemaRow grid_rows[] = {
     {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
      .doc = "how far vertices lie off the grid, of a cell: folds and fronts then find no lines to follow; 0 is "
             "regular"},
-    {"relief", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.relief), WITHIN(0, 1e3),
+    {"displacement", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.displacement), WITHIN(0, 1e3),
      .doc = "root mean square height of the smooth waves in which the sheet lies from the start; 0 is flat"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
 };
@@ -62,7 +62,7 @@ static const Schema schema_grid = {
     .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows), .defaults = default_grid,
     .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
-static ScenePlace *sheet_place(void *object) { return &((SceneSheet *)object)->place; }
+static SceneLocation *sheet_location(void *object) { return &((SceneSheet *)object)->location; }
 static const SchemaRow sheet_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(SceneSheet, name),
      .doc = "for pins and messages; `sheet1`, `sheet2`, ... by default"},
@@ -100,17 +100,17 @@ static const SchemaRow sheet_rows[] = {
 };
 const Schema schema_sheet = {
     .title = "a sheet", .size = sizeof(SceneSheet), ROWS(sheet_rows), .defaults = default_sheet, .finish = finish_sheet,
-    .place = sheet_place, .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
+    .location = sheet_location, .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
 
 // ---- sources, colliders, pins
 
-static ScenePlace *source_place(void *object) { return &((SceneSource *)object)->place; }
+static SceneLocation *source_location(void *object) { return &((SceneSource *)object)->location; }
 #define SOURCE(name, member, dim, kinds_, range_, text) \
     {name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text}
 static const SchemaRow source_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
      .doc =
-         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `picture`: a flux drawn on the sheet"},
+         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `texture`: a flux drawn on the sheet"},
     SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
      .doc = "to here; `inf` is for ever"},
@@ -123,23 +123,23 @@ static const SchemaRow source_rows[] = {
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
      .kinds = SPOT, .flags = ROW_REQUIRED, ANY, .doc = "its centre"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
-     .kinds = BALL, .flags = ROW_SHORT, PLACE, .doc = "its centre, when it does not move; this or `path`"},
+     .kinds = BALL, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
      .sub = &schema_key, .doc = "its way; this or `position`"},
-    {"picture", ROW_FILE, DIM_NONE, AT(SceneSource, picture), .kinds = PICTURE, .flags = ROW_REQUIRED,
+    {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = TEXTURE, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
-    SOURCE("flux", flux, DIM_FLUX, PICTURE, FROM(0), "into each of the sheet's two layers where the picture is white"),
+    SOURCE("flux", flux, DIM_FLUX, TEXTURE, FROM(0), "into each of the sheet's two layers where the texture is white"),
     {"strength", ROW_STRENGTH, DIM_FRACTION, AT(SceneSource, strength), EXTRA(SceneSource, strength_count),
-     .kinds = PICTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
+     .kinds = TEXTURE, .min = 0, .max = 1e6, .sub = &schema_strength,
      .doc = "multiplies the flux over time; 1 when not given"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
 };
 const Schema schema_source = {
     .title = "a source", .size = sizeof(SceneSource), ROWS(source_rows), .kind_offset = offsetof(SceneSource, def.kind),
-    .defaults = default_source, .finish = finish_source, .place = source_place,
+    .defaults = default_source, .finish = finish_source, .location = source_location,
     .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
 
-static ScenePlace *collider_place(void *object) { return &((SceneCollider *)object)->place; }
+static SceneLocation *collider_location(void *object) { return &((SceneCollider *)object)->location; }
 #define COLLIDER(name, member, dim, kinds_, range_, text) \
     {name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text}
 static const SchemaRow collider_rows[] = {
@@ -166,7 +166,7 @@ static const SchemaRow collider_rows[] = {
     {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
      WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
-     .flags = ROW_SHORT, PLACE, .doc = "of its centre, when it does not move; instead of `path`"},
+     .flags = ROW_SHORT, LOCATION, .doc = "of its centre, when it does not move; instead of `path`"},
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
@@ -192,10 +192,10 @@ const Schema schema_collider = {
     .kind_offset = offsetof(SceneCollider, def.kind),
     .defaults = default_collider,
     .finish = finish_collider,
-    .place = collider_place,
+    .location = collider_location,
     .doc = "A rigid thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
 
-static ScenePlace *pin_place(void *object) { return &((ScenePin *)object)->place; }
+static SceneLocation *pin_location(void *object) { return &((ScenePin *)object)->location; }
 static const SchemaRow pin_rows[] = {
     {"sheet", ROW_TEXT, DIM_NONE, AT(ScenePin, sheet),
      .doc = "name of the sheet, or its number from 0; the first by default"},
@@ -211,4 +211,4 @@ static const SchemaRow pin_rows[] = {
 };
 const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
-    .place = pin_place, .doc = "Holds part of a sheet."};
+    .location = pin_location, .doc = "Holds part of a sheet."};

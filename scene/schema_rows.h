@@ -12,7 +12,7 @@
 // ranges, in held units, never wider than what the library takes (tests/scene/test_ranges.c)
 #define MUCH 1e9
 #define ANY .min = -1e6, .max = 1e6
-#define PLACE .min = -1e4, .max = 1e4 // of what is drawn
+#define LOCATION .min = -1e4, .max = 1e4 // of what is drawn
 #define TURN .min = -1e6 * DEGREE, .max = 1e6 * DEGREE
 #define KELVIN .min = 1, .max = 1e4
 #define OVER(low) .flags = ROW_OPEN_MIN, .min = (low), .max = MUCH

@@ -4,18 +4,18 @@
 
 #include <string.h>
 
-enum { STEP_MOST = 64 };
+enum { STEP_MAX = 64 };
 
 typedef struct Setter {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
-    ScenePlace place;
+    SceneLocation location;
     const char *path, *rest, *stop; // the path, what is still to be read of it, its end
 } Setter;
 
 // The next step of the path; false at its end or where the path is badly formed (then *bad).
-static bool setter_step(Setter *setter, char step[STEP_MOST], bool *bad) {
+static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     const char *c = setter->rest;
     if (c == setter->stop)
         return false;
@@ -23,7 +23,7 @@ static bool setter_step(Setter *setter, char step[STEP_MOST], bool *bad) {
     if (bracket || (*c == '.' && c > setter->path))
         c++;
     size_t length = 0;
-    while (c < setter->stop && *c != '.' && *c != '[' && *c != ']' && length < STEP_MOST - 1)
+    while (c < setter->stop && *c != '.' && *c != '[' && *c != ']' && length < STEP_MAX - 1)
         step[length++] = *c++;
     step[length] = 0;
     if (bracket) {
@@ -56,7 +56,7 @@ static Node *child_new(Setter *setter, Node *map, const char *step) {
     if (!child)
         return NULL;
     child->kind = NODE_MAP;
-    child->place = child->key_place = setter->place;
+    child->location = child->key_location = setter->location;
     child->key = arena_text(setter->arena, step, strlen(step));
     if (!child->key)
         return NULL;
@@ -71,7 +71,7 @@ static Node *child_new(Setter *setter, Node *map, const char *step) {
 
 // The node that the path leads to, made where it is missing. NULL with a message, or without memory.
 static Node *setter_walk(Setter *setter, Node *root) {
-    char step[STEP_MOST], seen[NODE_WORDS];
+    char step[STEP_MAX], seen[NODE_WORDS];
     bool bad = false;
     Node *node = root;
     setter->rest = setter->path;
@@ -80,7 +80,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
         if (node->kind == NODE_LIST) {
             child = child_at(node, step);
             if (!child) {
-                message_add(setter->messages, setter->text, setter->place,
+                message_add(setter->messages, setter->text, setter->location,
                             "'%s' is not an entry of that list, which has %u (the first is 0)", step,
                             (unsigned)node->count);
                 return NULL;
@@ -90,7 +90,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
             if (!child)
                 child = child_new(setter, node, step);
         } else {
-            message_add(setter->messages, setter->text, setter->place, "%s has no '%s' in it",
+            message_add(setter->messages, setter->text, setter->location, "%s has no '%s' in it",
                         node_describe(node, seen, sizeof seen), step);
             return NULL;
         }
@@ -102,7 +102,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
 }
 
 static bool setter_path_good(Setter *setter) {
-    char step[STEP_MOST];
+    char step[STEP_MAX];
     bool bad = false, any = false;
     while (setter_step(setter, step, &bad))
         any = true;
@@ -113,17 +113,17 @@ static void set_one(SceneArena *arena, const SceneText *text, int index, Node *r
     const char *set = text->sets[index], *equals = strchr(set, '=');
     Setter setter = {arena, text, messages, {.set = index + 1}, set, set, equals ? equals : set};
     if (!setter_path_good(&setter)) {
-        message_add(messages, text, setter.place, "expected PATH=VALUE, such as sheets.0.material.grammage=60 g/m2");
+        message_add(messages, text, setter.location, "expected PATH=VALUE, such as sheets.0.material.grammage=60 g/m2");
         return;
     }
     // the value first: a bad one must leave no half-made maps behind
-    Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.place, messages);
+    Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
     Node *target = value ? setter_walk(&setter, root) : NULL;
     if (!target)
         return;
     // the value takes the target's place among its siblings; its name is now the --set's
     value->key = target->key;
-    value->key_place = setter.place;
+    value->key_location = setter.location;
     value->next = target->next;
     *target = *value;
 }

@@ -76,10 +76,10 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
     face_normal(vertices, left, count, normal);
     for (; count >= 3; count--, triangles += 3) {
         uint32_t best = 1; // of a face that crosses itself: any
-        double least = INFINITY;
+        double min = INFINITY;
         for (uint32_t i = 0; i < count && count > 3; i++) {
             double square = ear(vertices, left, count, i, normal);
-            if (square < least) least = square, best = i;
+            if (square < min) min = square, best = i;
         }
         triangles[0] = left[(best + count - 1) % count], triangles[1] = left[best];
         triangles[2] = left[(best + 1) % count];
@@ -90,12 +90,12 @@ static void face_cut(const float *vertices, uint32_t *left, uint32_t count, uint
 /// Cuts all faces; false when out of memory. Names of a corner twice in a row make no triangle of extent, which the
 /// library leaves out.
 static bool cut_faces(const Polygons *polygons, PreviewSolid *surface) {
-    uint32_t most = 0;
+    uint32_t max = 0;
     for (uint32_t f = 0; f < polygons->face_count; f++) {
         uint32_t count = polygons->first[f + 1] - polygons->first[f];
-        most = count > most ? count : most;
+        max = count > max ? count : max;
     }
-    uint32_t *left = malloc((most + 1) * sizeof *left);
+    uint32_t *left = malloc((max + 1) * sizeof *left);
     for (uint32_t f = 0; left && f < polygons->face_count; f++) {
         uint32_t first = polygons->first[f], count = polygons->first[f + 1] - first;
         memcpy(left, polygons->corners + first, count * sizeof *left);
@@ -180,7 +180,7 @@ static void draw_heights(SceneSolid *solid, const float size[2]) {
     }
 }
 
-SingeResult solid_make_heights(const SingePicture *picture, const float size[2], const float heights[2],
+SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
                                SceneSolid *solid, SingeError *error) {
     size_t columns = (size_t)picture->width, rows = (size_t)picture->height, nodes = columns * rows;
     if (columns < 2 || rows < 2)

@@ -10,7 +10,7 @@ SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *byt
 
 /// Heights from a picture, between those of black and of white, over a rectangle of that size, and the surface that is
 /// drawn.
-SINGE_NODISCARD SingeResult solid_make_heights(const SingePicture *picture, const float size[2], const float heights[2],
+SINGE_NODISCARD SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
                                                SceneSolid *solid, SingeError *error);
 
 void solid_free(SceneSolid *solid);

@@ -6,33 +6,33 @@
 #include "formats/utf8.h"
 #include "scene/yaml.h"
 
-enum { DEPTH_MOST = YAML_DEPTH };
+enum { DEPTH_MAX = YAML_DEPTH };
 
 typedef struct Builder {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
-    ScenePlace origin; // --set or file, without line and column
-    Node *stack[DEPTH_MOST]; // open lists and maps
-    char *keys[DEPTH_MOST];  // key that waits for its value, in each open map
-    ScenePlace key_places[DEPTH_MOST];
+    SceneLocation origin; // --set or file, without line and column
+    Node *stack[DEPTH_MAX]; // open lists and maps
+    char *keys[DEPTH_MAX];  // key that waits for its value, in each open map
+    SceneLocation key_locations[DEPTH_MAX];
     int depth;
     Node *root;
     int documents;
     bool bad;
 } Builder;
 
-static void builder_fail(Builder *builder, ScenePlace place, const char *what) {
-    message_add(builder->messages, builder->text, place, "%s", what);
+static void builder_fail(Builder *builder, SceneLocation location, const char *what) {
+    message_add(builder->messages, builder->text, location, "%s", what);
     builder->bad = true;
 }
 
 // A line and column of a file; a --set has neither.
-static ScenePlace place_at(const Builder *builder, int line, int column) {
-    ScenePlace place = builder->origin;
-    if (!place.set)
-        place.line = line, place.column = column;
-    return place;
+static SceneLocation location_at(const Builder *builder, int line, int column) {
+    SceneLocation location = builder->origin;
+    if (!location.set)
+        location.line = line, location.column = column;
+    return location;
 }
 
 static const char not_read[] = "not valid YAML, or it could not be read";
@@ -46,7 +46,7 @@ static void builder_attach(Builder *builder, Node *node) {
     Node *parent = builder->stack[top];
     if (parent->kind == NODE_MAP) {
         node->key = builder->keys[top];
-        node->key_place = builder->key_places[top];
+        node->key_location = builder->key_locations[top];
         builder->keys[top] = NULL;
     }
     if (parent->last)
@@ -63,13 +63,13 @@ static bool builder_wants_key(const Builder *builder) {
     return top >= 0 && builder->stack[top]->kind == NODE_MAP && !builder->keys[top];
 }
 
-static void builder_open(Builder *builder, NodeKind kind, ScenePlace place) {
+static void builder_open(Builder *builder, NodeKind kind, SceneLocation location) {
     if (builder_wants_key(builder)) {
-        builder_fail(builder, place, "a key must be a single word");
+        builder_fail(builder, location, "a key must be a single word");
         return;
     }
-    if (builder->depth == DEPTH_MOST) {
-        builder_fail(builder, place, "lists and maps are nested more than 64 deep");
+    if (builder->depth == DEPTH_MAX) {
+        builder_fail(builder, location, "lists and maps are nested more than 64 deep");
         return;
     }
     Node *node = arena_new(builder->arena, 1, sizeof *node);
@@ -78,25 +78,25 @@ static void builder_open(Builder *builder, NodeKind kind, ScenePlace place) {
         return;
     }
     node->kind = kind;
-    node->place = place;
+    node->location = location;
     builder_attach(builder, node);
     builder->stack[builder->depth] = node;
     builder->keys[builder->depth++] = NULL;
 }
 
-static void builder_value(Builder *builder, const YamlEvent *event, ScenePlace place) {
+static void builder_value(Builder *builder, const YamlEvent *event, SceneLocation location) {
     char *text = arena_text(builder->arena, event->text, event->length);
     if (!text) {
         builder->bad = true;
         return;
     }
     if (strlen(text) != event->length) {
-        builder_fail(builder, place, "a text must not contain a zero character");
+        builder_fail(builder, location, "a text must not contain a zero character");
         return;
     }
     if (builder_wants_key(builder)) {
         builder->keys[builder->depth - 1] = text;
-        builder->key_places[builder->depth - 1] = place;
+        builder->key_locations[builder->depth - 1] = location;
         return;
     }
     Node *node = arena_new(builder->arena, 1, sizeof *node);
@@ -106,44 +106,44 @@ static void builder_value(Builder *builder, const YamlEvent *event, ScenePlace p
     }
     int top = builder->depth - 1;
     if ((event->flags & YAML_ABSENT) && top >= 0) // told at what it is the value of
-        place = builder->stack[top]->kind == NODE_MAP ? builder->key_places[top] : builder->stack[top]->place;
+        location = builder->stack[top]->kind == NODE_MAP ? builder->key_locations[top] : builder->stack[top]->location;
     node->kind = NODE_VALUE;
-    node->place = place;
+    node->location = location;
     node->text = text;
     node->quoted = event->flags & YAML_QUOTED;
     builder_attach(builder, node);
 }
 
 // The events come from a process that may have gone astray: an order that no text has is refused.
-static void builder_close(Builder *builder, ScenePlace place) {
+static void builder_close(Builder *builder, SceneLocation location) {
     int top = builder->depth - 1;
     if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
-        builder_fail(builder, place, not_read);
+        builder_fail(builder, location, not_read);
     else
         builder->depth--;
 }
 
 static void builder_take(Builder *builder, const YamlEvent *event) {
-    ScenePlace place = place_at(builder, (int)event->line, (int)event->column);
+    SceneLocation location = location_at(builder, (int)event->line, (int)event->column);
     bool node = event->kind == YAML_VALUE || event->kind == YAML_MAP || event->kind == YAML_LIST;
     if ((event->flags & YAML_ANCHORED) || event->kind == YAML_ALIAS)
-        builder_fail(builder, place, "anchors and aliases (&name, *name) are not supported; write the value out");
+        builder_fail(builder, location, "anchors and aliases (&name, *name) are not supported; write the value out");
     else if (event->flags & YAML_TAGGED)
-        builder_fail(builder, place, "tags (!name) are not supported; each key knows the type of its value");
+        builder_fail(builder, location, "tags (!name) are not supported; each key knows the type of its value");
     else if (node && builder->root && !builder->depth)
-        builder_fail(builder, place, not_read);
+        builder_fail(builder, location, not_read);
     else if (event->kind == YAML_VALUE)
-        builder_value(builder, event, place);
+        builder_value(builder, event, location);
     else if (node)
-        builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, place);
+        builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, location);
     else if (event->kind == YAML_CLOSE)
-        builder_close(builder, place);
+        builder_close(builder, location);
     else if (event->kind == YAML_DOCUMENT && builder->documents++)
-        builder_fail(builder, place, "a second document (---) begins here; a scene is one document");
-    else if (event->kind == YAML_FAULT && (place.file || !event->length))
-        builder_fail(builder, place, "not valid YAML");
+        builder_fail(builder, location, "a second document (---) begins here; a scene is one document");
+    else if (event->kind == YAML_FAULT && (location.file || !event->length))
+        builder_fail(builder, location, "not valid YAML");
     else if (event->kind == YAML_FAULT) {
-        message_add(builder->messages, builder->text, place, "not valid YAML: %s", shown(event->text).text);
+        message_add(builder->messages, builder->text, location, "not valid YAML: %s", shown(event->text).text);
         builder->bad = true;
     }
 }
@@ -157,12 +157,12 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         const int length = utf8_length((const char *)c); // a zero follows all texts
         const bool good = length && end - c >= length && (*c >= 0x20 || *c == '\n' || *c == '\r' || *c == '\t');
         if (!good) {
-            builder_fail(builder, place_at(builder, line, column),
+            builder_fail(builder, location_at(builder, line, column),
                          "this byte is not text; a scene is UTF-8 without control characters");
             return false;
         }
         if (begins && *c == '%') { // libfyaml 0.7 may not return from a cut-off directive
-            builder_fail(builder, place_at(builder, line, column),
+            builder_fail(builder, location_at(builder, line, column),
                          "a line must not begin with %; directives of YAML are not supported");
             return false;
         }
@@ -181,14 +181,14 @@ static void builder_run(Builder *builder, YamlEvents *events) {
     YamlEvent event = {0};
     while (event.kind != YAML_END && (!builder->bad || event.kind == YAML_FAULT)) {
         if (!yaml_next(events, &event)) {
-            builder_fail(builder, place_at(builder, 1, 1), not_read);
+            builder_fail(builder, location_at(builder, 1, 1), not_read);
             return;
         }
         if (!builder->bad || event.kind == YAML_FAULT)
             builder_take(builder, &event);
     }
     if (!builder->bad && builder->depth)
-        builder_fail(builder, place_at(builder, (int)event.line, (int)event.column), not_read);
+        builder_fail(builder, location_at(builder, (int)event.line, (int)event.column), not_read);
 }
 
 // A --set's value that is a word or a number, with a unit perhaps, and so needs no YAML.
@@ -200,17 +200,17 @@ static bool is_plain(const char *bytes, size_t size) {
     return strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
 }
 
-static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, ScenePlace place) {
+static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, SceneLocation location) {
     Node *node = arena_new(arena, 1, sizeof *node);
     char *text = arena_text(arena, bytes, size);
     if (!node || !text)
         return NULL;
-    node->place = place;
+    node->location = location;
     node->text = text;
     return node;
 }
 
-Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, ScenePlace origin,
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
                 SceneMessages *messages) {
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
     YamlEvents events;
@@ -229,7 +229,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         return NULL;
     }
     if (result) {
-        message_add(messages, text, place_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s", error.message);
+        message_add(messages, text, location_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s", error.message);
         return NULL;
     }
     builder_run(&builder, &events);
@@ -239,7 +239,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     if (!builder.root && origin.set && !arena_failed(arena)) // a comment alone
         return plain_node(arena, "", 0, origin);
     if (!builder.root && !arena_failed(arena))
-        message_add(messages, text, place_at(&builder, 1, 1),
+        message_add(messages, text, location_at(&builder, 1, 1),
                     origin.file ? "the file is empty" : "the scene is empty; at least 'sheets' is needed");
     return builder.root;
 }
@@ -261,13 +261,13 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
     }
     if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null")))
         return "nothing";
-    if (node->place.file) // what stands in other files than the scene is not told
+    if (node->location.file) // what stands in other files than the scene is not told
         return "this value";
     snprintf(buffer, size, "'%s'", shown(node->text).text);
     return buffer;
 }
 
 const char *node_key(const Node *node, char *buffer, size_t size) {
-    snprintf(buffer, size, node->key_place.file ? "" : " '%s'", shown(node->key).text);
+    snprintf(buffer, size, node->key_location.file ? "" : " '%s'", shown(node->key).text);
     return buffer;
 }

@@ -9,18 +9,18 @@ typedef enum NodeKind { NODE_VALUE, NODE_LIST, NODE_MAP } NodeKind;
 
 typedef struct Node {
     NodeKind kind;
-    ScenePlace place;
+    SceneLocation location;
     bool quoted;          ///< value: it was written in quotes or as a block
     char *text;           ///< value: zero-terminated, has no zero inside
     char *key;            ///< its name when it is in a map
-    ScenePlace key_place;
+    SceneLocation key_location;
     uint32_t count;       ///< of children
     struct Node *first, *last, *next;
 } Node;
 
 /// Reads one YAML document. NULL after a mistake or when out of memory. `origin` has the numbers of the --set or the
 /// file for places.
-Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, ScenePlace origin,
+Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
                 SceneMessages *messages);
 
 /// Lays --set texts over a tree; their values' places name them. Returns false when out of memory.

@@ -12,11 +12,11 @@ typedef struct Unit {
     double factor, offset; // held = factor * (number + offset)
 } Unit;
 
-enum { UNIT_MOST = 6 };
+enum { UNIT_MAX = 6 };
 
 typedef struct DimensionRow {
     const char *name;
-    Unit units[UNIT_MOST]; // the first is that of bare numbers
+    Unit units[UNIT_MAX]; // the first is that of bare numbers
 } DimensionRow;
 
 static const DimensionRow dimensions[DIM_COUNT] = {
@@ -105,7 +105,7 @@ static bool unit_spelt(const char *text, const char *name) {
 
 // The unit of that spelling; the first where there is none; NULL for one that the dimension has not.
 static const Unit *unit_find(const DimensionRow *row, const char *text) {
-    for (int i = 0; i < UNIT_MOST && row->units[i].name && *text; i++)
+    for (int i = 0; i < UNIT_MAX && row->units[i].name && *text; i++)
         if (unit_spelt(text, row->units[i].name))
             return &row->units[i];
     return *text ? NULL : &row->units[0];
@@ -132,7 +132,7 @@ const char *quantity_name(Dimension dimension) { return dimensions[dimension].na
 void quantity_units(Dimension dimension, char *buffer, size_t size) {
     size_t used = 0;
     buffer[0] = 0;
-    for (int i = 0; i < UNIT_MOST && dimensions[dimension].units[i].name && used < size; i++)
+    for (int i = 0; i < UNIT_MAX && dimensions[dimension].units[i].name && used < size; i++)
         if (dimensions[dimension].units[i].name[0])
             used += (size_t)snprintf(buffer + used, size - used, "%s%s", used ? ", " : "",
                                      dimensions[dimension].units[i].name);

@@ -11,7 +11,7 @@
 void value_wrong(Reader *reader, const Node *node, const SchemaRow *row) {
     char expected[240], seen[NODE_WORDS];
     row_expected(row, expected, sizeof expected);
-    message_add(reader->messages, reader->text, node->place, "%s must be %s, not %s", row->key, expected,
+    message_add(reader->messages, reader->text, node->location, "%s must be %s, not %s", row->key, expected,
                 node_describe(node, seen, sizeof seen));
 }
 
@@ -33,7 +33,7 @@ static void out_of_range(Reader *reader, const SchemaRow *row, const Node *node)
     char range[80], seen[NODE_WORDS];
     const char *unit = quantity_unit(row->dimension);
     row_range(row, range, sizeof range);
-    message_add(reader->messages, reader->text, node->place, "%s is out of range: %s must be %s%s%s",
+    message_add(reader->messages, reader->text, node->location, "%s is out of range: %s must be %s%s%s",
                 node_describe(node, seen, sizeof seen), row->key, range, unit[0] ? " " : "", unit);
 }
 
@@ -55,7 +55,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *
     if (fault == NUMBER_BAD_UNIT) {
         char units[80], seen[NODE_WORDS];
         quantity_units(row->dimension, units, sizeof units);
-        message_add(reader->messages, reader->text, node->place, "%s has an unknown unit for a %s; possible are: %s",
+        message_add(reader->messages, reader->text, node->location, "%s has an unknown unit for a %s; possible are: %s",
                     node_describe(node, seen, sizeof seen), quantity_name(row->dimension),
                     units[0] ? units : "none, only a bare number");
         return false;
@@ -73,7 +73,7 @@ bool value_float(Reader *reader, const SchemaRow *row, const Node *node, float *
     return true;
 }
 
-static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, uint64_t most, bool negative,
+static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, uint64_t highest, bool negative,
                        int64_t *result) {
     const char *c = node->kind == NODE_VALUE ? node->text : "";
     bool minus = negative && *c == '-';
@@ -83,7 +83,7 @@ static bool read_whole(Reader *reader, const SchemaRow *row, const Node *node, u
     for (c += minus; good && *c; c++) {
         good = *c >= '0' && *c <= '9';
         uint64_t digit = (uint64_t)(*c - '0');
-        large = large || (good && value > (most - digit) / 10);
+        large = large || (good && value > (highest - digit) / 10);
         value = value * 10 + digit;
     }
     if (!good) {
@@ -155,9 +155,10 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
         value_wrong(reader, node, row);
         return false;
     }
-    Nearest nearest = {.word = node->text};
+    const char *word = renamed(reader, row->key, node->text, node->location);
+    Nearest nearest = {.word = word};
     for (int i = 0; names[i]; i++) {
-        if (strcmp(node->text, names[i]) == 0) {
+        if (strcmp(word, names[i]) == 0) {
             *result = i;
             return true;
         }
@@ -168,7 +169,7 @@ bool value_word(Reader *reader, const SchemaRow *row, const Node *node, const ch
     choice.type = ROW_ENUM;
     choice.names = names;
     row_expected(&choice, expected, sizeof expected);
-    message_add(reader->messages, reader->text, node->place, "%s must be %s, not %s%s", row->key, expected,
+    message_add(reader->messages, reader->text, node->location, "%s must be %s, not %s%s", row->key, expected,
                 node_describe(node, seen, sizeof seen), nearest_hint(&nearest, hint, sizeof hint));
     return false;
 }
@@ -186,7 +187,7 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
         if (!value_word(reader, row, child, names, &colour))
             return;
         if (seen & 1 << colour) {
-            message_add(reader->messages, reader->text, child->place, "'%s' is there twice; each colour comes once",
+            message_add(reader->messages, reader->text, child->location, "'%s' is there twice; each colour comes once",
                         names[colour]);
             return;
         }
@@ -209,7 +210,7 @@ void value_formats(Reader *reader, const SchemaRow *row, const Node *node, Outpu
         if (!value_word(reader, row, child, names, &format))
             return;
         if (output_has(set, format)) {
-            message_add(reader->messages, reader->text, child->place, "'%s' is there twice", names[format]);
+            message_add(reader->messages, reader->text, child->location, "'%s' is there twice", names[format]);
             return;
         }
         set |= 1u << format;
@@ -251,7 +252,7 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
         value_wrong(reader, node, row);
         return;
     }
-    field->place = node->place;
+    field->location = node->location;
     field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
     if (!reader->base_dir || !field->name)
         return;
@@ -267,9 +268,9 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
         fault = "this is a folder";
     else if (access(field->path, R_OK))
         fault = "the file cannot be read";
-    if (fault && node->place.file)
-        message_add(reader->messages, reader->text, node->place, "%s: %s", row->key, fault);
+    if (fault && node->location.file)
+        message_add(reader->messages, reader->text, node->location, "%s: %s", row->key, fault);
     else if (fault)
-        message_add(reader->messages, reader->text, node->place, "%s: %s (%s)", row->key, fault,
+        message_add(reader->messages, reader->text, node->location, "%s: %s (%s)", row->key, fault,
                     shown_path(field->path).text);
 }

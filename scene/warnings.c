@@ -6,16 +6,16 @@
 
 /// Distance from a point to the mesh's nearest vertex, m.
 static double nearest_vertex(const Mesh *mesh, const float point[3]) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         double sum = 0;
         for (size_t i = 0; i < 3; i++) {
-            double way = (double)mesh->positions[3 * (size_t)v + i] - (double)point[i];
-            sum += way * way;
+            double offset = (double)mesh->positions[3 * (size_t)v + i] - (double)point[i];
+            sum += offset * offset;
         }
-        least = fmin(least, sum);
+        min = fmin(min, sum);
     }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 static double diagonal(const Mesh *mesh) {
@@ -41,7 +41,7 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
         const double gap = nearest_vertex(mesh, p);
         if (!(gap > reach))
             continue;
-        message_warn(log, scene->text, pin->place,
+        message_warn(log, scene->text, pin->location,
                      "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds the nearest vertex alone, %.3g m away",
                      (double)p[0], (double)p[1], (double)p[2], gap);
         return; // one of them is enough
@@ -60,21 +60,24 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
     const SingeSourceDef *def = &source->def;
     const double end = (scene->frames - 1) / (double)scene->fps;
     const char *why = NULL;
-    if (def->kind == SINGE_SOURCE_PICTURE && (def->flux == 0 || is_weak(source)))
+    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || is_weak(source)))
         why = "its flux is 0";
-    else if (def->kind != SINGE_SOURCE_PICTURE && def->conductance == 0)
+    else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0)
         why = "its conductance is 0";
-    else if (def->kind != SINGE_SOURCE_PICTURE && def->radius + def->falloff == 0)
+    else if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0)
         why = "its radius and its falloff are 0";
     else if (def->end <= def->start)
         why = "it ends as it starts";
     else if (scene->frames > 1 && (double)def->start >= end)
         why = "it starts after the last frame";
     if (why)
-        message_warn(log, scene->text, source->place, "the source heats nothing: %s", why);
+        message_warn(log, scene->text, source->location, "the source heats nothing: %s", why);
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
+    for (const SceneRenamed *entry = scene->renamed; entry && log->write; entry = entry->next)
+        message_warn(log, entry->text, entry->location, "'%s' is called '%s' now; the old name is read in this release only",
+                     entry->before, entry->now);
     for (uint32_t i = 0; i < scene->source_count && log->write; i++)
         warn_of_source(scene, &scene->sources[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++)

@@ -89,7 +89,7 @@ static void sink_measure(Sink *sink) {
 }
 
 /// An event without a place of its own is where the last one ended.
-static void sink_place(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
+static void sink_location(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
     struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
     const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
     if (!mark && (tag || anchor))
@@ -126,7 +126,7 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     case FYET_ALIAS: kind = YAML_ALIAS; break;
     default: return true;
     }
-    sink_place(sink, event, tag, anchor);
+    sink_location(sink, event, tag, anchor);
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
     if (value && fy_token_scalar_style(value) != FYSS_PLAIN)
         flags |= YAML_QUOTED;

@@ -149,7 +149,7 @@ typedef struct SingeTimers {
     // of the stage dynamics, contact of sheets with themselves and each other
     double contact_seconds;
     uint64_t contact_searches;  ///< for cells that are near each other
-    uint64_t contact_pushes;    ///< pairs of points that a substep pushed apart
+    uint64_t contact_repulsions;    ///< pairs of points that a substep pushed apart
     uint64_t contact_stops;     ///< pairs of cells whose ways in a step were cut short, as they would have crossed
     uint64_t contact_unresolved; ///< pairs that could not be kept apart: pins that cross hold both
     uint64_t contact_dropped;   ///< pairs that there was no room to look at
@@ -180,7 +180,7 @@ typedef struct SingeStats {
     /// ends.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
-    uint32_t tangled_cells;        ///< that crossed others, or lay in their place, at the start and have not parted
+    uint32_t intersecting_cells;        ///< that crossed others, or lay in their place, at the start and have not parted
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
@@ -194,14 +194,14 @@ typedef struct SingeStats {
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
 
 /// What a committed simulation consists of.
-typedef struct SingeCensus {
+typedef struct SingeCounts {
     uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
     double mean_strand_length;  ///< springs per strand
     float cell_size;            ///< m, median edge, the mean over the sheets
     size_t memory;              ///< bytes held, of the allocator
-} SingeCensus;
+} SingeCounts;
 
-SINGE_API SingeCensus singe_sim_census(const SingeSim *sim);
+SINGE_API SingeCounts singe_sim_counts(const SingeSim *sim);
 
 /// The drawn mesh: cells as four triangles around a virtual centre, cut by the level set m - m_loss
 /// (eq 7, Fig 6). With a `surface_detail`, cells near the front are split finely, burnt edges ragged by noise fixed to

@@ -16,10 +16,10 @@ extern "C" {
 
 /// A grey picture over the uv square. Rows run from the top (v = 1) to the bottom (v = 0); sampled
 /// bilinearly, clamped at the border.
-typedef struct SingePicture {
+typedef struct SingeTexture {
     int width, height;   ///< pixels, at least 1 each
     const float *values; ///< [height * width], 0 black to 1 white
-} SingePicture;
+} SingeTexture;
 
 /// Seeded value noise in [0, 1], evaluated at the rest position.
 typedef struct SingeNoise {
@@ -36,7 +36,7 @@ typedef struct SingeAttribute {
 
 typedef enum SingeFieldKind {
     SINGE_FIELD_NONE = 0,
-    SINGE_FIELD_PICTURE = 1,
+    SINGE_FIELD_TEXTURE = 1,
     SINGE_FIELD_ATTRIBUTE = 2,
     SINGE_FIELD_NOISE = 3,
 } SingeFieldKind;
@@ -49,7 +49,7 @@ typedef struct SingeParam {
     float value;           ///< in the parameter's unit and range, as `to` and all between
     float to;              ///< needs a field; finite
     SingeFieldKind field;
-    SingePicture picture;  ///< needs the sheet's uv
+    SingeTexture texture;  ///< needs the sheet's uv
     const char *attribute; ///< the name of one of the sheet's attributes
     SingeNoise noise;
 } SingeParam;
@@ -208,7 +208,7 @@ static inline SingeSheetDef singe_default_sheet(void) {
 
 typedef enum SingeSourceKind {
     SINGE_SOURCE_BALL = 0,     ///< a hot ball on a path; heats what is near it
-    SINGE_SOURCE_PICTURE = 1,  ///< a flux over uv, black none, white full
+    SINGE_SOURCE_TEXTURE = 1,  ///< a flux over uv, black none, white full
     SINGE_SOURCE_SPOT = 2,     ///< a ball that stands still
     SINGE_SOURCE_CALLBACK = 3, ///< the caller's own
 } SingeSourceKind;
@@ -234,7 +234,7 @@ typedef struct SingeSourceDef {
     float radius, falloff;     ///< m, of ball and spot, >= 0
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
     const SingePoseKey *path;  ///< [path_count] positions only
-    SingePicture picture;      ///< picture source
+    SingeTexture texture;      ///< texture source
     /// W/m2 into each layer where the picture is white, at most 1e15 with picture and strength; below 0 it cools, down
     /// to 1 K
     float flux;

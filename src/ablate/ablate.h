@@ -41,7 +41,7 @@ typedef struct SurfaceDetail {
     float raggedness; ///< m, how far burnt edges are eaten into at most, >= 0
     uint32_t seed;    ///< of the noise; each sheet's is another
     const float *room;   ///< [vertices] m, how far another surface is, or INFINITY; NULL: none is near
-    float leaves_most;   ///< m, how far the surface leaves flat triangles at most; 0: only by the cells' size
+    float bulge_max;   ///< m, how far the surface leaves flat triangles at most; 0: only by the cells' size
 } SurfaceDetail;
 
 /// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes

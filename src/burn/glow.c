@@ -40,8 +40,8 @@ static const float GLOW_TEMPERATURE = 160e3f / 8.314462618f; // K, E/R
 /// The share of a particle that has gone on to ash.
 static float glow_ash(const BurnJob *job, uint32_t i) {
     const Matter *matter = &job->shell->matter;
-    float fuel = job->burn->fuel[i], least = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i);
-    return 1 - fuel - shell_char(job->burn->mass[i], fuel, least, yield);
+    float fuel = job->burn->fuel[i], min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i);
+    return 1 - fuel - shell_char(job->burn->mass[i], fuel, min, yield);
 }
 
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
@@ -78,14 +78,14 @@ static float glow_corner(const BurnJob *job, uint32_t vertex) {
 static float glow_fuel_near(const BurnJob *job, uint32_t i) {
     const Shell *shell = job->shell;
     const float *fuel = job->burn->fuel;
-    float most = fuel[i];
+    float max = fuel[i];
     if (!shell_is_corner(shell, i)) {
-        for (int k = 0; k < 4; k++) most = fmaxf(most, fuel[shell->cells[i - shell->vertex_count][k]]);
-        return most;
+        for (int k = 0; k < 4; k++) max = fmaxf(max, fuel[shell->cells[i - shell->vertex_count][k]]);
+        return max;
     }
     for (uint32_t f = shell->fan_first[i]; f < shell->fan_first[i + 1]; f++)
-        if (!glow_is_gone(job, shell->fan[f])) most = fmaxf(most, fuel[shell_centre(shell, shell->fan[f])]);
-    return most;
+        if (!glow_is_gone(job, shell->fan[f])) max = fmaxf(max, fuel[shell_centre(shell, shell->fan[f])]);
+    return max;
 }
 
 static float glow_power_8(float x) {

@@ -68,11 +68,11 @@ static void react(BurnJob *job, uint32_t i, float excess) {
     const Matter *matter = &job->shell->matter;
     BurnState *burn = job->burn;
     float dt = job->dt / job->thickening[matter->sheet[i]], floor_mass = field_at(matter->loss_mass_floor, i);
-    float least = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - least;
+    float min = field_at(matter->mass_min, i), yield = field_at(matter->char_yield, i), span = yield - min;
     float before = burn->mass[i], fuel = burn->fuel[i], left = lower_fuel(matter, i, fuel, excess, dt);
-    float fresh = shell_char(before, fuel, least, yield) + (span > 0 ? fuel - left : 0);
+    float fresh = shell_char(before, fuel, min, yield) + (span > 0 ? fuel - left : 0);
     float share = span > 0 ? burn_glow(job, i, left, fresh, fuel < 1 ? burn->release[i] : 0, dt) : 0;
-    float after = least + (1 - least) * left + span * share;
+    float after = min + (1 - min) * left + span * share;
     burn->fuel[i] = left;
     burn->mass[i] = after < before || isnan(after) ? after : before;
     burn->burn_rate[i] = (before - burn->mass[i]) / job->h;

@@ -22,7 +22,7 @@
 #include <math.h>
 
 /// A strong shrink factor must not turn a spring inside out.
-#define LEAST_RATIO 0.05f
+#define RATIO_MIN 0.05f
 
 /// What a spring asks of an end.
 typedef struct SpringEnd {
@@ -41,13 +41,13 @@ static inline SpringEnd spring_end(const Matter *matter, const BurnState *burn, 
 static inline float length_ratio(SpringEnd a, SpringEnd b) {
     float shrink = 0.5f * (a.shrink + b.shrink);
     float ratio = 1 - shrink * (1 - 0.5f * (a.volume + b.volume));
-    return ratio < LEAST_RATIO ? LEAST_RATIO : ratio;
+    return ratio < RATIO_MIN ? RATIO_MIN : ratio;
 }
 
 /// The ratio of a spring that lies in the fibres' direction as `grain` says; `even` is the one without fibres.
 static inline float fibre_ratio(SpringEnd a, SpringEnd b, float even, float grain, float in_plane) {
-    float q = 0.5f * (a.fibres + b.fibres), most = even - LEAST_RATIO, stretch = (1 - even) * (q - 1) / (q + 1);
-    stretch = stretch > most ? most : stretch < -most ? -most : stretch;
+    float q = 0.5f * (a.fibres + b.fibres), max = even - RATIO_MIN, stretch = (1 - even) * (q - 1) / (q + 1);
+    stretch = stretch > max ? max : stretch < -max ? -max : stretch;
     return sqrtf(even * even + stretch * (in_plane * stretch + 2 * even * grain));
 }
 

@@ -2,37 +2,37 @@
 
 #include <string.h>
 
-bool touch_list_create(Memory *memory, TouchList *list, size_t size, uint32_t capacity, uint32_t block_count) {
-    *list = (TouchList){.size = size, .capacity = capacity, .block_count = block_count};
-    list->chunk_count = capacity / TOUCH_CHUNK + block_count; // a block's last chunk may be all but empty
-    return (list->items = memory_new(memory, (size_t)list->chunk_count * TOUCH_CHUNK, size)) &&
+bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count) {
+    *list = (BlockList){.size = size, .capacity = capacity, .block_count = block_count};
+    list->chunk_count = capacity / BLOCK_CHUNK + block_count; // a block's last chunk may be all but empty
+    return (list->items = memory_new(memory, (size_t)list->chunk_count * BLOCK_CHUNK, size)) &&
            NEW(memory, list->next, list->chunk_count) && NEW(memory, list->blocks, block_count);
 }
 
-void touch_list_free(Memory *memory, TouchList *list) {
-    memory_free(memory, (void *)&list->items, (size_t)list->chunk_count * TOUCH_CHUNK, list->size);
+void block_list_free(Memory *memory, BlockList *list) {
+    memory_free(memory, (void *)&list->items, (size_t)list->chunk_count * BLOCK_CHUNK, list->size);
     FREE(memory, list->next, list->chunk_count);
     FREE(memory, list->blocks, list->block_count);
 }
 
-bool touch_list_grow(Memory *memory, TouchList *list, uint32_t capacity, uint32_t block_count) {
-    TouchList grown;
+bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count) {
+    BlockList grown;
     if (capacity < list->capacity) capacity = list->capacity;
     if (block_count < list->block_count) block_count = list->block_count;
-    if (!touch_list_create(memory, &grown, list->size, capacity, block_count)) {
-        touch_list_free(memory, &grown);
+    if (!block_list_create(memory, &grown, list->size, capacity, block_count)) {
+        block_list_free(memory, &grown);
         return false;
     }
     memcpy(grown.blocks, list->blocks, list->block_count * sizeof *list->blocks);
-    touch_list_free(memory, list);
+    block_list_free(memory, list);
     *list = grown;
     return true;
 }
 
 typedef struct Job {
-    TouchList *list;
-    TouchWriteFn *write;
-    TouchReadFn *read;
+    BlockList *list;
+    BlockWriteFn *write;
+    BlockReadFn *read;
     void *context;
     uint32_t count; ///< items that are read, or written again, or of a block at most
     bool again;
@@ -41,15 +41,15 @@ typedef struct Job {
 static void write_blocks(void *task, int begin, int end) {
     const Job *job = task;
     for (int b = begin; b < end; b++) {
-        TouchBlock *block = &job->list->blocks[b];
+        ListBlock *block = &job->list->blocks[b];
         if (job->again) block->room = block->start < job->count ? job->count - block->start : 0;
-        else *block = (TouchBlock){.room = job->count};
+        else *block = (ListBlock){.room = job->count};
         if (block->room > 0) job->write(job->context, job->list, b);
         else block->count = 0;
     }
 }
 
-static uint64_t number_blocks(TouchList *list, int blocks) {
+static uint64_t number_blocks(BlockList *list, int blocks) {
     uint64_t sum = 0;
     for (int b = 0; b < blocks; b++) {
         list->blocks[b].start = (uint32_t)(sum < UINT32_MAX ? sum : UINT32_MAX);
@@ -58,8 +58,8 @@ static uint64_t number_blocks(TouchList *list, int blocks) {
     return sum;
 }
 
-uint64_t touch_list_write(TouchList *list, Pool *pool, int blocks, uint32_t most, TouchWriteFn *write, void *context) {
-    Job job = {.list = list, .write = write, .context = context, .count = most + 1};
+uint64_t block_list_write(BlockList *list, Pool *pool, int blocks, uint32_t max, BlockWriteFn *write, void *context) {
+    Job job = {.list = list, .write = write, .context = context, .count = max + 1};
     atomic_store(&list->taken, 0);
     pool_for(pool, blocks, 1, write_blocks, &job);
     uint64_t count = number_blocks(list, blocks);
@@ -67,7 +67,7 @@ uint64_t touch_list_write(TouchList *list, Pool *pool, int blocks, uint32_t most
     return count;
 }
 
-uint32_t touch_list_settle(TouchList *list, Pool *pool, int blocks, uint64_t count, uint32_t room, TouchWriteFn *write,
+uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t count, uint32_t room, BlockWriteFn *write,
                            void *context) {
     uint32_t kept = count < room ? (uint32_t)count : room;
     if (list->whole) return kept;
@@ -82,19 +82,19 @@ uint32_t touch_list_settle(TouchList *list, Pool *pool, int blocks, uint64_t cou
 
 static void read_blocks(void *task, int begin, int end) {
     const Job *job = task;
-    const TouchList *list = job->list;
+    const BlockList *list = job->list;
     for (int b = begin; b < end; b++) {
-        const TouchBlock *block = &list->blocks[b];
+        const ListBlock *block = &list->blocks[b];
         uint32_t chunk = block->first;
         for (uint32_t k = 0; k < block->count && block->start + k < job->count; k++) {
-            if (k > 0 && k % TOUCH_CHUNK == 0) chunk = list->next[chunk];
-            const uint8_t *items = list->items + (size_t)chunk * TOUCH_CHUNK * list->size;
-            job->read(job->context, items + k % TOUCH_CHUNK * list->size, block->start + k);
+            if (k > 0 && k % BLOCK_CHUNK == 0) chunk = list->next[chunk];
+            const uint8_t *items = list->items + (size_t)chunk * BLOCK_CHUNK * list->size;
+            job->read(job->context, items + k % BLOCK_CHUNK * list->size, block->start + k);
         }
     }
 }
 
-void touch_list_read(const TouchList *list, Pool *pool, int blocks, uint32_t count, TouchReadFn *read, void *context) {
-    Job job = {.list = (TouchList *)list, .read = read, .context = context, .count = count};
+void block_list_read(const BlockList *list, Pool *pool, int blocks, uint32_t count, BlockReadFn *read, void *context) {
+    Job job = {.list = (BlockList *)list, .read = read, .context = context, .count = count};
     pool_for(pool, blocks, 1, read_blocks, &job);
 }

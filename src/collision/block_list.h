@@ -11,54 +11,54 @@
 #include <stdint.h>
 
 /// Items of a chunk.
-enum { TOUCH_CHUNK = 64 };
+enum { BLOCK_CHUNK = 64 };
 
-typedef struct TouchBlock {
+typedef struct ListBlock {
     uint32_t first; ///< chunk
     uint32_t count; ///< items; at the first writing also those that found no room
     uint32_t room;  ///< items at most; those after them are not counted
     uint32_t start; ///< in the order of all blocks
-} TouchBlock;
+} ListBlock;
 
-typedef struct TouchList {
+typedef struct BlockList {
     size_t size; ///< bytes of an item
     uint32_t capacity; ///< items, whatever blocks they are in
     uint32_t chunk_count, block_count;
     atomic_uint taken;  ///< chunks
     bool whole;         ///< what was written last is there
-    uint8_t *items;     ///< [chunk_count * TOUCH_CHUNK * size]
+    uint8_t *items;     ///< [chunk_count * BLOCK_CHUNK * size]
     uint32_t *next;     ///< [chunk_count] the chunk after, of the same block
-    TouchBlock *blocks; ///< [block_count]
-} TouchList;
+    ListBlock *blocks; ///< [block_count]
+} BlockList;
 
 /// A list with room for `capacity` items of `size` bytes, whatever blocks they are in. False when out of memory.
-bool touch_list_create(Memory *memory, TouchList *list, size_t size, uint32_t capacity, uint32_t block_count);
+bool block_list_create(Memory *memory, BlockList *list, size_t size, uint32_t capacity, uint32_t block_count);
 
 /// Makes room for at least `capacity` items and `block_count` blocks; the items there were are lost, their number is
 /// not. When out of memory it returns false and the list is as it was.
-bool touch_list_grow(Memory *memory, TouchList *list, uint32_t capacity, uint32_t block_count);
-void touch_list_free(Memory *memory, TouchList *list);
+bool block_list_grow(Memory *memory, BlockList *list, uint32_t capacity, uint32_t block_count);
+void block_list_free(Memory *memory, BlockList *list);
 
 /// A block that is being written.
-typedef struct TouchWriter {
-    TouchList *list;
-    TouchBlock *target, block;
+typedef struct BlockWriter {
+    BlockList *list;
+    ListBlock *target, block;
     uint32_t chunk;
-} TouchWriter;
+} BlockWriter;
 
-static inline TouchWriter touch_list_begin(TouchList *list, int block) {
-    TouchBlock *target = &list->blocks[block];
-    return (TouchWriter){.list = list, .target = target, .block = {.room = target->room, .start = target->start}};
+static inline BlockWriter block_list_begin(BlockList *list, int block) {
+    ListBlock *target = &list->blocks[block];
+    return (BlockWriter){.list = list, .target = target, .block = {.room = target->room, .start = target->start}};
 }
 
 /// Whether the block may stop, as nothing more of it counts.
-static inline bool touch_list_is_full(const TouchWriter *writer) { return writer->block.count >= writer->block.room; }
+static inline bool block_list_is_full(const BlockWriter *writer) { return writer->block.count >= writer->block.room; }
 
 /// Room for the block's next item, or NULL. Where only the list is full the item is counted all the same.
-static inline void *touch_list_add(TouchWriter *writer) {
-    TouchList *list = writer->list;
-    if (touch_list_is_full(writer)) return NULL;
-    uint32_t at = writer->block.count++ % TOUCH_CHUNK;
+static inline void *block_list_add(BlockWriter *writer) {
+    BlockList *list = writer->list;
+    if (block_list_is_full(writer)) return NULL;
+    uint32_t at = writer->block.count++ % BLOCK_CHUNK;
     if (at == 0) {
         uint32_t chunk = atomic_fetch_add(&list->taken, 1);
         if (writer->block.count == 1) writer->block.first = chunk;
@@ -66,25 +66,25 @@ static inline void *touch_list_add(TouchWriter *writer) {
         writer->chunk = chunk;
     }
     if (writer->chunk >= list->chunk_count) return NULL;
-    return list->items + ((size_t)writer->chunk * TOUCH_CHUNK + at) * list->size;
+    return list->items + ((size_t)writer->chunk * BLOCK_CHUNK + at) * list->size;
 }
 
-static inline void touch_list_end(const TouchWriter *writer) { *writer->target = writer->block; }
+static inline void block_list_end(const BlockWriter *writer) { *writer->target = writer->block; }
 
 /// A job that writes blocks of a list.
-typedef void TouchWriteFn(void *context, TouchList *list, int block);
+typedef void BlockWriteFn(void *context, BlockList *list, int block);
 
 /// Has `blocks` blocks written, at most block_count. Returns the number of items, of a block at most `most` and one,
-/// with or without room. The list is not to be read before touch_list_settle.
-uint64_t touch_list_write(TouchList *list, Pool *pool, int blocks, uint32_t most, TouchWriteFn *write, void *context);
+/// with or without room. The list is not to be read before block_list_settle.
+uint64_t block_list_write(BlockList *list, Pool *pool, int blocks, uint32_t max, BlockWriteFn *write, void *context);
 
-/// Returns how many of the `count` items that touch_list_write has found can be read: the first `room` ones, which is
+/// Returns how many of the `count` items that block_list_write has found can be read: the first `room` ones, which is
 /// at most the list's capacity. Where they had no room, or have been lost since, the blocks are written again.
-uint32_t touch_list_settle(TouchList *list, Pool *pool, int blocks, uint64_t count, uint32_t room, TouchWriteFn *write,
+uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t count, uint32_t room, BlockWriteFn *write,
                            void *context);
 
 /// Calls for each item, its number in the order of blocks, up to `count` of them.
-typedef void TouchReadFn(void *context, const void *item, uint32_t number);
-void touch_list_read(const TouchList *list, Pool *pool, int blocks, uint32_t count, TouchReadFn *read, void *context);
+typedef void BlockReadFn(void *context, const void *item, uint32_t number);
+void block_list_read(const BlockList *list, Pool *pool, int blocks, uint32_t count, BlockReadFn *read, void *context);
 
 #endif

@@ -9,19 +9,19 @@
 #include <string.h>
 
 typedef struct Find {
-    TouchPlan *plan;
+    CollisionPlan *plan;
     const Shell *shell;
 } Find;
 
 // ---- the grid
 
 /// The cubes' edge to begin with: twice the boxes' mean longest side. 0 where nothing is left.
-static float first_edge(const TouchPlan *plan) {
+static float first_edge(const CollisionPlan *plan) {
     double sum = 0;
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
-        Quad size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
+        Float4 size = plan->boxes[c].swept_high - plan->boxes[c].swept_low;
         float longest = size[0] > size[1] ? size[0] : size[1];
         sum += (double)(longest > size[2] ? longest : size[2]);
         count++;
@@ -29,39 +29,39 @@ static float first_edge(const TouchPlan *plan) {
     return count ? (float)(2 * sum / count) : 0;
 }
 
-static void put_entry(TouchPlan *plan, uint32_t cell, uint32_t key) {
-    const TouchBox *box = &plan->boxes[cell];
-    Quad low = box->swept_low, high = box->swept_high;
-    plan->entries[plan->bucket_first[touch_bucket(plan, key & TOUCH_KEY) + 1]++] = (TouchEntry){
+static void put_entry(CollisionPlan *plan, uint32_t cell, uint32_t key) {
+    const CollisionBox *box = &plan->boxes[cell];
+    Float4 low = box->swept_low, high = box->swept_high;
+    plan->entries[plan->bucket_first[collision_bucket(plan, key & COLLISION_KEY) + 1]++] = (CollisionEntry){
         .low = {low[0], low[1], low[2]}, .cell = cell, .high = {high[0], high[1], high[2]}, .key = key};
 }
 
 /// Calls for every cube of every swept box: counts the entries of buckets, or writes them.
-static uint64_t fill_grid(TouchPlan *plan, bool writing) {
+static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
     float inverse = 1 / plan->edge;
     uint64_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
-        const TouchBox *box = &plan->boxes[c];
-        Cube first = touch_cube(box->swept_low, inverse), last = touch_cube(box->swept_high, inverse), at = first;
-        count += touch_cubes(first, last, plan->sizes.entries);
+        const CollisionBox *box = &plan->boxes[c];
+        Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse), at = first;
+        count += collision_cubes(first, last, plan->sizes.entries);
         if (count > plan->sizes.entries) return count;
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
             for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
                 for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                    uint32_t key = touch_key(at);
-                    if (writing) put_entry(plan, c, key | (quad_bits(at == first) & 7) << 29);
-                    else plan->bucket_first[touch_bucket(plan, key) + 2]++;
+                    uint32_t key = collision_key(at);
+                    if (writing) put_entry(plan, c, key | (float4_bits(at == first) & 7) << 29);
+                    else plan->bucket_first[collision_bucket(plan, key) + 2]++;
                 }
     }
     return count;
 }
 
-static void clear_buckets(TouchPlan *plan) {
+static void clear_buckets(CollisionPlan *plan) {
     memset(plan->bucket_first, 0, ((size_t)plan->bucket_count + 2) * sizeof *plan->bucket_first);
 }
 
-static void sort_into_grid(TouchPlan *plan) {
+static void sort_into_grid(CollisionPlan *plan) {
     plan->entry_count = 0;
     plan->edge = first_edge(plan);
     clear_buckets(plan);
@@ -80,42 +80,42 @@ static void sort_into_grid(TouchPlan *plan) {
 // ---- pairs
 
 /// How far apart b's corners lie from a's slab; negative where they do not.
-static inline float slab_gap(const TouchSlab *a, const TouchSlab *b) {
-    Quad n = a->normal;
-    Quad along = (b->x - a->x[0]) * n[0] + (b->y - a->y[0]) * n[1] + (b->z - a->z[0]) * n[2];
-    Quad swapped = QUAD_SHUFFLE(along, along, 2, 3, 0, 1);
-    Quad low = quad_min(along, swapped), high = quad_max(along, swapped);
-    float least = low[0] < low[1] ? low[0] : low[1], most = high[0] > high[1] ? high[0] : high[1];
-    return least - a->high > a->low - most ? least - a->high : a->low - most;
+static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
+    Float4 n = a->normal;
+    Float4 along = (b->x - a->x[0]) * n[0] + (b->y - a->y[0]) * n[1] + (b->z - a->z[0]) * n[2];
+    Float4 swapped = FLOAT4_SHUFFLE(along, along, 2, 3, 0, 1);
+    Float4 low = float4_min(along, swapped), high = float4_max(along, swapped);
+    float min = low[0] < low[1] ? low[0] : low[1], max = high[0] > high[1] ? high[0] : high[1];
+    return min - a->high > a->low - max ? min - a->high : a->low - max;
 }
 
-bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *distance) {
-    const TouchBox *p = &plan->boxes[a], *q = &plan->boxes[b];
-    Quad way = q->way - p->way, zero = {0};
+bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {
+    const CollisionBox *p = &plan->boxes[a], *q = &plan->boxes[b];
+    Float4 displacement = q->displacement - p->displacement, zero = {0};
     // b's box, on its way relative to a
-    Quad low = q->low + quad_min(way, zero), high = q->high + quad_max(way, zero);
+    Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
-    Quad apart = quad_max(quad_max(q->low - p->high, p->low - q->high), zero);
-    float boxes = quad_dot(apart, apart), far = plan->reach + sqrtf(quad_dot(way, way)) + p->way[3] + q->way[3];
+    Float4 apart = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
+    float boxes = float4_dot(apart, apart), far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
     if (boxes > far * far) return false;
-    const TouchSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
+    const CollisionSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
     float one = slab_gap(s, t), two = slab_gap(t, s), slabs = one > two ? one : two;
     if (slabs > far) return false;
     boxes = sqrtf(boxes);
-    float least = (slabs > boxes ? slabs : boxes) - 4 * plan->noise;
-    *distance = least > 0 ? least : 0;
+    float min = (slabs > boxes ? slabs : boxes) - 4 * plan->noise;
+    *distance = min > 0 ? min : 0;
     return true;
 }
 
 static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) {
-    QuadMask p, q;
+    Float4Mask p, q;
     memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
-    QuadMask same = (p == q) + (p == QUAD_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == QUAD_SHUFFLE(q, q, 2, 3, 0, 1)) +
-                    (p == QUAD_SHUFFLE(q, q, 3, 0, 1, 2));
-    return 0x4332322132212110u >> 4 * quad_bits(same < 0) & 7; // number of bits set; no two of a are one of b
+    Float4Mask same = (p == q) + (p == FLOAT4_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == FLOAT4_SHUFFLE(q, q, 2, 3, 0, 1)) +
+                    (p == FLOAT4_SHUFFLE(q, q, 3, 0, 1, 2));
+    return 0x4332322132212110u >> 4 * float4_bits(same < 0) & 7; // number of bits set; no two of a are one of b
 }
 
-uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
+uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b) {
     // across a tear or a hole two cells may share a corner and yet slide over each other
     uint32_t shared = corners_shared(shell->cells[a], shell->cells[b]);
     if (shared != 1) return shared ? a : SHELL_NONE;
@@ -129,13 +129,13 @@ uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uin
     return SHELL_NONE;
 }
 
-static void list_pair(const Find *find, uint32_t a, uint32_t b, TouchWriter *writer) {
+static void list_pair(const Find *find, uint32_t a, uint32_t b, BlockWriter *writer) {
     float distance;
-    if (!touch_is_listed(find->plan, a, b, &distance)) return;
-    TouchPair *pair = touch_list_add(writer);
+    if (!collision_is_listed(find->plan, a, b, &distance)) return;
+    CollisionPair *pair = block_list_add(writer);
     if (!pair) return;
-    uint32_t bridge = touch_bridge(find->plan, find->shell, a, b);
-    *pair = (TouchPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
+    uint32_t bridge = collision_bridge(find->plan, find->shell, a, b);
+    *pair = (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
 }
 
 /// Entries of a bucket, a number after another.
@@ -146,31 +146,31 @@ typedef struct Tile {
     uint32_t count;
 } Tile;
 
-static void fill_tile(const TouchEntry *entries, uint32_t count, Tile *tile) {
+static void fill_tile(const CollisionEntry *entries, uint32_t count, Tile *tile) {
     tile->count = count;
     for (uint32_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) tile->low[k][i] = entries[i].low[k], tile->high[k][i] = entries[i].high[k];
-        tile->key[i] = (int32_t)(entries[i].key & TOUCH_KEY);
+        tile->key[i] = (int32_t)(entries[i].key & COLLISION_KEY);
         tile->firsts[i] = (int32_t)(entries[i].key >> 29);
     }
     for (uint32_t i = count; i & 3; i++) tile->key[i] = -1;
 }
 
 /// Bit k is set where the tile's entry j + k is in the same cube, which is where the two boxes' common region begins.
-static inline unsigned meet_four(const Tile *tile, uint32_t j, const TouchEntry *entry) {
-    QuadMask meet = quad_load_ints(tile->key + j) == (int32_t)(entry->key & TOUCH_KEY);
-    meet &= (quad_load_ints(tile->firsts + j) | (int32_t)(entry->key >> 29)) == 7;
+static inline unsigned meet_four(const Tile *tile, uint32_t j, const CollisionEntry *entry) {
+    Float4Mask meet = float4_load_ints(tile->key + j) == (int32_t)(entry->key & COLLISION_KEY);
+    meet &= (float4_load_ints(tile->firsts + j) | (int32_t)(entry->key >> 29)) == 7;
     for (int k = 0; k < 3; k++)
-        meet &= (quad_load(tile->low[k] + j) <= quad_all(entry->high[k])) &
-                (quad_load(tile->high[k] + j) >= quad_all(entry->low[k]));
-    return quad_bits(meet);
+        meet &= (float4_load(tile->low[k] + j) <= float4_all(entry->high[k])) &
+                (float4_load(tile->high[k] + j) >= float4_all(entry->low[k]));
+    return float4_bits(meet);
 }
 
-static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t count, Tile *tile,
-                         TouchWriter *writer) {
+static void bucket_pairs(const Find *find, const CollisionEntry *entries, uint32_t count, Tile *tile,
+                         BlockWriter *writer) {
     for (uint32_t first = 0; first < count; first += TILE) {
         fill_tile(entries + first, count - first < TILE ? count - first : TILE, tile);
-        for (uint32_t i = 0; i < first + tile->count && !touch_list_is_full(writer); i++) {
+        for (uint32_t i = 0; i < first + tile->count && !block_list_is_full(writer); i++) {
             uint32_t after = i < first ? 0 : i - first + 1;
             for (uint32_t j = after & ~3u; j < tile->count; j += 4) {
                 unsigned meet = meet_four(tile, j, &entries[i]);
@@ -182,38 +182,38 @@ static void bucket_pairs(const Find *find, const TouchEntry *entries, uint32_t c
     }
 }
 
-static void pair_block(void *context, TouchList *list, int block) {
+static void pair_block(void *context, BlockList *list, int block) {
     const Find *find = context;
-    const TouchPlan *plan = find->plan;
-    TouchWriter writer = touch_list_begin(list, block);
+    const CollisionPlan *plan = find->plan;
+    BlockWriter writer = block_list_begin(list, block);
     Tile tile;
-    uint32_t first = (uint32_t)block * TOUCH_BUCKETS, last = first + TOUCH_BUCKETS;
+    uint32_t first = (uint32_t)block * COLLISION_BUCKETS, last = first + COLLISION_BUCKETS;
     if (last > plan->bucket_count) last = plan->bucket_count;
-    for (uint32_t b = first; b < last && !touch_list_is_full(&writer); b++) {
+    for (uint32_t b = first; b < last && !block_list_is_full(&writer); b++) {
         uint32_t at = plan->bucket_first[b], count = plan->bucket_first[b + 1] - at;
         if (count > 1) bucket_pairs(find, plan->entries + at, count, &tile, &writer);
     }
-    touch_list_end(&writer);
+    block_list_end(&writer);
 }
 
 static void keep_pair(void *context, const void *item, uint32_t number) {
     const Find *find = context;
-    memcpy(&find->plan->pairs[number], item, sizeof(TouchPair));
+    memcpy(&find->plan->pairs[number], item, sizeof(CollisionPair));
 }
 
-static int grid_blocks(const TouchPlan *plan) {
-    return (int)((plan->bucket_count + TOUCH_BUCKETS - 1) / TOUCH_BUCKETS);
+static int grid_blocks(const CollisionPlan *plan) {
+    return (int)((plan->bucket_count + COLLISION_BUCKETS - 1) / COLLISION_BUCKETS);
 }
 
-uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool) {
+uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     Find find = {plan, shell};
     sort_into_grid(plan);
-    return touch_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_most, pair_block, &find);
+    return block_list_write(&plan->found_pairs, pool, grid_blocks(plan), plan->sizes.pair_max, pair_block, &find);
 }
 
-void touch_grid_keep(TouchPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
+void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room) {
     Find find = {plan, shell};
     int blocks = grid_blocks(plan);
-    plan->pair_count = touch_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
-    touch_list_read(&plan->found_pairs, pool, blocks, plan->pair_count, keep_pair, &find);
+    plan->pair_count = block_list_settle(&plan->found_pairs, pool, blocks, count, room, pair_block, &find);
+    block_list_read(&plan->found_pairs, pool, blocks, plan->pair_count, keep_pair, &find);
 }

@@ -4,39 +4,39 @@
 
 #include "collision/collision_plan.h"
 
-typedef QuadMask Cube; ///< three whole numbers
+typedef Float4Mask Cube; ///< three whole numbers
 
 /// Rounds down; places too far for whole numbers share the last cube.
-static inline Cube touch_cube(Quad p, float inverse_edge) {
-    Quad most = quad_all(1e9f), q = quad_max(quad_min(p * inverse_edge, most), -most);
+static inline Cube collision_cube(Float4 p, float inverse_edge) {
+    Float4 max = float4_all(1e9f), q = float4_max(float4_min(p * inverse_edge, max), -max);
     Cube whole = __builtin_convertvector(q, Cube);
-    return whole + (__builtin_convertvector(whole, Quad) > q); // a mask is -1
+    return whole + (__builtin_convertvector(whole, Float4) > q); // a mask is -1
 }
 
 /// Cubes from one to another; more than `most` also where two of them would have one key, or a place is not finite.
-static inline uint64_t touch_cubes(Cube first, Cube last, uint64_t most) {
+static inline uint64_t collision_cubes(Cube first, Cube last, uint64_t max) {
     uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
     uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;
-    if (x - 1 > 1022 || y - 1 > 1022 || z - 1 > 510 || x * y * z > most) return most + 1;
+    if (x - 1 > 1022 || y - 1 > 1022 || z - 1 > 510 || x * y * z > max) return max + 1;
     return x * y * z;
 }
 
 /// Cubes of one key are so far apart that no box is in two of them.
-static inline uint32_t touch_key(Cube cube) {
+static inline uint32_t collision_key(Cube cube) {
     return ((uint32_t)cube[0] & 1023) | ((uint32_t)cube[1] & 1023) << 10 | ((uint32_t)cube[2] & 511) << 20;
 }
-enum { TOUCH_KEY = (1 << 29) - 1 };
+enum { COLLISION_KEY = (1 << 29) - 1 };
 
 /// Cubes in a row along x have buckets in a row: what is near each other lies together.
-static inline uint32_t touch_bucket(const TouchPlan *plan, uint32_t key) {
+static inline uint32_t collision_bucket(const CollisionPlan *plan, uint32_t key) {
     uint32_t h = key >> 10;
     h = (h ^ h >> 16) * 0x7feb352du;
     h = (h ^ h >> 15) * 0x846ca68bu;
     return ((h ^ h >> 16) + (key & 1023)) & (plan->bucket_count - 1);
 }
 
-static inline bool quads_meet(Quad low_a, Quad high_a, Quad low_b, Quad high_b) {
-    return !(quad_bits((low_a > high_b) | (low_b > high_a)) & 7);
+static inline bool quads_meet(Float4 low_a, Float4 high_a, Float4 low_b, Float4 high_b) {
+    return !(float4_bits((low_a > high_b) | (low_b > high_a)) & 7);
 }
 
 #endif

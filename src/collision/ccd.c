@@ -21,95 +21,95 @@ enum { IMPACT_LOOKS = 4 };
 
 /// The part of all cells that may be outside their boxes before all are searched again; and that from which on the next
 /// step begins with a search.
-enum { STRAY_MOST = 8, STRAY_PART = 32 };
+enum { OUTSIDE_MAX = 8, OUTSIDE_PART = 32 };
 
 // ---- how cells have moved
 
-static void measure_cell(const Guard *guard, uint32_t c) {
-    TouchPlan *plan = guard->plan;
-    const uint32_t *corner = guard->shell->cells[c];
-    const float(*x)[4] = (const float(*)[4])guard->dynamics->position;
-    Quad node[5], stray[4];
+static void measure_cell(const Ccd *ccd, uint32_t c) {
+    CollisionPlan *plan = ccd->plan;
+    const uint32_t *corner = ccd->shell->cells[c];
+    const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
+    Float4 node[5], outside[4];
     for (int i = 0; i < 4; i++) {
-        Quad foreseen = quad_load(plan->place[corner[i]]) + guard->time * quad_load(plan->speed[corner[i]]);
-        stray[i] = quad_load(x[corner[i]]) - foreseen;
+        Float4 foreseen = float4_load(plan->position[corner[i]]) + ccd->time * float4_load(plan->speed[corner[i]]);
+        outside[i] = float4_load(x[corner[i]]) - foreseen;
     }
-    FourVectors astray = four_of(stray);
-    touch_nodes(corner, x, quad_load(x[corner[0]]), node);
-    plan->motion[c][TOUCH_WAY] = touch_way(plan, corner, x);
-    plan->motion[c][TOUCH_NORMAL] = touch_normals(node);
-    plan->strayed[c] = quad_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
+    FourVectors astray = four_of(outside);
+    collision_nodes(corner, x, float4_load(x[corner[0]]), node);
+    plan->motion[c][COLLISION_DISPLACEMENT] = collision_displacement(plan, corner, x);
+    plan->motion[c][COLLISION_NORMAL] = feature_normals(node);
+    plan->is_outside[c] = float4_bits(four_dot(astray, astray) < 0.25f * plan->slack * plan->slack) != 15;
 }
 
 static void measure_range(void *task, int begin, int end) {
-    const Guard *guard = task;
+    const Ccd *ccd = task;
     for (int c = begin; c < end; c++) {
-        if (guard_is_alive(guard, (uint32_t)c)) measure_cell(guard, (uint32_t)c);
-        else guard->plan->strayed[c] = 0;
+        if (ccd_is_alive(ccd, (uint32_t)c)) measure_cell(ccd, (uint32_t)c);
+        else ccd->plan->is_outside[c] = 0;
     }
 }
 
 static void measure_changed(void *task, int begin, int end) {
-    const Guard *guard = task;
-    for (int k = begin; k < end; k++) measure_cell(guard, guard->plan->changed_list[k]);
+    const Ccd *ccd = task;
+    for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
 }
 
 // ---- what the last round has changed
 
-void guard_forget_changed(TouchPlan *plan) {
+void ccd_forget_changed(CollisionPlan *plan) {
     for (uint32_t k = 0; k < plan->changed_count; k++) plan->changed[plan->changed_list[k]] = 0;
     plan->changed_count = 0;
 }
 
-void guard_mark_changed(const Guard *guard, uint32_t cell) {
-    TouchPlan *plan = guard->plan;
-    if (plan->changed[cell] || !guard_is_alive(guard, cell)) return;
+void ccd_mark_changed(const Ccd *ccd, uint32_t cell) {
+    CollisionPlan *plan = ccd->plan;
+    if (plan->changed[cell] || !ccd_is_alive(ccd, cell)) return;
     plan->changed[cell] = 1;
     plan->changed_list[plan->changed_count++] = cell;
 }
 
-void guard_mark_around(const Guard *guard, uint32_t v) {
-    const Shell *shell = guard->shell;
-    for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) guard_mark_changed(guard, shell->fan[f]);
+void ccd_mark_around(const Ccd *ccd, uint32_t v) {
+    const Shell *shell = ccd->shell;
+    for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
 /// Marks the cells that have been moved since the guard was here before in this step.
-static void mark_moved(const Guard *guard) {
-    const TouchPlan *plan = guard->plan;
-    guard_forget_changed(guard->plan);
+static void mark_moved(const Ccd *ccd) {
+    const CollisionPlan *plan = ccd->plan;
+    ccd_forget_changed(ccd->plan);
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        QuadMask moved = quad_load(guard->dynamics->position[v]) != quad_load(plan->end[v]);
-        if (quad_bits(moved) & 7) guard_mark_around(guard, v);
+        Float4Mask moved = float4_load(ccd->dynamics->position[v]) != float4_load(plan->end[v]);
+        if (float4_bits(moved) & 7) ccd_mark_around(ccd, v);
     }
 }
 
 /// Sorts the search's pairs by their cells, once for each search.
-static void sort_around(TouchPlan *plan) {
+static void sort_around(CollisionPlan *plan) {
     if (plan->around_search == plan->counters.searches) return;
     plan->around_search = plan->counters.searches;
     uint32_t *first = plan->around_first;
     memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
     for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         first[pair->a + 2]++;
         first[pair->b + 2] += pair->a != pair->b;
     }
     for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
     for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         plan->around[first[pair->a + 1]++] = k;
         if (pair->a != pair->b) plan->around[first[pair->b + 1]++] = k;
     }
 }
 
 /// Lists the pairs of cells that have changed. Returns how many.
-static uint32_t list_changed(TouchPlan *plan) {
+static uint32_t list_changed(CollisionPlan *plan) {
     uint32_t count = 0;
     sort_around(plan);
     for (uint32_t l = 0; l < plan->changed_count; l++) {
         uint32_t c = plan->changed_list[l];
         for (uint32_t e = plan->around_first[c]; e < plan->around_first[c + 1]; e++) {
-            const TouchPair *pair = &plan->pairs[plan->around[e]];
+            const CollisionPair *pair = &plan->pairs[plan->around[e]];
             uint32_t other = pair->a == c ? pair->b : pair->a;
             if (!plan->changed[other] || other >= c) plan->active[count++] = plan->around[e];
         }
@@ -122,124 +122,124 @@ static uint32_t list_changed(TouchPlan *plan) {
 // ---- the step's end
 
 /// Searches for the ways of this step.
-static SingeResult search_again(Guard *guard, const State *state, Pool *pool, float h) {
-    TouchPlan *plan = guard->plan;
+static SingeResult search_again(Ccd *ccd, const State *state, Pool *pool, float h) {
+    CollisionPlan *plan = ccd->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Quad start = quad_load(plan->start[v]), speed = (quad_load(guard->dynamics->position[v]) - start) / h;
+        Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
         speed[3] = 0;
-        quad_store(plan->place[v], start);
-        quad_store(plan->speed[v], speed);
+        float4_store(plan->position[v], start);
+        float4_store(plan->speed[v], speed);
     }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = guard->cell_flags[c] & SINGE_ALIVE;
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = ccd->cell_flags[c] & SINGE_ALIVE;
     plan->step = state->step;
-    guard->time = h;
-    return touch_search(plan, guard->shell, pool);
+    ccd->time = h;
+    return broad_search(plan, ccd->shell, pool);
 }
 
-static void measure(Guard *guard, Pool *pool) {
-    pool_for(pool, (int)guard->plan->cell_count, 512, measure_range, guard);
+static void measure(Ccd *ccd, Pool *pool) {
+    pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd);
 }
 
 /// Looks at the pairs of cells that the last round has changed. Returns how many meet.
-static uint32_t meet_changed(Guard *guard, Pool *pool) {
-    pool_for(pool, (int)guard->plan->changed_count, 512, measure_changed, guard);
-    uint32_t count = list_changed(guard->plan);
-    guard->looked += count;
-    return guard_meet_active(guard, pool, count);
+static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
+    pool_for(pool, (int)ccd->plan->changed_count, 512, measure_changed, ccd);
+    uint32_t count = list_changed(ccd->plan);
+    ccd->looked += count;
+    return ccd_meet_active(ccd, pool, count);
 }
 
-static uint32_t list_strayed(TouchPlan *plan) {
+static uint32_t list_strayed(CollisionPlan *plan) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++)
-        if (plan->strayed[c]) plan->stray[count++] = c;
+        if (plan->is_outside[c]) plan->outside[count++] = c;
     return count;
 }
 
 /// Lists what cells that have left their boxes may have met; all anew where these are many. *first is the first pair
 /// that is new.
-static SingeResult follow_strayed(Guard *guard, const State *state, Pool *pool, float h, uint32_t *first) {
-    TouchPlan *plan = guard->plan;
+static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, float h, uint32_t *first) {
+    CollisionPlan *plan = ccd->plan;
     uint32_t count = list_strayed(plan);
     *first = plan->pair_count;
     if (count == 0) return SINGE_OK;
-    bool all = count > plan->cell_count / STRAY_MOST || plan->edge <= 0;
+    bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
-        TRY(search_again(guard, state, pool, h));
-        measure(guard, pool);
+        TRY(search_again(ccd, state, pool, h));
+        measure(ccd, pool);
         count = list_strayed(plan);
     }
-    TRY(touch_search_strayed(plan, guard->shell, pool, count, (const float(*)[4])guard->dynamics->position));
-    plan->restless = plan->step < state->step && count > plan->cell_count / STRAY_PART;
+    TRY(broad_search_outside(plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
+    plan->restless = plan->step < state->step && count > plan->cell_count / OUTSIDE_PART;
     *first = all ? 0 : plan->listed_count;
     return SINGE_OK;
 }
 
 /// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
-static SingeResult look(Guard *guard, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+static SingeResult look(Ccd *ccd, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     uint32_t first;
     if (changed) {
-        *hits = meet_changed(guard, pool);
+        *hits = meet_changed(ccd, pool);
     } else {
-        measure(guard, pool);
-        *hits = guard_meet(guard, pool, 0);
+        measure(ccd, pool);
+        *hits = ccd_meet(ccd, pool, 0);
     }
     if (*hits > 0) return SINGE_OK;
-    TRY(follow_strayed(guard, state, pool, h, &first));
-    *hits = guard_meet(guard, pool, first);
+    TRY(follow_strayed(ccd, state, pool, h, &first));
+    *hits = ccd_meet(ccd, pool, first);
     return SINGE_OK;
 }
 
 /// A velocity after a shift at the step's end: what the shift takes or gives, but no more than there was before or has
 /// been gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small
 /// part.
-static Quad shifted_velocity(Quad before, Quad shift, Quad way, float h) {
-    Quad after = before + shift / h, gone = way / h;
-    float most = fmaxf(quad_dot(before, before), quad_dot(gone, gone)), square = quad_dot(after, after);
-    return square > most ? sqrtf(most / square) * after : after;
+static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
+    Float4 after = before + shift / h, gone = displacement / h;
+    float max = fmaxf(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
+    return square > max ? sqrtf(max / square) * after : after;
 }
 
 /// Velocities and centres follow what has been changed.
-static void close_ways(const Guard *guard, float h) {
-    TouchPlan *plan = guard->plan;
-    DynamicsState *dynamics = guard->dynamics;
+static void close_trajectories(const Ccd *ccd, float h) {
+    CollisionPlan *plan = ccd->plan;
+    DynamicsState *dynamics = ccd->dynamics;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        uint32_t centre = shell_centre(guard->shell, c);
-        Quad shift = {0}, way = {0}, place = quad_load(dynamics->position[centre]);
+        uint32_t centre = shell_centre(ccd->shell, c);
+        Float4 shift = {0}, displacement = {0}, position = float4_load(dynamics->position[centre]);
         for (int i = 0; i < 4; i++) {
-            uint32_t v = guard->shell->cells[c][i];
-            Quad corner = quad_load(dynamics->position[v]);
-            shift += 0.25f * (corner - quad_load(plan->want[v]));
-            way += 0.25f * (corner - quad_load(plan->start[v]));
+            uint32_t v = ccd->shell->cells[c][i];
+            Float4 corner = float4_load(dynamics->position[v]);
+            shift += 0.25f * (corner - float4_load(plan->want[v]));
+            displacement += 0.25f * (corner - float4_load(plan->start[v]));
         }
-        shift[3] = way[3] = 0;
-        if (place[3] == 0 || quad_dot(shift, shift) == 0) continue;
-        quad_store(dynamics->position[centre], place + shift);
-        quad_store(dynamics->velocity[centre],
-                   shifted_velocity(quad_load(dynamics->velocity[centre]), shift, way, h));
+        shift[3] = displacement[3] = 0;
+        if (position[3] == 0 || float4_dot(shift, shift) == 0) continue;
+        float4_store(dynamics->position[centre], position + shift);
+        float4_store(dynamics->velocity[centre],
+                   shifted_velocity(float4_load(dynamics->velocity[centre]), shift, displacement, h));
     }
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
-        Quad corner = quad_load(dynamics->position[v]), shift = corner - quad_load(plan->want[v]);
-        Quad way = corner - quad_load(plan->start[v]);
-        shift[3] = way[3] = 0;
-        if (quad_dot(shift, shift) > 0)
-            quad_store(dynamics->velocity[v], shifted_velocity(quad_load(dynamics->velocity[v]), shift, way, h));
+        Float4 corner = float4_load(dynamics->position[v]), shift = corner - float4_load(plan->want[v]);
+        Float4 displacement = corner - float4_load(plan->start[v]);
+        shift[3] = displacement[3] = 0;
+        if (float4_dot(shift, shift) > 0)
+            float4_store(dynamics->velocity[v], shifted_velocity(float4_load(dynamics->velocity[v]), shift, displacement, h));
     }
 }
 
-static void empty_zones(TouchPlan *plan) {
+static void empty_zones(CollisionPlan *plan) {
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->zone[plan->stopped[k]] = SHELL_NONE;
     plan->stopped_count = 0;
 }
 
-static SingeResult close_step(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                               DynamicsState *dynamics) {
-    Guard guard = {plan, shell, dynamics, state->ablate.cell_flags,
+    Ccd ccd = {plan, shell, dynamics, state->ablate.cell_flags,
                    h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
-    if (plan->closed) mark_moved(&guard);
+    if (plan->closed) mark_moved(&ccd);
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
-        TRY(look(&guard, state, pool, h, stopped || plan->closed, &hits));
+        TRY(look(&ccd, state, pool, h, stopped || plan->closed, &hits));
         if (hits == 0) break;
         if (zones == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;
@@ -248,24 +248,24 @@ static SingeResult close_step(TouchPlan *plan, const Shell *shell, const State *
         if (!stopped) memcpy(plan->want, dynamics->position, plan->vertex_count * sizeof *plan->want);
         plan->counters.stops += hits;
         stopped = true;
-        bool crowd = guard.looked > (uint64_t)IMPACT_LOOKS * plan->pair_count;
-        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) guard_zones(&guard, zones++);
-        else guard_impacts(&guard), impacts++;
+        bool crowd = ccd.looked > (uint64_t)IMPACT_LOOKS * plan->pair_count;
+        if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) ccd_zones(&ccd, zones++);
+        else ccd_impacts(&ccd), impacts++;
     }
-    plan->counters.looks += guard.looked;
-    if (stopped) close_ways(&guard, h);
+    plan->counters.looks += ccd.looked;
+    if (stopped) close_trajectories(&ccd, h);
     memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);
     plan->closed = true;
     return SINGE_OK;
 }
 
-SingeResult touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                         DynamicsState *dynamics) {
     double start = clock_seconds();
     SingeResult result = close_step(plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;
     empty_zones(plan);
-    if (result) touch_plan_forget(plan);
+    if (result) collision_plan_forget(plan);
     plan->counters.seconds += clock_seconds() - start;
     return result;
 }

@@ -5,40 +5,40 @@
 
 #include "collision/collision_plan.h"
 
-typedef struct Guard {
-    TouchPlan *plan;
+typedef struct Ccd {
+    CollisionPlan *plan;
     const Shell *shell;
     DynamicsState *dynamics;
     const uint8_t *cell_flags;
     float time; ///< s since the search
     uint64_t looked; ///< pairs, in all rounds but the first
-} Guard;
+} Ccd;
 
-static inline bool guard_is_alive(const Guard *guard, uint32_t c) { return guard->cell_flags[c] & SINGE_ALIVE; }
+static inline bool ccd_is_alive(const Ccd *ccd, uint32_t c) { return ccd->cell_flags[c] & SINGE_ALIVE; }
 
 /// Forgets what has changed; marks a cell, or those around a vertex, as changed.
-void guard_forget_changed(TouchPlan *plan);
-void guard_mark_changed(const Guard *guard, uint32_t cell);
-void guard_mark_around(const Guard *guard, uint32_t v);
+void ccd_forget_changed(CollisionPlan *plan);
+void ccd_mark_changed(const Ccd *ccd, uint32_t cell);
+void ccd_mark_around(const Ccd *ccd, uint32_t v);
 
 /// Nodes of a cell on their way through the step.
 typedef struct Swept {
-    Quad place[5], way[5], low[5], high[5]; ///< of nodes
-    TouchBoxes boxes;
+    Float4 position[5], displacement[5], low[5], high[5]; ///< of nodes
+    NarrowBoxes boxes;
 } Swept;
 
 /// Nodes of the pair's cells, in a frame that goes with the first corner of a.
-void guard_sweep_cells(const Guard *guard, const TouchPair *pair, Swept *a, Swept *b);
+void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *a, Swept *b);
 
 /// Looks at pairs from `first` on, or at the `count` ones of plan->active: where two meet, notes after what share of
 /// the step's way, and what meets. Lists them in plan->active; returns how many.
-uint32_t guard_meet(const Guard *guard, Pool *pool, uint32_t first);
-uint32_t guard_meet_active(const Guard *guard, Pool *pool, uint32_t count);
+uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first);
+uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count);
 
 /// Impacts of all pairs that meet, one after another.
-void guard_impacts(const Guard *guard);
+void ccd_impacts(const Ccd *ccd);
 
 /// Joins pairs that meet into zones, in the round of this number, and moves these.
-void guard_zones(const Guard *guard, int round);
+void ccd_zones(const Ccd *ccd, int round);
 
 #endif

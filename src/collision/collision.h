@@ -18,51 +18,51 @@
 #include "common/pool.h"
 #include "shell/shell.h"
 
-typedef struct TouchPlan TouchPlan;
+typedef struct CollisionPlan CollisionPlan;
 
-SingeResult touch_check(const SingeContactDef *def, SingeError *error);
+SingeResult collision_check(const SingeContactDef *def, SingeError *error);
 
 /// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
-SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                              TouchPlan **plan);
-void touch_plan_free(Memory *memory, TouchPlan *plan);
+SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                              CollisionPlan **plan);
+void collision_plan_free(Memory *memory, CollisionPlan *plan);
 
 /// What the plan remembers of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
 /// reading; what does not fit fails the stream.
-SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
+SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
 
 /// To be called when cells have other corners than before.
-void touch_plan_forget(TouchPlan *plan);
+void collision_plan_forget(CollisionPlan *plan);
 
-/// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as touch_guard:
+/// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
 /// where sheets crowd, lists grow. Then the step is to be undone; the next one searches anew.
-SingeResult touch_open(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
+SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
 
 /// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
-void touch_push(TouchPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
+void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
-/// Closes the step: no cell of the drawn mesh has passed through another since touch_open.
-SingeResult touch_guard(TouchPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+/// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
+SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                         DynamicsState *dynamics);
 
 /// What has been done since the plan was made.
-typedef struct TouchCounters {
+typedef struct CollisionCounters {
     uint64_t searches;   ///< for pairs that are near
     uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
-    uint64_t pushes;     ///< pairs of points that a substep had to push apart, summed over substeps
+    uint64_t repulsions;     ///< pairs of points that a substep had to push apart, summed over substeps
     uint64_t stops;      ///< pairs of cells whose way was cut short
     uint64_t looks;      ///< pairs of cells that were looked at again, as a round had moved one of them
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
-    uint32_t tangled;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
-    uint32_t tangled_first; ///< the lowest of them
+    uint32_t intersecting;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
+    uint32_t intersecting_first; ///< the lowest of them
     double seconds;
-} TouchCounters;
+} CollisionCounters;
 
-TouchCounters touch_counters(const TouchPlan *plan);
+CollisionCounters collision_counters(const CollisionPlan *plan);
 
 /// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the drawn
 /// surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
-void touch_room(const TouchPlan *plan, const Shell *shell, const State *state, float *room);
+void collision_clearance(const CollisionPlan *plan, const Shell *shell, const State *state, float *room);
 
 #endif

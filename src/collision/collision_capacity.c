@@ -34,36 +34,36 @@ static bool grow_rooms(Memory *memory, const Room *room, int count) {
 }
 
 /// A quarter more than is needed, so that it does not come to growing at every step.
-static uint32_t with_margin(uint64_t wanted, uint32_t most) {
+static uint32_t with_margin(uint64_t wanted, uint32_t max) {
     wanted += wanted / 4;
-    return wanted < most ? (uint32_t)wanted : most;
+    return wanted < max ? (uint32_t)wanted : max;
 }
 
-bool touch_grow_pairs(TouchPlan *plan, uint64_t wanted) {
-    uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_most);
-    if (wanted <= before || before >= plan->sizes.pair_most) return true;
+bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted) {
+    uint32_t before = plan->pair_capacity, after = with_margin(wanted, plan->sizes.pair_max);
+    if (wanted <= before || before >= plan->sizes.pair_max) return true;
     const Room room[ROOMS] = {
         {&plan->pairs, before, after, sizeof *plan->pairs},
         {&plan->active, before, after, sizeof *plan->active},
         {&plan->around, 2 * (size_t)before, 2 * (size_t)after, sizeof *plan->around},
         {&plan->partial, (size_t)pool_blocks((int)before), (size_t)pool_blocks((int)after), sizeof *plan->partial},
     };
-    TouchList *pairs = &plan->found_pairs, *pushes = &plan->found;
-    if (!touch_list_grow(plan->memory, pairs, after, pairs->block_count) ||
-        !touch_list_grow(plan->memory, pushes, pushes->capacity, touch_look_blocks(after)) ||
+    BlockList *pairs = &plan->found_pairs, *repulsions = &plan->found;
+    if (!block_list_grow(plan->memory, pairs, after, pairs->block_count) ||
+        !block_list_grow(plan->memory, repulsions, repulsions->capacity, collision_look_blocks(after)) ||
         !grow_rooms(plan->memory, room, ROOMS))
         return false;
     plan->pair_capacity = after;
     return true;
 }
 
-bool touch_grow_pushes(TouchPlan *plan, uint64_t wanted) {
-    uint32_t before = plan->push_capacity, after = with_margin(wanted, plan->sizes.push_most);
-    if (wanted <= before || before >= plan->sizes.push_most) return true;
-    const Room room = {&plan->pushes, before, after, sizeof *plan->pushes};
-    if (!touch_list_grow(plan->memory, &plan->found, after, plan->found.block_count) ||
+bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted) {
+    uint32_t before = plan->repulsion_capacity, after = with_margin(wanted, plan->sizes.repulsion_max);
+    if (wanted <= before || before >= plan->sizes.repulsion_max) return true;
+    const Room room = {&plan->repulsions, before, after, sizeof *plan->repulsions};
+    if (!block_list_grow(plan->memory, &plan->found, after, plan->found.block_count) ||
         !grow_rooms(plan->memory, &room, 1))
         return false;
-    plan->push_capacity = after;
+    plan->repulsion_capacity = after;
     return true;
 }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-SingeResult touch_check(const SingeContactDef *def, SingeError *error) {
+SingeResult collision_check(const SingeContactDef *def, SingeError *error) {
     const char *what = NULL;
     if (!(def->thickness > 0 && def->thickness <= 1)) what = "thickness must be above 0, at most 1 m";
     if (!(def->friction >= 0 && def->friction <= 1e3f)) what = "friction must be between 0 and 1000";
@@ -14,26 +14,26 @@ SingeResult touch_check(const SingeContactDef *def, SingeError *error) {
 
 static uint32_t capped(uint64_t count) { return count < UINT32_MAX / 2 ? (uint32_t)count : UINT32_MAX / 2; }
 
-static uint32_t most_room(uint32_t capacity) {
-    uint64_t most = (uint64_t)TOUCH_GROWTH * capacity;
-    return capped(most > TOUCH_LEAST ? most : TOUCH_LEAST);
+static uint32_t capacity_max(uint32_t capacity) {
+    uint64_t max = (uint64_t)COLLISION_GROWTH * capacity;
+    return capped(max > COLLISION_LIST_MIN ? max : COLLISION_LIST_MIN);
 }
 
-TouchSizes touch_sizes(const Shell *shell) {
+CollisionSizes collision_sizes(const Shell *shell) {
     uint64_t cells = shell->cell_count;
-    TouchSizes sizes = {.entries = capped(TOUCH_ENTRIES * cells + 64), .pairs = capped(TOUCH_PAIRS * cells + 64),
-                        .pushes = capped(TOUCH_PUSHES * cells + 64)};
-    sizes.pair_most = most_room(sizes.pairs), sizes.push_most = most_room(sizes.pushes);
+    CollisionSizes sizes = {.entries = capped(COLLISION_ENTRIES * cells + 64), .pairs = capped(COLLISION_PAIRS * cells + 64),
+                        .repulsions = capped(COLLISION_REPULSIONS * cells + 64)};
+    sizes.pair_max = capacity_max(sizes.pairs), sizes.repulsion_max = capacity_max(sizes.repulsions);
     sizes.pair_budget = sizes.pairs;
     return sizes;
 }
 
 /// Finds the sizes of lists and lengths that follow from the shell.
-static void size_plan(TouchPlan *plan, const Shell *shell, const TouchSizes *sizes) {
+static void size_plan(CollisionPlan *plan, const Shell *shell, const CollisionSizes *sizes) {
     uint64_t cells = shell->cell_count;
     plan->vertex_count = shell->vertex_count, plan->cell_count = shell->cell_count;
     plan->sizes = *sizes;
-    plan->pair_capacity = sizes->pairs, plan->push_capacity = sizes->pushes;
+    plan->pair_capacity = sizes->pairs, plan->repulsion_capacity = sizes->repulsions;
     for (plan->bucket_count = 256; plan->bucket_count < 2 * cells;) plan->bucket_count *= 2;
     plan->cell_size = INFINITY;
     float far = 0;
@@ -42,7 +42,7 @@ static void size_plan(TouchPlan *plan, const Shell *shell, const TouchSizes *siz
     for (uint32_t v = 0; v < shell->vertex_count; v++)
         for (int k = 0; k < 3; k++) far = fmaxf(far, fabsf(shell->rest_position[v][k]));
     plan->thickness = fminf(plan->def.thickness, 0.4f * plan->cell_size);
-    plan->slack_most = fmaxf(0.3f * plan->cell_size, plan->thickness);
+    plan->slack_max = fmaxf(0.3f * plan->cell_size, plan->thickness);
     plan->noise = 4e-7f * far;
 }
 
@@ -54,28 +54,28 @@ typedef struct Array {
 enum { ARRAYS = 34 };
 
 /// The plan's arrays, for what makes and what frees them.
-static void list_arrays(TouchPlan *plan, Array list[ARRAYS]) {
+static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
 #define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
     const Array all[ARRAYS] = {
-        ARRAY(thin, cells), ARRAY(place, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(tangled, cells),
+        ARRAY(thin, cells), ARRAY(position, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(intersecting, cells),
         ARRAY(boxes, cells), ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(owned, cells), ARRAY(owner, vertices),
         ARRAY(entries, plan->sizes.entries), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
-        ARRAY(pairs, plan->pair_capacity), ARRAY(pushes, plan->push_capacity), ARRAY(start, vertices),
+        ARRAY(pairs, plan->pair_capacity), ARRAY(repulsions, plan->repulsion_capacity), ARRAY(start, vertices),
         ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(motion, cells),
         ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
         ARRAY(stopped, vertices), ARRAY(changed, cells), ARRAY(changed_list, cells),
         ARRAY(active, plan->pair_capacity), ARRAY(around_first, cells + 2),
-        ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(strayed, cells), ARRAY(stray, cells),
-        ARRAY(stray_boxes, cells),
-        ARRAY(stray_chain, plan->bucket_count), ARRAY(stray_entries, plan->sizes.entries),
+        ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(is_outside, cells), ARRAY(outside, cells),
+        ARRAY(outside_boxes, cells),
+        ARRAY(outside_chain, plan->bucket_count), ARRAY(outside_entries, plan->sizes.entries),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY
     memcpy(list, all, sizeof all);
 }
 
-static bool allocate(Memory *memory, TouchPlan *plan) {
+static bool allocate(Memory *memory, CollisionPlan *plan) {
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) {
@@ -83,52 +83,52 @@ static bool allocate(Memory *memory, TouchPlan *plan) {
         if (!block) return false;
         memcpy(list[k].at, &block, sizeof block);
     }
-    uint32_t most = plan->pair_capacity, blocks = touch_look_blocks(most);
-    uint32_t buckets = plan->bucket_count / TOUCH_BUCKETS + 1, strays = plan->cell_count / TOUCH_STRAYS + 1;
-    if (buckets < strays) buckets = strays;
-    return touch_list_create(memory, &plan->found_pairs, sizeof(TouchPair), most, buckets) &&
-           touch_list_create(memory, &plan->found, sizeof(TouchFound), plan->push_capacity, blocks);
+    uint32_t max = plan->pair_capacity, blocks = collision_look_blocks(max);
+    uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, outside_blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
+    if (buckets < outside_blocks) buckets = outside_blocks;
+    return block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), max, buckets) &&
+           block_list_create(memory, &plan->found, sizeof(FoundPoints), plan->repulsion_capacity, blocks);
 }
 
-void touch_plan_free(Memory *memory, TouchPlan *plan) {
+void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     if (!plan) return;
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
-    touch_list_free(memory, &plan->found_pairs);
-    touch_list_free(memory, &plan->found);
+    block_list_free(memory, &plan->found_pairs);
+    block_list_free(memory, &plan->found);
     FREE(memory, plan, 1);
 }
 
 /// Where cells are at rest, and how thick they may be: those far smaller than the rest of their sheet would be torn
 /// apart by what keeps their own corners apart.
-static void measure_cells(TouchPlan *plan, const Shell *shell) {
-    float least = plan->cell_size;
+static void measure_cells(CollisionPlan *plan, const Shell *shell) {
+    float min = plan->cell_size;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        Quad place[4];
+        Float4 position[4];
         float shortest = INFINITY;
-        for (int i = 0; i < 4; i++) place[i] = quad_load(shell->rest_position[shell->cells[c][i]]);
+        for (int i = 0; i < 4; i++) position[i] = float4_load(shell->rest_position[shell->cells[c][i]]);
         for (int i = 0; i < 4; i++) {
-            Quad side = place[(i + 1) & 3] - place[i];
-            shortest = fminf(shortest, quad_dot(side, side));
+            Float4 side = position[(i + 1) & 3] - position[i];
+            shortest = fminf(shortest, float4_dot(side, side));
         }
-        plan->rest[c] = touch_mean(place);
+        plan->rest[c] = collision_mean(position);
         shortest = sqrtf(shortest);
         plan->thin[c] = fminf(plan->thickness, 0.4f * shortest);
-        least = fminf(least, 4 * shortest);
+        min = fminf(min, 4 * shortest);
     }
-    plan->gap = 5e-3f * least + 4 * plan->noise;
+    plan->gap = 5e-3f * min + 4 * plan->noise;
 }
 
-SingeResult touch_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                              TouchPlan **out) {
-    TouchSizes sizes = touch_sizes(shell);
-    return touch_plan_create_sized(memory, shell, def, time_step, &sizes, out);
+SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                              CollisionPlan **out) {
+    CollisionSizes sizes = collision_sizes(shell);
+    return collision_plan_create_sized(memory, shell, def, time_step, &sizes, out);
 }
 
-SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                                    const TouchSizes *sizes, TouchPlan **out) {
-    TouchPlan *plan;
+SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                                    const CollisionSizes *sizes, CollisionPlan **out) {
+    CollisionPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
     plan->memory = memory;
@@ -136,7 +136,7 @@ SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const Si
     plan->time_step = time_step;
     size_plan(plan, shell, sizes);
     if (!allocate(memory, plan)) {
-        touch_plan_free(memory, plan);
+        collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
     for (uint32_t v = 0; v < plan->vertex_count; v++) plan->zone[v] = SHELL_NONE;
@@ -146,35 +146,35 @@ SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const Si
 }
 
 /// Whether what was read back is what a search may have been for; cells that are left now were left then.
-static bool touch_fits(const TouchPlan *plan, const uint8_t *cell_flags) {
+static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags) {
     if (plan->searched > 1 || plan->restless > 1) return false;
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
-            if (!isfinite(plan->place[v][k]) || !isfinite(plan->speed[v][k])) return false;
+            if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) return false;
     uint8_t groups = 0; // numbered in the order of their lowest cells
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (plan->alive[c] > 1 || plan->tangled[c] > groups + 1) return false;
-        if (plan->tangled[c] > groups) groups = plan->tangled[c];
+        if (plan->alive[c] > 1 || plan->intersecting[c] > groups + 1) return false;
+        if (plan->intersecting[c] > groups) groups = plan->intersecting[c];
         if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
     }
     return true;
 }
 
-SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
+SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
     STREAM(stream, plan->searched);
     STREAM(stream, plan->restless);
     STREAM(stream, plan->step);
-    stream_data(stream, plan->place, plan->vertex_count * sizeof *plan->place);
+    stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
-    stream_data(stream, plan->tangled, plan->cell_count);
-    if (stream->mode == STREAM_READ && !touch_fits(plan, cell_flags)) stream->failed = true;
+    stream_data(stream, plan->intersecting, plan->cell_count);
+    if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
-    plan->counters.tangled = 0;
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.tangled += plan->tangled[c] != 0;
+    plan->counters.intersecting = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.intersecting += plan->intersecting[c] != 0;
     plan->closed = false;
     uint32_t restless = plan->restless;
-    TRY(touch_search(plan, shell, NULL));
+    TRY(broad_search(plan, shell, NULL));
     plan->restless = restless;
     // how far pairs have moved since is not known
     for (uint32_t k = 0; k < plan->listed_count; k++) plan->pairs[k].distance = 0;
@@ -182,6 +182,6 @@ SingeResult touch_plan_stream(TouchPlan *plan, const Shell *shell, const uint8_t
 }
 
 // a search from a later step than the present one counts as none
-void touch_plan_forget(TouchPlan *plan) { plan->step = UINT64_MAX, plan->closed = false; }
+void collision_plan_forget(CollisionPlan *plan) { plan->step = UINT64_MAX, plan->closed = false; }
 
-TouchCounters touch_counters(const TouchPlan *plan) { return plan->counters; }
+CollisionCounters collision_counters(const CollisionPlan *plan) { return plan->counters; }

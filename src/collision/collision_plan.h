@@ -8,40 +8,40 @@
 #include "collision/block_list.h"
 
 /// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
-enum { TOUCH_STEPS = 10 };
+enum { COLLISION_STEPS = 10 };
 /// Buckets, pairs or cells that a thread works on together.
-enum { TOUCH_BUCKETS = 128, TOUCH_BLOCK = 256, TOUCH_STRAYS = 16 };
-/// Room for a cell, of each list. Lists of pairs and pushes grow where that is too little, by TOUCH_GROWTH, or to
-/// TOUCH_LEAST items where that is more.
-enum { TOUCH_ENTRIES = 12, TOUCH_PAIRS = 40, TOUCH_PUSHES = 24, TOUCH_GROWTH = 8, TOUCH_LEAST = 1 << 19 };
+enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
+/// Room for a cell, of each list. Lists of pairs and pushes grow where that is too little, by COLLISION_GROWTH, or to
+/// COLLISION_LIST_MIN items where that is more.
+enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
 
 /// What meets.
-enum { TOUCH_NODE_OF_A, TOUCH_NODE_OF_B, TOUCH_EDGES };
+enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
 /// A cell's box at the search, in a frame that goes with the mean of its corners' ways over plan->steps, and that way,
 /// with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
-typedef struct TouchBox {
-    Quad low, high, way;
-    Quad swept_low, swept_high; ///< the region that the widened box passes over
-} TouchBox;
+typedef struct CollisionBox {
+    Float4 low, high, displacement;
+    Float4 swept_low, swept_high; ///< the region that the widened box passes over
+} CollisionBox;
 
 /// A cell's corners at the search and the slab between two planes that holds them, about the first corner.
-typedef struct TouchSlab {
-    Quad x, y, z;
-    Quad normal;     ///< of length 1, or 0
+typedef struct CollisionSlab {
+    Float4 x, y, z;
+    Float4 normal;     ///< of length 1, or 0
     float low, high; ///< m along it
-} TouchSlab;
+} CollisionSlab;
 
 /// An entry of the grid: a cell in one of the cubes that its swept box overlaps.
-typedef struct TouchEntry {
+typedef struct CollisionEntry {
     float low[3];
     uint32_t cell;
     float high[3];
     uint32_t key; ///< which cube; the highest three bits: whether it is the box's first along x, y, z
-} TouchEntry;
+} CollisionEntry;
 
 /// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.
-typedef struct TouchPair {
+typedef struct CollisionPair {
     uint32_t a, b;
     /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each
     /// where they share a corner; else SHELL_NONE
@@ -49,66 +49,66 @@ typedef struct TouchPair {
     float distance;   ///< m, at least that at plan->start
     float hit;        ///< of the step's way, the share after which they meet; 2: never
     uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
-    uint8_t kind;     ///< TOUCH_NODE_OF_A, TOUCH_NODE_OF_B or TOUCH_EDGES
-} TouchPair;
+    uint8_t kind;     ///< COLLISION_NODE_OF_A, COLLISION_NODE_OF_B or COLLISION_EDGES
+} CollisionPair;
 
-/// Two points that are near as a step opens, before they are a TouchPush.
-typedef struct TouchFound {
+/// Two points that are near as a step opens, before they are a Repulsion.
+typedef struct FoundPoints {
     uint32_t pair;
-    uint8_t kind, first, second; ///< as in a TouchPair
+    uint8_t kind, first, second; ///< as in a CollisionPair
     float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges
-    float normal[3], target;     ///< see TouchPush
-} TouchFound;
+    float normal[3], target;     ///< see Repulsion
+} FoundPoints;
 
 /// Two points that are to be kept apart: sum of weight x, over `count` particles, along `normal` is at least `target`.
-typedef struct TouchPush {
-    Quad normal;
+typedef struct Repulsion {
+    Float4 normal;
     uint32_t node[8];
     float weight[8];
     float target; ///< m
     uint32_t count;
-} TouchPush;
+} Repulsion;
 
 /// The region that a cell passes over in a step, a little widened.
-typedef struct TouchStray {
-    Quad low, high;
-} TouchStray;
+typedef struct OutsideBox {
+    Float4 low, high;
+} OutsideBox;
 
 /// An entry of the grid of such regions.
-typedef struct TouchChain {
-    uint32_t stray, key; ///< key: as a TouchEntry's
+typedef struct OutsideEntry {
+    uint32_t outside, key; ///< key: as a CollisionEntry's
     uint32_t next;       ///< of the same bucket, or SHELL_NONE
-} TouchChain;
+} OutsideEntry;
 
 /// How a cell moves: mean of its corners' ways since plan->start in m, and of their velocities as the step opened in
-/// m/s, with the largest deviation of one as fourth; and its normals, as of touch_normals.
-enum { TOUCH_WAY, TOUCH_VELOCITY, TOUCH_NORMAL, TOUCH_MOTIONS };
+/// m/s, with the largest deviation of one as fourth; and its normals, as of feature_normals.
+enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_MOTIONS };
 
 /// Items of the lists, to begin with and at most.
-typedef struct TouchSizes {
+typedef struct CollisionSizes {
     uint32_t entries;     ///< at least 8 a cell
-    uint32_t pairs, pair_most;   ///< at least 1 a cell
-    uint32_t pushes, push_most;
+    uint32_t pairs, pair_max;   ///< at least 1 a cell
+    uint32_t repulsions, repulsion_max;
     uint32_t pair_budget; ///< that a search is content with: where there are more it looks less far
-} TouchSizes;
+} CollisionSizes;
 
 /// What is enough for all but crowds.
-TouchSizes touch_sizes(const Shell *shell);
+CollisionSizes collision_sizes(const Shell *shell);
 
-/// touch_plan_create with other sizes than those.
-SingeResult touch_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                                    const TouchSizes *sizes, TouchPlan **plan);
+/// collision_plan_create with other sizes than those.
+SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
+                                    const CollisionSizes *sizes, CollisionPlan **plan);
 
-struct TouchPlan {
+struct CollisionPlan {
     Memory *memory;
     SingeContactDef def;
-    TouchSizes sizes;
+    CollisionSizes sizes;
     uint32_t cell_count, vertex_count;
     float time_step;  ///< s
     float cell_size;  ///< m, of the smallest
     float thickness;  ///< m, of contact; at most 2/5 of a sheet's typical cell
     float *thin;      ///< [cells] m, the same; at most 2/5 of this cell's shortest side
-    float slack_most; ///< m, that cells may move otherwise than foreseen before the search is repeated
+    float slack_max; ///< m, that cells may move otherwise than foreseen before the search is repeated
     float gap;        ///< m, that ways keep free in front of what they would meet
     float noise;      ///< m, that rounding moves places by
 
@@ -116,32 +116,32 @@ struct TouchPlan {
     uint32_t searched;       ///< 0: never
     uint32_t restless;       ///< many cells have left their boxes since: search as the next step opens
     uint64_t step;           ///< it was for the way from this step's start
-    float (*place)[4];       ///< [vertices] m
+    float (*position)[4];       ///< [vertices] m
     float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
     /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number of
     /// their group, from 1 on; of others 0
-    uint8_t *tangled;
+    uint8_t *intersecting;
 
     // what was found
     uint32_t steps;          ///< that the search is for
     float slack, reach;      ///< m; reach is thickness + slack
     float edge;              ///< m, of the grid's cubes
-    uint32_t entry_count, bucket_count, push_count;
+    uint32_t entry_count, bucket_count, repulsion_count;
     uint32_t listed_count;   ///< pairs of the search
     uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
-    uint32_t pair_capacity, push_capacity;
-    TouchBox *boxes;         ///< [cells]
-    TouchSlab *slabs;        ///< [cells]
-    Quad *rest;              ///< [cells] middle at rest, and how far a corner is from it
+    uint32_t pair_capacity, repulsion_capacity;
+    CollisionBox *boxes;         ///< [cells]
+    CollisionSlab *slabs;        ///< [cells]
+    Float4 *rest;              ///< [cells] middle at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
-    TouchEntry *entries;     ///< [sizes.entries] by bucket
+    CollisionEntry *entries;     ///< [sizes.entries] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
-    TouchPair *pairs;        ///< [pair_capacity]
-    TouchPush *pushes;       ///< [push_count]
-    TouchList found_pairs;   ///< TouchPair, as they are found
-    TouchList found;         ///< TouchFound
+    CollisionPair *pairs;        ///< [pair_capacity]
+    Repulsion *repulsions;       ///< [repulsion_count]
+    BlockList found_pairs;   ///< CollisionPair, as they are found
+    BlockList found;         ///< FoundPoints
 
     // the step
     float (*start)[4];       ///< [vertices] m
@@ -149,10 +149,10 @@ struct TouchPlan {
     bool closed;
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
-    Quad (*motion)[TOUCH_MOTIONS]; ///< [cells]
+    Float4 (*motion)[COLLISION_MOTIONS]; ///< [cells]
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
     float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
-    Quad *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
+    Float4 *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
     uint32_t *stopped;       ///< [stopped_count] vertices in zones
     uint32_t stopped_count;
     uint8_t *changed;        ///< [cells] that the last round has moved
@@ -163,141 +163,141 @@ struct TouchPlan {
     uint32_t *around_first;  ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
     uint32_t *around;        ///< [2 pair_capacity]
     uint64_t around_search;  ///< which search these are of
-    uint8_t *strayed;        ///< [cells] that have left their boxes
-    uint32_t *stray;         ///< [cells] a list of them
-    TouchStray *stray_boxes; ///< [cells] theirs
-    uint32_t *stray_chain;   ///< [bucket_count] first entries
-    TouchChain *stray_entries; ///< [sizes.entries]
+    uint8_t *is_outside;        ///< [cells] that have left their boxes
+    uint32_t *outside;         ///< [cells] a list of them
+    OutsideBox *outside_boxes; ///< [cells] theirs
+    uint32_t *outside_chain;   ///< [bucket_count] first entries
+    OutsideEntry *outside_entries; ///< [sizes.entries]
     double *partial;         ///< [pool_blocks(pair_capacity)]
-    TouchCounters counters;
+    CollisionCounters counters;
 };
 
 /// Finds the pairs for plan->place, speed, alive. Their distances are those at plan->place. SINGE_ERROR_MEMORY: then
 /// there are none.
-SingeResult touch_search(TouchPlan *plan, const Shell *shell, Pool *pool);
+SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
 /// The pairs of cells whose swept boxes meet, in broad_grid.c: sorts them into the grid, and writes plan->found_pairs,
 /// of those that `reach` allows. Returns how many there are, with or without room.
-uint64_t touch_grid_pairs(TouchPlan *plan, const Shell *shell, Pool *pool);
+uint64_t broad_grid_pairs(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
-/// Keeps the first `room` of the `count` pairs that touch_grid_pairs has found, as plan->pairs.
-void touch_grid_keep(TouchPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
+/// Keeps the first `room` of the `count` pairs that broad_grid_pairs has found, as plan->pairs.
+void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64_t count, uint32_t room);
 
 /// Blocks in which pairs are looked at.
-static inline uint32_t touch_look_blocks(uint32_t pairs) { return (pairs + TOUCH_BLOCK - 1) / TOUCH_BLOCK; }
+static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + COLLISION_BLOCK - 1) / COLLISION_BLOCK; }
 
 /// Makes room for `wanted` pairs or pushes, or as many as there may be at most; plan->found_pairs and plan->found lose
 /// what they hold. False when out of memory.
-bool touch_grow_pairs(TouchPlan *plan, uint64_t wanted);
-bool touch_grow_pushes(TouchPlan *plan, uint64_t wanted);
+bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted);
+bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted);
 
 /// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->place.
-bool touch_is_listed(const TouchPlan *plan, uint32_t a, uint32_t b, float *distance);
+bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance);
 
-/// See TouchPair.bridge.
-uint32_t touch_bridge(const TouchPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
+/// See CollisionPair.bridge.
+uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
 /// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from
 /// plan->start to `x`. SINGE_ERROR_MEMORY.
-SingeResult touch_search_strayed(TouchPlan *plan, const Shell *shell, Pool *pool, uint32_t stray_count,
+SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
                                  const float (*x)[4]);
 
 /// Groups cells that cross: all of them at the first search, later those that have not parted since.
-void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first);
+void initial_find(CollisionPlan *plan, const Shell *shell, bool first);
 
 /// Mean of four vectors; fourth: the largest deviation from it.
-static inline Quad touch_mean(const Quad vector[4]) {
+static inline Float4 collision_mean(const Float4 vector[4]) {
     FourVectors four = four_of(vector);
-    Quad mean = {0.25f * quad_sum(four.x), 0.25f * quad_sum(four.y), 0.25f * quad_sum(four.z), 0};
+    Float4 mean = {0.25f * float4_sum(four.x), 0.25f * float4_sum(four.y), 0.25f * float4_sum(four.z), 0};
     FourVectors off = four_minus(four, four_all(mean));
-    return quad_with(mean, sqrtf(quad_most(four_dot(off, off))));
+    return float4_with(mean, sqrtf(float4_largest(four_dot(off, off))));
 }
 
 /// Ways of a cell's corners since plan->start, as their mean.
-static inline Quad touch_way(const TouchPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
-    Quad way[4]; // fourths: of places inverse masses, which count for nothing
-    for (int i = 0; i < 4; i++) way[i] = quad_load(x[corner[i]]) - quad_load(plan->start[corner[i]]);
-    return touch_mean(way);
+static inline Float4 collision_displacement(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
+    Float4 displacement[4]; // fourths: of places inverse masses, which count for nothing
+    for (int i = 0; i < 4; i++) displacement[i] = float4_load(x[corner[i]]) - float4_load(plan->start[corner[i]]);
+    return collision_mean(displacement);
 }
 
 /// Four pairs of the list, and what two cells of each differ in.
-typedef struct TouchFourPairs {
-    const Quad (*motion)[TOUCH_MOTIONS];
+typedef struct CollisionFourPairs {
+    const Float4 (*motion)[COLLISION_MOTIONS];
     uint32_t a[4], b[4], bridge[4]; ///< where there is none, bridge is a
     unsigned bridged; ///< bits
-    Quad distance;    ///< m
-} TouchFourPairs;
+    Float4 distance;    ///< m
+} CollisionFourPairs;
 
-static inline TouchFourPairs touch_four_pairs(const TouchPlan *plan, const uint32_t number[4]) {
-    TouchFourPairs four = {.motion = (const Quad(*)[TOUCH_MOTIONS])plan->motion};
+static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan, const uint32_t number[4]) {
+    CollisionFourPairs four = {.motion = (const Float4(*)[COLLISION_MOTIONS])plan->motion};
     float distance[4];
     for (int i = 0; i < 4; i++) {
-        const TouchPair *pair = &plan->pairs[number[i]];
+        const CollisionPair *pair = &plan->pairs[number[i]];
         bool bridged = pair->bridge != SHELL_NONE;
         four.a[i] = pair->a, four.b[i] = pair->b, four.bridge[i] = bridged ? pair->bridge : pair->a;
         four.bridged |= (unsigned)bridged << i;
         distance[i] = pair->distance;
     }
-    four.distance = (Quad){distance[0], distance[1], distance[2], distance[3]};
+    four.distance = (Float4){distance[0], distance[1], distance[2], distance[3]};
     return four;
 }
 
 /// Difference of a motion of cells a and b; *deviations: the sums of the fourths.
-static inline FourVectors touch_four_off(const TouchFourPairs *four, const uint32_t a[4], const uint32_t b[4],
-                                         int motion, Quad *deviations) {
-    const Quad sign = {0, 0, 0, -0.0f};
-    Quad off[4];
+static inline FourVectors collision_four_off(const CollisionFourPairs *four, const uint32_t a[4], const uint32_t b[4],
+                                         int motion, Float4 *deviations) {
+    const Float4 sign = {0, 0, 0, -0.0f};
+    Float4 off[4];
     for (int i = 0; i < 4; i++)
-        off[i] = four->motion[a[i]][motion] - (Quad)((QuadMask)four->motion[b[i]][motion] ^ (QuadMask)sign);
-    quad_transpose(off);
+        off[i] = four->motion[a[i]][motion] - (Float4)((Float4Mask)four->motion[b[i]][motion] ^ (Float4Mask)sign);
+    float4_transpose(off);
     *deviations = off[3];
     return (FourVectors){off[0], off[1], off[2]};
 }
 
 /// The most that any points of the cells differ in.
-static inline Quad touch_four_differ(const TouchFourPairs *four, int motion) {
-    Quad deviations;
-    FourVectors off = touch_four_off(four, four->a, four->b, motion, &deviations);
-    return quad_sqrt(four_dot(off, off)) + deviations;
+static inline Float4 collision_four_differ(const CollisionFourPairs *four, int motion) {
+    Float4 deviations;
+    FourVectors off = collision_four_off(four, four->a, four->b, motion, &deviations);
+    return float4_sqrt(four_dot(off, off)) + deviations;
 }
 
 /// Whether all normals of two cells in shape lie within a cone.
-static inline QuadMask touch_four_within(const TouchFourPairs *four, const uint32_t a[4], const uint32_t b[4],
+static inline Float4Mask collision_four_within(const CollisionFourPairs *four, const uint32_t a[4], const uint32_t b[4],
                                          float cone) {
-    Quad deviations;
-    FourVectors off = touch_four_off(four, a, b, TOUCH_NORMAL, &deviations);
-    Quad left = cone - deviations;
+    Float4 deviations;
+    FourVectors off = collision_four_off(four, a, b, COLLISION_NORMAL, &deviations);
+    Float4 left = cone - deviations;
     return (left > 0) & (four_dot(off, off) < left * left);
 }
 
 /// A cell's nodes about an origin: corners, then the virtual centre. Fourth numbers are 0.
-static inline void touch_nodes(const uint32_t corner[4], const float (*x)[4], Quad origin, Quad node[5]) {
-    for (int i = 0; i < 4; i++) node[i] = quad_flat(quad_load(x[corner[i]]) - origin);
+static inline void collision_nodes(const uint32_t corner[4], const float (*x)[4], Float4 origin, Float4 node[5]) {
+    for (int i = 0; i < 4; i++) node[i] = float4_flat(float4_load(x[corner[i]]) - origin);
     node[4] = 0.25f * ((node[0] + node[1]) + (node[2] + node[3]));
 }
 
 /// Nodes of a cell's edges 0 to 7: sides, then the lines from the corners to the centre; and of its triangles.
-static const uint8_t touch_edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
-static const uint8_t touch_triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+static const uint8_t collision_edge[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
+static const uint8_t collision_triangle[4][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
 
 /// Bits of same[i]: corners of the second cell that are corner i of the first.
-static inline void touch_same(const uint32_t first[4], const uint32_t second[4], unsigned same[4]) {
-    QuadMask other;
+static inline void collision_same(const uint32_t first[4], const uint32_t second[4], unsigned same[4]) {
+    Float4Mask other;
     memcpy(&other, second, sizeof other);
-    for (int i = 0; i < 4; i++) same[i] = quad_bits(other == (int32_t)first[i]);
+    for (int i = 0; i < 4; i++) same[i] = float4_bits(other == (int32_t)first[i]);
 }
 
 /// Whether a cell counts node or edge i as its own: what several share is looked at once.
-static inline bool touch_owns_node(const TouchPlan *plan, uint32_t cell, int i) {
+static inline bool collision_owns_node(const CollisionPlan *plan, uint32_t cell, int i) {
     return i == 4 || (plan->owned[cell] >> i & 1);
 }
-static inline bool touch_owns_edge(const TouchPlan *plan, uint32_t cell, int i) {
+static inline bool collision_owns_edge(const CollisionPlan *plan, uint32_t cell, int i) {
     return i >= 4 || (plan->owned[cell] >> (4 + i) & 1);
 }
 
 /// Two cells of one group: they crossed at the start, or others joined them by crossings, and they have not parted.
-static inline bool touch_is_tangled(const TouchPlan *plan, const TouchPair *pair) {
-    return plan->tangled[pair->a] && plan->tangled[pair->a] == plan->tangled[pair->b];
+static inline bool initial_is_crossing(const CollisionPlan *plan, const CollisionPair *pair) {
+    return plan->intersecting[pair->a] && plan->intersecting[pair->a] == plan->intersecting[pair->b];
 }
 
 #endif

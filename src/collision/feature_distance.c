@@ -4,19 +4,19 @@
 // In float, the nearest point of a triangle 200 times as long as it is high is off by a two-thousandth of its length:
 // then what passes through it seems to pass by. So weights are computed in double.
 
-static double dot(Quad a, Quad b) {
+static double dot(Float4 a, Float4 b) {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
-static Quad mix3(Quad a, Quad b, Quad c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
+static Float4 mix3(Float4 a, Float4 b, Float4 c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
 
 static void set_weights(float w[3], double b, double c) {
     w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c;
 }
 
 /// Weights of the triangle's point nearest to p.
-static void triangle_weights(Quad p, Quad a, Quad b, Quad c, float w[3]) {
-    Quad ab = b - a, ac = c - a, ap = p - a;
+static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
+    Float4 ab = b - a, ac = c - a, ap = p - a;
     double d1 = dot(ab, ap), d2 = dot(ac, ap), both = dot(ab, ac);
     // not from p - b and p - c, whose rounding would fit ill
     double d3 = d1 - dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - dot(ac, ac);
@@ -31,7 +31,7 @@ static void triangle_weights(Quad p, Quad a, Quad b, Quad c, float w[3]) {
     else set_weights(w, vb / (va + vb + vc), vc / (va + vb + vc));
 }
 
-Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
+Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
     triangle_weights(p, a, b, c, weight);
     // a triangle without area has no weights in its middle: then its first corner stands for it
     if (!(weight[0] + weight[1] + weight[2] > 0.5f)) weight[0] = 1, weight[1] = weight[2] = 0;
@@ -43,7 +43,7 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
 // Two cells that share a side or a corner do not cross where
 //
 //   a plane through what they share has the rest of one on one side and the rest of the other on the other
-//   (touch_is_parted), or, which costs less and holds nearly everywhere,
+//   (feature_is_separated), or, which costs less and holds nearly everywhere,
 //
 //   all their triangles' normals lie within a cone, and all corners have angles of at most 115 degrees (Volino and
 //   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the condition on the contour made one on angles).
@@ -58,40 +58,40 @@ Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]) {
 static bool is_in_shape(FourVectors corner, FourVectors normal) {
     FourVectors next = four_minus(four_turned(corner), corner);
     next = four_along(next, -four_dot(next, normal), normal);
-    FourVectors last = {-QUAD_SHUFFLE(next.x, next.x, 3, 0, 1, 2), -QUAD_SHUFFLE(next.y, next.y, 3, 0, 1, 2),
-                        -QUAD_SHUFFLE(next.z, next.z, 3, 0, 1, 2)};
-    Quad dot = four_dot(next, last), square = four_dot(next, next) * four_dot(last, last);
-    Quad most = quad_select(dot > 0, quad_all(0.75f), quad_all(0.1786f)) * square;
-    return quad_bits((four_dot(four_cross(next, last), normal) > 0) & (dot * dot <= most)) == 15;
+    FourVectors last = {-FLOAT4_SHUFFLE(next.x, next.x, 3, 0, 1, 2), -FLOAT4_SHUFFLE(next.y, next.y, 3, 0, 1, 2),
+                        -FLOAT4_SHUFFLE(next.z, next.z, 3, 0, 1, 2)};
+    Float4 dot = four_dot(next, last), square = four_dot(next, next) * four_dot(last, last);
+    Float4 max = float4_select(dot > 0, float4_all(0.75f), float4_all(0.1786f)) * square;
+    return float4_bits((four_dot(four_cross(next, last), normal) > 0) & (dot * dot <= max)) == 15;
 }
 
-Quad touch_normals(const Quad node[5]) {
-    const Quad none = {0, 0, 0, 8};
+Float4 feature_normals(const Float4 node[5]) {
+    const Float4 none = {0, 0, 0, 8};
     FourVectors corner = four_minus(four_of(node), four_all(node[4]));
     FourVectors normal = four_cross(corner, four_turned(corner));
-    Quad length = quad_sqrt(four_dot(normal, normal));
-    if (quad_bits(length > 0) != 15) return none;
-    Quad inverse = 1 / length;
+    Float4 length = float4_sqrt(four_dot(normal, normal));
+    if (float4_bits(length > 0) != 15) return none;
+    Float4 inverse = 1 / length;
     normal = (FourVectors){normal.x * inverse, normal.y * inverse, normal.z * inverse};
-    Quad mean = {quad_sum(normal.x), quad_sum(normal.y), quad_sum(normal.z), 0};
-    float size = sqrtf(quad_dot(mean, mean));
+    Float4 mean = {float4_sum(normal.x), float4_sum(normal.y), float4_sum(normal.z), 0};
+    float size = sqrtf(float4_dot(mean, mean));
     if (!(size > 0)) return none;
     mean = mean / size;
     FourVectors along = four_all(mean), off = four_minus(normal, along);
-    float spread = sqrtf(quad_most(four_dot(off, off)));
-    return quad_with(mean, is_in_shape(corner, along) ? spread : 2 + spread);
+    float spread = sqrtf(float4_largest(four_dot(off, off)));
+    return float4_with(mean, is_in_shape(corner, along) ? spread : 2 + spread);
 }
 
 /// Whether the corners that are not shared lie beyond the plane.
-static bool is_beyond(const Quad corner[4], unsigned shared, Quad origin, Quad normal, float margin) {
-    float least = margin * sqrtf(quad_dot(normal, normal));
+static bool is_beyond(const Float4 corner[4], unsigned shared, Float4 origin, Float4 normal, float margin) {
+    float min = margin * sqrtf(float4_dot(normal, normal));
     for (int i = 0; i < 4; i++)
-        if (!(shared >> i & 1) && !(quad_dot(corner[i] - origin, normal) > least)) return false;
+        if (!(shared >> i & 1) && !(float4_dot(corner[i] - origin, normal) > min)) return false;
     return true;
 }
 
 /// The corners of a that are shared: how many, and the first and the last.
-static int shared_corners(const Quad a[4], unsigned shared, Quad *first, Quad *last) {
+static int shared_corners(const Float4 a[4], unsigned shared, Float4 *first, Float4 *last) {
     int count = 0;
     for (int i = 0; i < 4; i++)
         if (shared >> i & 1) {
@@ -101,21 +101,21 @@ static int shared_corners(const Quad a[4], unsigned shared, Quad *first, Quad *l
     return count;
 }
 
-bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2], float margin, Quad *normal) {
-    Quad first = {0}, last = {0};
+bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin, Float4 *normal) {
+    Float4 first = {0}, last = {0};
     int count = shared_corners(a, shared[0], &first, &last);
     if (count < 1 || count > 2) return false;
-    Quad away = ((a[0] + a[1]) + (a[2] + a[3])) - ((b[0] + b[1]) + (b[2] + b[3])), side = last - first;
-    float square = quad_dot(side, side);
-    if (count == 2 && square > 0) away -= quad_dot(away, side) / square * side;
+    Float4 away = ((a[0] + a[1]) + (a[2] + a[3])) - ((b[0] + b[1]) + (b[2] + b[3])), side = last - first;
+    float square = float4_dot(side, side);
+    if (count == 2 && square > 0) away -= float4_dot(away, side) / square * side;
     *normal = away;
     return is_beyond(a, shared[0], first, away, margin) && is_beyond(b, shared[1], first, -away, margin);
 }
 
 static double clamp01(double a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
 
-Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t) {
-    Quad u = b - a, v = d - c, r = a - c;
+Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t) {
+    Float4 u = b - a, v = d - c, r = a - c;
     double uu = dot(u, u), vv = dot(v, v), vr = dot(v, r), ur = dot(u, r), uv = dot(u, v);
     double determinant = uu * vv - uv * uv;
     double along = determinant > 1e-13 * uu * vv ? clamp01((uv * vr - ur * vv) / determinant) : 0;
@@ -128,35 +128,35 @@ Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t) {
     return (a + *s * u) - (c + *t * v);
 }
 
-static Quad sweep_apart(const TouchSweep *sweep, float time, Quad x[4]) {
+static Float4 sweep_apart(const FeatureSweep *sweep, float time, Float4 x[4]) {
     float weight[3], s, t;
-    for (int i = 0; i < 4; i++) x[i] = sweep->place[i] + time * sweep->way[i];
-    return sweep->edges ? touch_from_segment(x[0], x[1], x[2], x[3], &s, &t)
-                        : touch_from_triangle(x[0], x[1], x[2], x[3], weight);
+    for (int i = 0; i < 4; i++) x[i] = sweep->position[i] + time * sweep->displacement[i];
+    return sweep->edges ? feature_from_segment(x[0], x[1], x[2], x[3], &s, &t)
+                        : feature_from_triangle(x[0], x[1], x[2], x[3], weight);
 }
 
-static float sweep_distance(const TouchSweep *sweep, float time) {
-    Quad x[4], apart = sweep_apart(sweep, time, x);
-    return sqrtf(quad_dot(apart, apart));
+static float sweep_distance(const FeatureSweep *sweep, float time) {
+    Float4 x[4], apart = sweep_apart(sweep, time, x);
+    return sqrtf(float4_dot(apart, apart));
 }
 
 /// The fastest that the two can come nearer in: their longest ways, without what is common to all.
-static float sweep_approach(const TouchSweep *sweep) {
-    Quad mean = 0.25f * ((sweep->way[0] + sweep->way[1]) + (sweep->way[2] + sweep->way[3]));
+static float sweep_approach(const FeatureSweep *sweep) {
+    Float4 mean = 0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
     float length[4];
-    for (int i = 0; i < 4; i++) length[i] = sqrtf(quad_dot(sweep->way[i] - mean, sweep->way[i] - mean));
+    for (int i = 0; i < 4; i++) length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
     float late = fmaxf(length[2], length[3]);
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
 
 /// How long from `time` on two planes across the shortest way between the two keep them `keep` apart, which move along
 /// with the nearest of their points.
-static float sweep_planes(const TouchSweep *sweep, float time, float keep) {
-    Quad x[4], normal = sweep_apart(sweep, time, x);
+static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
+    Float4 x[4], normal = sweep_apart(sweep, time, x);
     int own = sweep->edges ? 2 : 1;
     float longest = 2, height[4], speed[4];
-    normal = normal / sqrtf(quad_dot(normal, normal));
-    for (int i = 0; i < 4; i++) height[i] = quad_dot(x[i] - x[0], normal), speed[i] = quad_dot(sweep->way[i], normal);
+    normal = normal / sqrtf(float4_dot(normal, normal));
+    for (int i = 0; i < 4; i++) height[i] = float4_dot(x[i] - x[0], normal), speed[i] = float4_dot(sweep->displacement[i], normal);
     for (int i = 0; i < own; i++)
         for (int j = own; j < 4; j++) {
             float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];
@@ -166,7 +166,7 @@ static float sweep_planes(const TouchSweep *sweep, float time, float keep) {
     return longest;
 }
 
-float touch_sweep(const TouchSweep *sweep, float gap, float noise) {
+float feature_sweep(const FeatureSweep *sweep, float gap, float noise) {
     enum { ROUNDS = 64, SIMPLE_ROUNDS = 12 };
     float approach = sweep_approach(sweep), distance = sweep_distance(sweep, 0), time = 0;
     bool close = distance <= 2 * gap; // then it may only part

@@ -8,42 +8,42 @@
 
 /// From the triangle's nearest point to p; its weights of a, b, c. Regions of the triangle as in Ericson, Real-time
 /// collision detection (2005), 5.1.5. The fourth numbers must be 0.
-Quad touch_from_triangle(Quad p, Quad a, Quad b, Quad c, float weight[3]);
+Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]);
 
 /// From the nearest point of segment c-d to that of a-b, which are at c + t (d - c) and a + s (b - a) (Ericson 5.1.9).
-Quad touch_from_segment(Quad a, Quad b, Quad c, Quad d, float *s, float *t);
+Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t);
 
 /// Four points and their ways: a node and a triangle, or two edges.
-typedef struct TouchSweep {
-    Quad place[4], way[4];
+typedef struct FeatureSweep {
+    Float4 position[4], displacement[4];
     bool edges;
-} TouchSweep;
+} FeatureSweep;
 
 /// The share of its way, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is. What is
 /// as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li, Kaufman and
 /// Jiang, Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest
 /// approach; or, where that does not get on, than planes between the two allow.
-float touch_sweep(const TouchSweep *sweep, float gap, float noise);
+float feature_sweep(const FeatureSweep *sweep, float gap, float noise);
 
 /// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 2 more where, seen along
 /// it, a corner has no angle of 30 to 115 degrees; and 8 where there is no mean.
-Quad touch_normals(const Quad node[5]);
+Float4 feature_normals(const Float4 node[5]);
 
 /// Chords between unit normals: of what is not folded onto itself, about 70 degrees; 35 and 20 degrees.
-#define TOUCH_CONE 1.15f
-#define TOUCH_CONE_SIDE 0.6f
-#define TOUCH_CONE_CORNER 0.35f
+#define FEATURE_CONE 1.15f
+#define FEATURE_CONE_SIDE 0.6f
+#define FEATURE_CONE_CORNER 0.35f
 
 /// Whether all normals of two cells in shape lie within a cone.
-static inline bool touch_is_within(Quad a, Quad b, float cone) {
-    Quad off = a - b;
+static inline bool feature_is_within(Float4 a, Float4 b, float cone) {
+    Float4 off = a - b;
     float left = cone - a[3] - b[3];
-    return left > 0 && quad_dot(off, off) < left * left;
+    return left > 0 && float4_dot(off, off) < left * left;
 }
 
 /// Whether a plane through the corners that two cells share, bits of `shared`, has the other corners of a on one side,
 /// and those of b on the other, at least `margin` away from it; *normal points to a's. Then the cells share no more.
 /// The fourth numbers must be 0.
-bool touch_is_parted(const Quad a[4], const Quad b[4], const unsigned shared[2], float margin, Quad *normal);
+bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin, Float4 *normal);
 
 #endif

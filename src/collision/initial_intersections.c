@@ -10,18 +10,18 @@
 enum { GROUP_MAX = UINT8_MAX }; // groups beyond count as the last
 
 /// Whether two cells that do not hang together are as near as rounding can tell.
-static bool cells_coincide(const TouchPlan *plan, const Shell *shell, const TouchPair *pair) {
+static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
     if (pair->bridge != SHELL_NONE) return false;
-    const float(*x)[4] = (const float(*)[4])plan->place;
-    Quad origin = quad_load(x[shell->cells[pair->a][0]]);
-    TouchFar far = {4 * plan->noise, 0, 0, true};
-    TouchNear near[TOUCH_NEAR];
-    TouchCell a, b;
+    const float(*x)[4] = (const float(*)[4])plan->position;
+    Float4 origin = float4_load(x[shell->cells[pair->a][0]]);
+    FeatureRange far = {4 * plan->noise, 0, 0, true};
+    NearFeatures near[NARROW_MAX];
+    NarrowCell a, b;
     float nearest;
-    touch_cell_place(plan, shell, pair->a, x, origin, &a);
-    touch_cell_place(plan, shell, pair->b, x, origin, &b);
-    if (touch_cells_apart(&a, &b) > far.measured) return false;
-    touch_features(shell, pair, &a, &b, &far, near, &nearest);
+    narrow_cell_set(plan, shell, pair->a, x, origin, &a);
+    narrow_cell_set(plan, shell, pair->b, x, origin, &b);
+    if (narrow_slabs_distance(&a, &b) > far.measured) return false;
+    narrow_features(shell, pair, &a, &b, &far, near, &nearest);
     return nearest < far.measured;
 }
 
@@ -40,12 +40,12 @@ static void group_join(uint32_t *joined, uint32_t a, uint32_t b) {
 
 /// Numbers the groups in the order of their lowest cells, without gaps. After the first search they stay what they
 /// were, as what crosses moves from cell to cell; cells that have parted leave them.
-static void number_groups(TouchPlan *plan, uint32_t *joined, bool first) {
+static void number_groups(CollisionPlan *plan, uint32_t *joined, bool first) {
     uint8_t now[GROUP_MAX + 1] = {0}; // by the number that it had
     uint32_t groups = 0;
-    plan->counters.tangled = 0;
+    plan->counters.intersecting = 0;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        uint8_t *group = &plan->tangled[c];
+        uint8_t *group = &plan->intersecting[c];
         uint32_t root = joined[c] == SHELL_NONE ? SHELL_NONE : group_root(joined, c);
         bool opens = first ? root == c : !now[*group];
         if (root == SHELL_NONE) {
@@ -53,22 +53,22 @@ static void number_groups(TouchPlan *plan, uint32_t *joined, bool first) {
             continue;
         }
         if (opens && groups < GROUP_MAX) groups++;
-        if (first) *group = opens ? (uint8_t)groups : plan->tangled[root];
+        if (first) *group = opens ? (uint8_t)groups : plan->intersecting[root];
         else *group = now[*group] = opens ? (uint8_t)groups : now[*group];
-        if (plan->counters.tangled++ == 0) plan->counters.tangled_first = c;
+        if (plan->counters.intersecting++ == 0) plan->counters.intersecting_first = c;
     }
 }
 
-void touch_find_tangled(TouchPlan *plan, const Shell *shell, bool first) {
-    uint32_t *joined = plan->stray; // free until the guard: of a cell that crosses one of its group, no higher than it
-    if (!first && plan->counters.tangled == 0) return;
+void initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
+    uint32_t *joined = plan->outside; // free until the guard: of a cell that crosses one of its group, no higher than it
+    if (!first && plan->counters.intersecting == 0) return;
     memset(joined, 0xff, plan->cell_count * sizeof *joined);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
-        if (!first && !touch_is_tangled(plan, pair)) continue;
-        const TouchBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
+        const CollisionPair *pair = &plan->pairs[k];
+        if (!first && !initial_is_crossing(plan, pair)) continue;
+        const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
         if (!quads_meet(p->low, p->high, q->low, q->high)) continue;
-        if (cross_cells(shell, (const float(*)[4])plan->place, pair->a, pair->b) || cells_coincide(plan, shell, pair))
+        if (cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) || cells_coincide(plan, shell, pair))
             group_join(joined, pair->a, pair->b);
     }
     number_groups(plan, joined, first);

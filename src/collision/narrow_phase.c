@@ -5,39 +5,39 @@
 
 #include <math.h>
 
-static inline Quad clamp01(Quad a) { return quad_min(quad_max(a, quad_all(0)), quad_all(1)); }
+static inline Float4 clamp01(Float4 a) { return float4_min(float4_max(a, float4_all(0)), float4_all(1)); }
 
 /// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
 typedef struct FourNear {
     FourVectors apart;
-    Quad square, u, v;
-    QuadMask faces;
+    Float4 square, u, v;
+    Float4Mask faces;
 } FourNear;
 
 /// Point p and triangles a b c: u, v are the weights of b and c.
 static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, FourVectors c) {
     FourVectors ab = four_minus(b, a), ac = four_minus(c, a);
     FourVectors ap = four_minus(p, a), bp = four_minus(p, b), cp = four_minus(p, c);
-    Quad d1 = four_dot(ab, ap), d2 = four_dot(ac, ap), d3 = four_dot(ab, bp), d4 = four_dot(ac, bp);
-    Quad d5 = four_dot(ab, cp), d6 = four_dot(ac, cp), zero = {0}, one = quad_all(1);
-    Quad vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    Quad sum = va + vb + vc, e43 = d4 - d3, e56 = d5 - d6;
+    Float4 d1 = four_dot(ab, ap), d2 = four_dot(ac, ap), d3 = four_dot(ab, bp), d4 = four_dot(ac, bp);
+    Float4 d5 = four_dot(ab, cp), d6 = four_dot(ac, cp), zero = {0}, one = float4_all(1);
+    Float4 vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    Float4 sum = va + vb + vc, e43 = d4 - d3, e56 = d5 - d6;
     FourNear out;
     out.faces = (va > 0) & (vb > 0) & (vc > 0);
-    Quad u = vb / sum, v = vc / sum;
+    Float4 u = vb / sum, v = vc / sum;
     // regions later in this list come before the others
-    QuadMask on_bc = (va <= 0) & (e43 >= 0) & (e56 >= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0);
-    QuadMask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
-    Quad w = e43 / (e43 + e56);
-    u = quad_select(on_bc, one - w, u), v = quad_select(on_bc, w, v);
-    u = quad_select(on_ac, zero, u), v = quad_select(on_ac, d2 / (d2 - d6), v);
-    u = quad_select(on_ab, d1 / (d1 - d3), u), v = quad_select(on_ab, zero, v);
-    QuadMask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
-    u = quad_select(at_c, zero, u), v = quad_select(at_c, one, v);
-    u = quad_select(at_b, one, u), v = quad_select(at_b, zero, v);
+    Float4Mask on_bc = (va <= 0) & (e43 >= 0) & (e56 >= 0), on_ac = (vb <= 0) & (d2 >= 0) & (d6 <= 0);
+    Float4Mask on_ab = (vc <= 0) & (d1 >= 0) & (d3 <= 0);
+    Float4 w = e43 / (e43 + e56);
+    u = float4_select(on_bc, one - w, u), v = float4_select(on_bc, w, v);
+    u = float4_select(on_ac, zero, u), v = float4_select(on_ac, d2 / (d2 - d6), v);
+    u = float4_select(on_ab, d1 / (d1 - d3), u), v = float4_select(on_ab, zero, v);
+    Float4Mask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
+    u = float4_select(at_c, zero, u), v = float4_select(at_c, one, v);
+    u = float4_select(at_b, one, u), v = float4_select(at_b, zero, v);
     // a triangle without area has no weights in its middle: then its first corner stands for it
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
-    out.u = quad_select(at_a, zero, u), out.v = quad_select(at_a, zero, v);
+    out.u = float4_select(at_a, zero, u), out.v = float4_select(at_a, zero, v);
     out.apart = four_along(four_along(ap, -out.u, ab), -out.v, ac);
     out.square = four_dot(out.apart, out.apart);
     return out;
@@ -46,16 +46,16 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
 /// Segment a b and segments c d: u is along the one, v along the others.
 static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourVectors d) {
     FourVectors along = four_minus(b, a), others = four_minus(d, c), r = four_minus(a, c);
-    Quad uu = four_dot(along, along), vv = four_dot(others, others), uv = four_dot(along, others);
-    Quad ur = four_dot(along, r), vr = four_dot(others, r), zero = {0}, one = quad_all(1);
-    Quad determinant = uu * vv - uv * uv;
-    Quad s = clamp01((uv * vr - ur * vv) / determinant);
-    s = quad_select(determinant > 4e-7f * uu * vv, s, zero);
-    Quad t = quad_select(vv > 0, (uv * s + vr) / vv, zero);
-    QuadMask out_of_range = ~((t >= 0) & (t <= 1));
+    Float4 uu = four_dot(along, along), vv = four_dot(others, others), uv = four_dot(along, others);
+    Float4 ur = four_dot(along, r), vr = four_dot(others, r), zero = {0}, one = float4_all(1);
+    Float4 determinant = uu * vv - uv * uv;
+    Float4 s = clamp01((uv * vr - ur * vv) / determinant);
+    s = float4_select(determinant > 4e-7f * uu * vv, s, zero);
+    Float4 t = float4_select(vv > 0, (uv * s + vr) / vv, zero);
+    Float4Mask out_of_range = ~((t >= 0) & (t <= 1));
     t = clamp01(t);
-    Quad mended = quad_select(uu > 0, clamp01((t * uv - ur) / uu), zero);
-    s = quad_select(out_of_range, mended, s);
+    Float4 mended = float4_select(uu > 0, clamp01((t * uv - ur) / uu), zero);
+    s = float4_select(out_of_range, mended, s);
     FourNear out = {.u = s, .v = t};
     out.apart = four_along(four_along(r, s, along), -t, others);
     out.square = four_dot(out.apart, out.apart);
@@ -67,41 +67,41 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
 
 // ---- cells
 
-void touch_cell_place(const TouchPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Quad origin,
-                      TouchCell *out) {
-    touch_nodes(shell->cells[cell], x, origin, out->node);
+void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
+                      NarrowCell *out) {
+    collision_nodes(shell->cells[cell], x, origin, out->node);
     out->corner = four_of(out->node);
     out->turned = four_turned(out->corner);
     uint32_t owned = plan->owned[cell];
     out->owned = (owned & 15) | 16 | (owned >> 4) << 8 | 15u << 12;
 }
 
-static void cell_boxes(TouchCell *cell) {
-    touch_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
+static void cell_boxes(NarrowCell *cell) {
+    narrow_boxes(cell->corner, cell->corner, cell->node[4], cell->node[4], &cell->boxes);
 }
 
-float touch_boxes_apart(const TouchCell *a, const TouchCell *b) {
-    const Quad *p = a->node, *q = b->node; // the middles lie between
-    Quad low_a = quad_min(quad_min(p[0], p[1]), quad_min(p[2], p[3]));
-    Quad high_a = quad_max(quad_max(p[0], p[1]), quad_max(p[2], p[3]));
-    Quad low_b = quad_min(quad_min(q[0], q[1]), quad_min(q[2], q[3]));
-    Quad high_b = quad_max(quad_max(q[0], q[1]), quad_max(q[2], q[3]));
-    Quad gap = quad_max(quad_max(low_b - high_a, low_a - high_b), quad_all(0));
-    return sqrtf(quad_dot(gap, gap));
+float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b) {
+    const Float4 *p = a->node, *q = b->node; // the middles lie between
+    Float4 low_a = float4_min(float4_min(p[0], p[1]), float4_min(p[2], p[3]));
+    Float4 high_a = float4_max(float4_max(p[0], p[1]), float4_max(p[2], p[3]));
+    Float4 low_b = float4_min(float4_min(q[0], q[1]), float4_min(q[2], q[3]));
+    Float4 high_b = float4_max(float4_max(q[0], q[1]), float4_max(q[2], q[3]));
+    Float4 gap = float4_max(float4_max(low_b - high_a, low_a - high_b), float4_all(0));
+    return sqrtf(float4_dot(gap, gap));
 }
 
-/// As touch_cells_apart, for the planes through a's diagonals only.
-static float apart_along(const TouchCell *a, const TouchCell *b) {
-    Quad normal = quad_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
-    float square = quad_dot(normal, normal);
+/// As narrow_slabs_distance, for the planes through a's diagonals only.
+static float apart_along(const NarrowCell *a, const NarrowCell *b) {
+    Float4 normal = float4_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
+    float square = float4_dot(normal, normal);
     if (!(square > 0)) return -1;
     FourVectors n = four_all(normal);
-    Quad p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the middles lie between
-    float above = quad_least(p) - quad_most(q), below = quad_least(q) - quad_most(p);
+    Float4 p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the middles lie between
+    float above = float4_smallest(p) - float4_largest(q), below = float4_smallest(q) - float4_largest(p);
     return (above > below ? above : below) / sqrtf(square);
 }
 
-float touch_cells_apart(const TouchCell *a, const TouchCell *b) {
+float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b) {
     float one = apart_along(a, b), two = apart_along(b, a);
     return one > two ? one : two;
 }
@@ -109,11 +109,11 @@ float touch_cells_apart(const TouchCell *a, const TouchCell *b) {
 // Rounding by eps moves a triangle's nearest point along its longest side l by about l eps (l^2 / 2 area)^2: four
 // products of lengths over the square of the area. Edges side by side are taken for parallel below 6e-4 rad, and are
 // off by half of that.
-float touch_doubt(const TouchCell *cell) {
+float narrow_error_bound(const NarrowCell *cell) {
     const float eps = 6e-8f, parallel = 3e-4f;
     FourVectors arm = four_minus(cell->corner, four_all(cell->node[4]));
     FourVectors normal = four_cross(arm, four_turned(arm));
-    float square = 4 * quad_most(four_dot(arm, arm)), area = quad_least(four_dot(normal, normal));
+    float square = 4 * float4_largest(four_dot(arm, arm)), area = float4_smallest(four_dot(normal, normal));
     float slim = area > 0 ? square * square / area : INFINITY;
     return sqrtf(square) * (eps * slim + parallel);
 }
@@ -121,75 +121,75 @@ float touch_doubt(const TouchCell *cell) {
 // ---- all features
 
 typedef struct Search {
-    TouchNear *near;
+    NearFeatures *near;
     int count;
     float far;            ///< m, that is looked
-    Quad square;          ///< least so far of each of the four
-    Quad listed, beside;  ///< squares of what a TouchFar tells; beside is -1 for edges
+    Float4 square;          ///< least so far of each of the four
+    Float4 listed, beside;  ///< squares of what a FeatureRange tells; beside is -1 for edges
 } Search;
 
 /// Notes those of four that are near enough; `meet` are those that count.
 static void note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
-    const QuadMask bits = {1, 2, 4, 8};
-    QuadMask counts = (bits & (int32_t)meet) != 0;
-    search->square = quad_select(counts, quad_min(four->square, search->square), search->square);
-    meet &= quad_bits((four->square <= search->listed) &
-                      (four->faces | (four->square <= (kind == TOUCH_EDGES ? quad_all(-1) : search->beside))));
+    const Float4Mask bits = {1, 2, 4, 8};
+    Float4Mask counts = (bits & (int32_t)meet) != 0;
+    search->square = float4_select(counts, float4_min(four->square, search->square), search->square);
+    meet &= float4_bits((four->square <= search->listed) &
+                      (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->beside))));
     for (; meet; meet &= meet - 1) {
         int k = __builtin_ctz(meet);
-        search->near[search->count++] = (TouchNear){
-            .apart = sign * (Quad){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
+        search->near[search->count++] = (NearFeatures){
+            .apart = sign * (Float4){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
             .distance = sqrtf(four->square[k]), .u = four->u[k], .v = four->v[k], .kind = (uint8_t)kind,
             .first = (uint8_t)first, .second = (uint8_t)(second + k)};
     }
 }
 
 /// Nodes that p owns against triangles of q; bits of same[i] are the corners of q that are corner i of p.
-static void find_nodes(Search *search, const TouchCell *p, const TouchCell *q, const unsigned same[4], int kind) {
-    FourVectors middle = four_all(q->node[4]);
+static void find_nodes(Search *search, const NarrowCell *p, const NarrowCell *q, const unsigned same[4], int kind) {
+    FourVectors centroid = four_all(q->node[4]);
     for (int i = 0; i < 5; i++) {
         if (!(p->owned >> i & 1)) continue;
         unsigned meet = four_meet(&q->boxes.triangles, p->node[i] - search->far, p->node[i] + search->far);
-        if (i < 4) meet &= ~touch_around(same[i]);
+        if (i < 4) meet &= ~narrow_around(same[i]);
         if (!meet) continue;
-        FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, middle);
-        note(search, &four, meet, kind, i, 0, kind == TOUCH_NODE_OF_B ? -1 : 1);
+        FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, centroid);
+        note(search, &four, meet, kind, i, 0, kind == COLLISION_NODE_OF_B ? -1 : 1);
     }
 }
 
-static void find_edges(Search *search, const TouchCell *p, const TouchCell *q, const unsigned same[4]) {
-    FourVectors middle = four_all(q->node[4]);
+static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q, const unsigned same[4]) {
+    FourVectors centroid = four_all(q->node[4]);
     for (int i = 0; i < 8; i++) {
         if (!(p->owned >> (8 + i) & 1)) continue;
-        const uint8_t *k = touch_edge[i];
+        const uint8_t *k = collision_edge[i];
         unsigned corners = same[k[0]] | (k[1] < 4 ? same[k[1]] : 0);
-        Quad a = p->node[k[0]], b = p->node[k[1]];
-        Quad low = quad_min(a, b) - search->far, high = quad_max(a, b) + search->far;
-        unsigned sides = four_meet(&q->boxes.sides, low, high) & q->owned >> 8 & ~touch_around(corners);
+        Float4 a = p->node[k[0]], b = p->node[k[1]];
+        Float4 low = float4_min(a, b) - search->far, high = float4_max(a, b) + search->far;
+        unsigned sides = four_meet(&q->boxes.sides, low, high) & q->owned >> 8 & ~narrow_around(corners);
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
         if (sides) {
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
-            note(search, &four, sides, TOUCH_EDGES, i, 0, 1);
+            note(search, &four, sides, COLLISION_EDGES, i, 0, 1);
         }
         if (spokes) {
-            FourNear four = from_segments(four_all(a), four_all(b), q->corner, middle);
-            note(search, &four, spokes, TOUCH_EDGES, i, 4, 1);
+            FourNear four = from_segments(four_all(a), four_all(b), q->corner, centroid);
+            note(search, &four, spokes, COLLISION_EDGES, i, 4, 1);
         }
     }
 }
 
-int touch_features(const Shell *shell, const TouchPair *pair, TouchCell *a, TouchCell *b, const TouchFar *far,
-                   TouchNear *near, float *nearest) {
+int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b, const FeatureRange *far,
+                   NearFeatures *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
-    touch_same(p, q, of_b);
-    touch_same(q, p, of_a);
-    Search search = {.near = near, .far = far->measured, .square = quad_all(far->measured * far->measured),
-                     .listed = quad_all(far->listed * far->listed), .beside = quad_all(far->beside * far->beside)};
+    collision_same(p, q, of_b);
+    collision_same(q, p, of_a);
+    Search search = {.near = near, .far = far->measured, .square = float4_all(far->measured * far->measured),
+                     .listed = float4_all(far->listed * far->listed), .beside = float4_all(far->beside * far->beside)};
     cell_boxes(a), cell_boxes(b);
-    find_nodes(&search, a, b, of_b, TOUCH_NODE_OF_A);
-    find_nodes(&search, b, a, of_a, TOUCH_NODE_OF_B);
+    find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
+    find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);
     if (far->edges) find_edges(&search, a, b, of_b);
-    *nearest = sqrtf(quad_least(search.square));
+    *nearest = sqrtf(float4_smallest(search.square));
     return search.count;
 }

@@ -56,19 +56,19 @@ static bool attach_may_hold(const State *state, uint32_t v) {
 static uint32_t attach_farthest(const Shell *shell, const State *state, const Sheet *sheet, const uint32_t *source,
                                 int count) {
     uint32_t farthest = SHELL_NONE;
-    float most = 0;
+    float max = 0;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         if (!attach_may_hold(state, v)) continue;
         float nearest = INFINITY;
         for (int k = 0; k < count; k++) {
-            Vec way = vec_sub(vec_load(shell->rest_position[v]), vec_load(shell->rest_position[source[k]]));
-            nearest = fminf(nearest, vec_dot(way, way));
+            Float3 displacement = float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
+            nearest = fminf(nearest, float3_dot(displacement, displacement));
         }
-        if (nearest > most) farthest = v, most = nearest;
+        if (nearest > max) farthest = v, max = nearest;
     }
     if (count < 2 || farthest == SHELL_NONE) return farthest;
-    Vec first = vec_sub(vec_load(shell->rest_position[source[1]]), vec_load(shell->rest_position[source[0]]));
-    return most < 0.01f * vec_dot(first, first) ? SHELL_NONE : farthest;
+    Float3 first = float3_sub(float3_load(shell->rest_position[source[1]]), float3_load(shell->rest_position[source[0]]));
+    return max < 0.01f * float3_dot(first, first) ? SHELL_NONE : farthest;
 }
 
 /// Whether nothing in a sheet's mesh may stretch.
@@ -94,9 +94,9 @@ static void attach_accept(Attachments *attachments, const Sheet *sheet, const in
 /// A source that takes over holds nothing nearer than it is: what is too far comes by and by.
 static void attach_start(Attachments *attachments, const Sheet *sheet, const DynamicsState *dynamics, uint32_t source,
                          int k) {
-    Vec place = vec_load(dynamics->position[source]);
+    Float3 position = float3_load(dynamics->position[source]);
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        attachments->length[v][k] = vec_length(vec_sub(vec_load(dynamics->position[v]), place));
+        attachments->length[v][k] = float3_length(float3_sub(float3_load(dynamics->position[v]), position));
 }
 
 static void attach_measure(Attachments *attachments, const Shell *shell, const State *state, bool at_once) {
@@ -132,12 +132,12 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
         const uint32_t first = shell->sheets[s].vertex_first, *source = attachments->source[s];
         if (!attach_rests(shell, &attachments->spread[s])) continue;
         for (int k = 0; k < ATTACH_SOURCES && source[k] != SHELL_NONE; k++) {
-            Vec place = vec_load(dynamics->position[source[k]]);
+            Float3 position = float3_load(dynamics->position[source[k]]);
             for (uint32_t v = first; v < first + shell->sheets[s].vertex_count; v++) {
-                Vec way = vec_sub(vec_load(dynamics->position[v]), place);
+                Float3 displacement = float3_sub(float3_load(dynamics->position[v]), position);
                 float *length = &attachments->length[v][k];
                 if (dynamics->position[v][3] == 0) continue;
-                if (vec_dot(way, way) > *length * *length) *length = vec_length(way), attachments->settled = false;
+                if (float3_dot(displacement, displacement) > *length * *length) *length = float3_length(displacement), attachments->settled = false;
             }
         }
     }
@@ -212,18 +212,18 @@ static void attach_spread(const Attachments *attachments, const float (*position
                           AttachSpread *spread) {
     *spread = (AttachSpread){0};
     for (int p = 0; p < ATTACH_SOURCES && source[p] != SHELL_NONE; p++, spread->count++) {
-        vec_store(spread->place[p], vec_load(position[source[p]]));
+        float3_store(spread->position[p], float3_load(position[source[p]]));
         for (int q = 0; q < p; q++) {
-            float apart = vec_length(vec_sub(vec_load(spread->place[p]), vec_load(spread->place[q])));
+            float apart = float3_length(float3_sub(float3_load(spread->position[p]), float3_load(spread->position[q])));
             spread->apart[p][q] = apart;
             spread->ratio[p][q] = apart / attachments->length[source[p]][q];
-            spread->most = fmaxf(spread->most, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
+            spread->max = fmaxf(spread->max, isfinite(spread->ratio[p][q]) ? spread->ratio[p][q] : 0);
             spread->tight |= spread->ratio[p][q] > 1.001f; // what is held at its own distance is not pulled apart
         }
     }
 }
 
-void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
+void attach_position(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         AttachSpread *spread = &attachments->spread[s];
         attach_spread(attachments, (const float(*)[4])dynamics->position, attachments->source[s], spread);
@@ -258,7 +258,7 @@ static void attach_task(void *task, int begin, int end) {
 
 void attach_project(Attachments *attachments, const Shell *shell, AttachHold *hold, Pool *pool,
                     DynamicsState *dynamics) {
-    attach_place(attachments, shell, dynamics);
+    attach_position(attachments, shell, dynamics);
     Attach job = {attachments, shell, hold, dynamics};
     pool_for(pool, (int)shell->vertex_count, POOL_BLOCK, attach_task, &job);
 }

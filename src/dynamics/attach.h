@@ -13,9 +13,9 @@ enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
     int count;  ///< 0 also where a tight sheet may tear
-    float most; ///< of the ratios
+    float max; ///< of the ratios
     bool tight; ///< two are farther apart than the sheet reaches
-    float place[ATTACH_SOURCES][3]; ///< m
+    float position[ATTACH_SOURCES][3]; ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
     float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
 } AttachSpread;
@@ -51,14 +51,14 @@ void attach_update(Attachments *attachments, const Shell *shell, const State *st
 void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare);
 
 /// Notes where the sources are.
-void attach_place(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics);
+void attach_position(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics);
 
 /// Puts vertices among the particles [begin, end) that are too far from a source back on the sphere around it.
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end);
 
 /// The largest of the ratios, 1 at least.
-static inline float attach_stretched(const AttachSpread *spread) { return spread->most > 1 ? spread->most : 1; }
+static inline float attach_stretched(const AttachSpread *spread) { return spread->max > 1 ? spread->max : 1; }
 
 /// Whether sources hold nothing for now: what is held farther apart than it reaches may tear, where it can, and nothing
 /// but its springs pulls at it then.

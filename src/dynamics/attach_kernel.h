@@ -10,8 +10,8 @@ static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTAC
     for (int p = 0; p < spread->count; p++)
         for (int q = 0; q < p; q++) {
             Lanes enough = lanes_all(1.15f * spread->apart[p][q]) / (length[p] + length[q]);
-            Lanes most = lanes_all(spread->ratio[p][q]);
-            enough = lanes_where_less(most, enough, most, enough);
+            Lanes max = lanes_all(spread->ratio[p][q]);
+            enough = lanes_where_less(max, enough, max, enough);
             factor[p] = lanes_max(factor[p], enough);
             factor[q] = lanes_max(factor[q], enough);
         }
@@ -21,28 +21,28 @@ static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTAC
 void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *position, int count) {
     Lanes zero = lanes_all(0), one = lanes_all(1);
     for (int i = 0; i + LANES <= count; i += LANES) {
-        Quads place = quads_beside(position + 4 * i, LANES), lengths = quads_beside(length + 4 * i, LANES);
-        Node node = quads_node(&place), by_source = quads_node(&lengths);
-        Lanes most[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
+        Quads point = quads_beside(position + 4 * i, LANES), lengths = quads_beside(length + 4 * i, LANES);
+        Node node = quads_node(&point), by_source = quads_node(&lengths);
+        Lanes max[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
         bool moved = false;
-        if (spread->tight) attach_stretch(spread, most);
+        if (spread->tight) attach_stretch(spread, max);
         for (int k = 0; k < spread->count; k++) {
-            const float *anchor = spread->place[k];
+            const float *anchor = spread->position[k];
             Lanes dx = node.x - lanes_all(anchor[0]), dy = node.y - lanes_all(anchor[1]);
             Lanes dz = node.z - lanes_all(anchor[2]);
-            Lanes square = dx * dx + dy * dy + dz * dz, limit = most[k] * most[k];
+            Lanes square = dx * dx + dy * dy + dz * dz, limit = max[k] * max[k];
             if (!lanes_any_less(limit, square)) continue;
             // sqrt(q) - 1 for q = limit/square; for a hundredth too far, (q - 1)/(q + 1) is that to 1e-5
             Lanes pull = (limit - square) / (limit + square);
-            Lanes most_square = limit * lanes_all(1.02f);
-            if (lanes_any_less(most_square, square))
-                pull = lanes_where_less(most_square, square, lanes_sqrt(limit / square) - one, pull);
+            Lanes max_square = limit * lanes_all(1.02f);
+            if (lanes_any_less(max_square, square))
+                pull = lanes_where_less(max_square, square, lanes_sqrt(limit / square) - one, pull);
             pull = lanes_where_less(limit, square, pull, zero);
             pull = lanes_where_less(zero, node.w, pull, zero); // what is held itself stays
             node.x += dx * pull, node.y += dy * pull, node.z += dz * pull;
-            quads_pull(&place, anchor, pull);
+            quads_pull(&point, anchor, pull);
             moved = true;
         }
-        if (moved) quads_put_beside(position + 4 * i, LANES, &place);
+        if (moved) quads_put_beside(position + 4 * i, LANES, &point);
     }
 }

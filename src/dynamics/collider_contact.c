@@ -19,7 +19,7 @@ static const float CONTACT_SPEED = 20;
 enum { CONTACT_STEPS = 128 };
 
 /// As far outside of a surface as this, of the offset or in m, counts as there.
-static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_LEAST = 1e-6f;
+static const float CONTACT_SKIN = 1.0f / 16, CONTACT_SKIN_MIN = 1e-6f;
 
 /// How far any point of a box about the origin moves between two poses.
 static float contact_motion(const Pose *before, const Pose *after, float size) {
@@ -29,13 +29,13 @@ static float contact_motion(const Pose *before, const Pose *after, float size) {
         turn += a * a, back += b * b;
     }
     float angle = 2 * sqrtf(fminf(turn, back)) * 1.05f; // the chord of half the angle, in the space of quaternions
-    return vec_length(vec_sub(after->position, before->position)) + (angle > 1e-6f ? angle * size : 0);
+    return float3_length(float3_sub(after->position, before->position)) + (angle > 1e-6f ? angle * size : 0);
 }
 
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
     MovingCollider moving = {.collider = collider, .before = path_pose(&collider->path, before),
                              .after = path_pose(&collider->path, after)};
-    Vec low, high;
+    Float3 low, high;
     collider_bounds(collider, &low, &high);
     const float ends[3][2] = {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}};
     float size = 0;
@@ -48,7 +48,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     for (int i = 0; i < 3; i++) {
         float unit[3] = {0, 0, 0};
         unit[i] = 1;
-        moving.axis[i] = quat_rotate(moving.after.rotation, vec_load(unit));
+        moving.axis[i] = quat_rotate(moving.after.rotation, float3_load(unit));
         moving.low[i] = ends[i][0] - margin, moving.high[i] = ends[i][1] + margin;
     }
     return moving;
@@ -56,101 +56,101 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
 
 /// Where a way enters a collider, and the normal there.
 typedef struct Entry {
-    Vec place, normal;
+    Float3 position, normal;
     float distance;
 } Entry;
 
 /// Follows the way from `from`, outside, to `to`, in the collider's frame.
-static bool contact_enters(const Collider *collider, Vec from, Vec to, Entry *entry) {
-    float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_LEAST);
-    Vec way = vec_sub(to, from);
-    float length = vec_length(way), least = fmaxf(length / CONTACT_STEPS, skin), done = 0;
+static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Entry *entry) {
+    float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_MIN);
+    Float3 displacement = float3_sub(to, from);
+    float length = float3_length(displacement), min = fmaxf(length / CONTACT_STEPS, skin), done = 0;
     while (done < length) {
-        Entry next = {.place = vec_mad(from, way, done / length)};
-        next.distance = collider_distance(collider, next.place, length - done, &next.normal);
+        Entry next = {.position = float3_mad(from, displacement, done / length)};
+        next.distance = collider_distance(collider, next.position, length - done, &next.normal);
         if (next.distance >= length - done) return false; // the rest of the way is free
-        bool began = done > 0, turned = began && entry->distance < least && vec_dot(entry->normal, next.normal) < -0.5f;
+        bool began = done > 0, turned = began && entry->distance < min && float3_dot(entry->normal, next.normal) < -0.5f;
         if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
         *entry = next;
-        if (next.distance <= skin && vec_dot(way, next.normal) < 0) return true;
-        done += fmaxf(next.distance, least);
+        if (next.distance <= skin && float3_dot(displacement, next.normal) < 0) return true;
+        done += fmaxf(next.distance, min);
     }
     return false;
 }
 
 /// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is along which way.
-static float contact_out(const Collider *collider, float offset, Vec from, Vec *to, Vec *normal) {
-    float way = vec_length(vec_sub(*to, from));
-    float distance = collider_distance(collider, *to, offset + way, normal);
+static float contact_out(const Collider *collider, float offset, Float3 from, Float3 *to, Float3 *normal) {
+    float displacement = float3_length(float3_sub(*to, from));
+    float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
     // behind a plane, however far, the way out is up
-    if (distance < way && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
-        (distance >= offset || vec_dot(entry.normal, *normal) < 0.5f)) {
-        float depth = offset - entry.distance - vec_dot(vec_sub(*to, entry.place), entry.normal);
-        *to = vec_mad(*to, entry.normal, depth);
-        Vec there;
+    if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
+        (distance >= offset || float3_dot(entry.normal, *normal) < 0.5f)) {
+        float depth = offset - entry.distance - float3_dot(float3_sub(*to, entry.position), entry.normal);
+        *to = float3_mad(*to, entry.normal, depth);
+        Float3 there;
         float rest = offset - collider_distance(collider, *to, offset, &there);
-        if (rest > 0) *to = vec_mad(*to, there, rest);
+        if (rest > 0) *to = float3_mad(*to, there, rest);
         *normal = entry.normal;
         return depth;
     }
     if (distance >= offset) return 0;
-    *to = vec_mad(*to, *normal, offset - distance);
+    *to = float3_mad(*to, *normal, offset - distance);
     return offset - distance;
 }
 
-bool contact_particle(const MovingCollider *moving, float offset, Vec previous, float *position) {
+bool contact_particle(const MovingCollider *moving, float offset, Float3 previous, float *position) {
     const Collider *collider = moving->collider;
-    Vec local = pose_unapply(&moving->after, vec_load(position)), out = local, normal;
+    Float3 local = pose_unapply(&moving->after, float3_load(position)), out = local, normal;
     float depth = contact_out(collider, offset, pose_unapply(&moving->before, previous), &out, &normal);
     if (depth <= 0) return false;
     normal = quat_rotate(moving->after.rotation, normal);
-    Vec x = vec_add(vec_load(position), quat_rotate(moving->after.rotation, vec_sub(out, local)));
+    Float3 x = float3_add(float3_load(position), quat_rotate(moving->after.rotation, float3_sub(out, local)));
     // slip: the particle's way less the collider's way at this place
-    Vec way = vec_sub(x, previous);
-    Vec carried = vec_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
-    Vec slip = vec_sub(way, carried);
-    slip = vec_mad(slip, normal, -vec_dot(slip, normal));
-    float length = vec_length(slip), most = collider->def.friction * depth;
-    x = vec_mad(x, slip, length <= most ? -1 : -most / length);
-    vec_store(position, x);
+    Float3 displacement = float3_sub(x, previous);
+    Float3 carried = float3_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
+    Float3 slip = float3_sub(displacement, carried);
+    slip = float3_mad(slip, normal, -float3_dot(slip, normal));
+    float length = float3_length(slip), max = collider->def.friction * depth;
+    x = float3_mad(x, slip, length <= max ? -1 : -max / length);
+    float3_store(position, x);
     return true;
 }
 
 /// Which of four particles may be nearer to a collider than it reaches.
-static inline bool contact_any_near(const MovingCollider *collider, const Quad x[4]) {
-    Vec origin = collider->after.position;
-    Quad dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
-    QuadMask near = {-1, -1, -1, -1};
+static inline bool contact_any_near(const MovingCollider *collider, const Float4 x[4]) {
+    Float3 origin = collider->after.position;
+    Float4 dx = x[0] - origin.x, dy = x[1] - origin.y, dz = x[2] - origin.z;
+    Float4Mask near = {-1, -1, -1, -1};
     for (int i = 2; i >= 0; i--) {
-        Vec axis = collider->axis[i];
-        Quad along = dx * axis.x + dy * axis.y + dz * axis.z;
+        Float3 axis = collider->axis[i];
+        Float4 along = dx * axis.x + dy * axis.y + dz * axis.z;
         near &= (along < collider->high[i]) & (along > collider->low[i]);
         if (!(near[0] | near[1] | near[2] | near[3])) return false;
     }
     return true;
 }
 
-uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end) {
     uint64_t contacts = 0;
     float(*position)[4] = dynamics->position;
     for (int first = begin; first < end && collider_count > 0; first += 4) {
         int count = end - first < 4 ? end - first : 4;
-        Quad x[4];
-        for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
-        quad_transpose(x);
+        Float4 x[4];
+        for (int i = 0; i < 4; i++) x[i] = float4_load(position[first + (i < count ? i : 0)]);
+        float4_transpose(x);
         for (uint32_t c = 0; c < collider_count; c++) {
             const MovingCollider *collider = &plan->colliders[c];
             if (!contact_any_near(collider, x)) continue;
             float offset = collider->collider->def.offset;
             for (int i = first; i < first + count; i++) {
                 if (position[i][3] == 0) continue;
-                Vec previous = vec_mad(vec_load(plan->predicted[i]), vec_load(dynamics->velocity[i]), -h);
+                Float3 previous = float3_mad(float3_load(plan->predicted[i]), float3_load(dynamics->velocity[i]), -h);
                 contacts += contact_particle(collider, offset, previous, position[i]);
             }
-            for (int i = 0; i < 4; i++) x[i] = quad_load(position[first + (i < count ? i : 0)]);
-            quad_transpose(x);
+            for (int i = 0; i < 4; i++) x[i] = float4_load(position[first + (i < count ? i : 0)]);
+            float4_transpose(x);
         }
     }
     return contacts;
@@ -165,7 +165,7 @@ typedef struct Contact {
 
 static double contact_block(void *task, int begin, int end) {
     const Contact *job = task;
-    return (double)contact_touch(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
+    return (double)contact_range(job->plan, job->collider_count, job->h, job->dynamics, begin, end);
 }
 
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics) {

@@ -91,22 +91,22 @@ static uint8_t hinge_side(const Shell *shell, uint32_t cell, uint32_t other) {
     return side;
 }
 
-static Vec hinge_normal(const float (*x)[4], const uint32_t *corner) {
-    return vec_unit(vec_cross(vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]])),
-                              vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]))));
+static Float3 hinge_normal(const float (*x)[4], const uint32_t *corner) {
+    return float3_unit(float3_cross(float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]])),
+                              float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
 }
 
-static Vec hinge_middle(const float (*x)[4], const uint32_t *corner) {
-    Vec sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = vec_mad(sum, vec_load(x[corner[i]]), 0.25f);
+static Float3 hinge_centroid(const float (*x)[4], const uint32_t *corner) {
+    Float3 sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = float3_mad(sum, float3_load(x[corner[i]]), 0.25f);
     return sum;
 }
 
 /// theta between unit normals; NAN where one of them is none.
-static inline float hinge_angle(Vec a, Vec b, Vec edge) {
-    float along = vec_dot(a, b), length = vec_length(edge);
-    if (!(length > 0 && vec_dot(a, a) > 0.5f && vec_dot(b, b) > 0.5f)) return NAN;
-    float across = vec_dot(vec_cross(a, b), edge) / length;
+static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
+    float along = float3_dot(a, b), length = float3_length(edge);
+    if (!(length > 0 && float3_dot(a, a) > 0.5f && float3_dot(b, b) > 0.5f)) return NAN;
+    float across = float3_dot(float3_cross(a, b), edge) / length;
     if (along < 0.9f) return atan2f(across, along);
     float square = across * across; // asin, to 1e-4 of itself
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
@@ -119,11 +119,11 @@ static float hinge_limit(const Shell *shell, uint32_t from, uint32_t to, float b
 }
 
 /// tau: of the turn from one unit normal to the other, the part about the direction across the edge.
-static float hinge_twist(Vec a, Vec b, Vec edge) {
-    const Vec turn = vec_cross(a, b), across = vec_cross(vec_add(a, b), edge);
-    const float sine = vec_length(turn), length = vec_length(across);
+static float hinge_twist(Float3 a, Float3 b, Float3 edge) {
+    const Float3 turn = float3_cross(a, b), across = float3_cross(float3_add(a, b), edge);
+    const float sine = float3_length(turn), length = float3_length(across);
     if (!(sine > 0 && length > 0)) return 0;
-    return atan2f(sine, vec_dot(a, b)) / sine * vec_dot(turn, across) / length;
+    return atan2f(sine, float3_dot(a, b)) / sine * float3_dot(turn, across) / length;
 }
 
 static Hinge hinge_measure(const Shell *shell, uint32_t green) {
@@ -133,19 +133,19 @@ static Hinge hinge_measure(const Shell *shell, uint32_t green) {
     Hinge hinge = {.side = {hinge_side(shell, cell[0], cell[1]), hinge_side(shell, cell[1], cell[0])}};
     const uint32_t *corner = shell->cells[cell[0]], *other = shell->cells[cell[1]];
     const uint32_t first = corner[hinge.side[0]], second = corner[(hinge.side[0] + 1) & 3];
-    Vec from = vec_load(x[first]), to = vec_load(x[second]);
-    Vec edge = vec_sub(to, from), middle = vec_scale(vec_add(from, to), 0.5f);
-    hinge.arc = vec_length(vec_sub(hinge_middle(x, corner), middle)) +
-                vec_length(vec_sub(hinge_middle(x, other), middle));
+    Float3 from = float3_load(x[first]), to = float3_load(x[second]);
+    Float3 edge = float3_sub(to, from), centroid = float3_scale(float3_add(from, to), 0.5f);
+    hinge.arc = float3_length(float3_sub(hinge_centroid(x, corner), centroid)) +
+                float3_length(float3_sub(hinge_centroid(x, other), centroid));
     float thickness = 0.5f * (field_at(shell->matter.thickness, ends[0]) + field_at(shell->matter.thickness, ends[1]));
-    const Vec normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
+    const Float3 normal = hinge_normal(x, corner), beyond = hinge_normal(x, other);
     float angle = hinge_angle(normal, beyond, edge);
     hinge.angle = isnan(angle) ? 0 : angle;
     hinge.twist = hinge_twist(normal, beyond, edge);
-    hinge.most = atan2f(2 * thickness, hinge.arc);
-    hinge.limit = hinge_limit(shell, first, second, hinge.most / hinge.arc);
+    hinge.max = atan2f(2 * thickness, hinge.arc);
+    hinge.limit = hinge_limit(shell, first, second, hinge.max / hinge.arc);
     // of what is folded into a point at rest no length is made
-    hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.most, 1.5f));
+    hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f));
     return hinge;
 }
 
@@ -157,14 +157,14 @@ void creases_measure(const Shell *shell, Hinge *hinges) {
 
 /// phi + angle/2, as far as the mesh holds a crease.
 static float crease_lean(const Hinge *hinge, float angle) {
-    float away = -(1 - CREASE_HOLDS) * hinge->most, towards = -CREASE_HOLDS * CREASE_PI / 2;
+    float away = -(1 - CREASE_HOLDS) * hinge->max, towards = -CREASE_HOLDS * CREASE_PI / 2;
     float lean = hinge->lean + 0.5f * angle;
     if (angle > 0) return fminf(lean, fmaxf(away, hinge->lean));
     return fmaxf(lean, fminf(towards, hinge->lean));
 }
 
 float crease_ratio(const Hinge *hinge, float stays, float now) {
-    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->most);
+    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->max);
     float moment = flat * flat * (lean - kept) / fminf(sinf(lean), -CREASE_LEVER * flat);
     return fmaxf(cosf(lean) + moment, 0.05f) / cosf(hinge->lean);
 }
@@ -201,17 +201,17 @@ static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, co
     return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
 }
 
-static Vec crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
+static Float3 crease_edge(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const uint32_t *corner = job->shell->cells[ends[0] - job->shell->vertex_count];
-    return vec_sub(vec_load(x[corner[(hinge->side[0] + 1) & 3]]), vec_load(x[corner[hinge->side[0]]]));
+    return float3_sub(float3_load(x[corner[(hinge->side[0] + 1) & 3]]), float3_load(x[corner[hinge->side[0]]]));
 }
 
 /// The angle of a fold now. Flat on itself it is the same to both sides: then it is on the side where it came from.
 static float crease_angle(const Crease *job, const uint32_t *ends, const Hinge *hinge, float last) {
     uint32_t first = ends[0] - job->shell->vertex_count, second = ends[1] - job->shell->vertex_count;
     const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
-    float angle = hinge_angle(vec_load(normal[first]), vec_load(normal[second]), crease_edge(job, ends, hinge));
+    float angle = hinge_angle(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
     if (angle - last > CREASE_PI) return CREASE_PI * -1 - hinge->angle;
     if (angle - last < -CREASE_PI) return CREASE_PI - hinge->angle;
     return angle - hinge->angle;
@@ -234,7 +234,7 @@ static float crease_slant(const Crease *job, uint32_t k) {
     const float(*normal)[4] = (const float(*)[4])job->plan->cell_normal;
     const float lasting = job->dynamics->bend[k] * hinge->arc, now = crease_turned(job, k, lasting);
     float bend = fmaxf(fabsf(lasting), fabsf(now)); // also where now is NAN
-    float twist = hinge_twist(vec_load(normal[first]), vec_load(normal[second]), crease_edge(job, ends, hinge));
+    float twist = hinge_twist(float3_load(normal[first]), float3_load(normal[second]), crease_edge(job, ends, hinge));
     twist -= hinge->twist;
     float slant = bend * bend / fmaxf(bend * bend + twist * twist, 1e-20f);
     return fmaxf(slant, CREASE_SLANT);
@@ -242,7 +242,7 @@ static float crease_slant(const Crease *job, uint32_t k) {
 
 /// How much |k_p| grows at a bend k - k_6, with the sign of the bend that makes it; 0 where it does not yield.
 static float crease_yield(const Hinge *hinge, float bend, float held, float radius, float share, float slant) {
-    float most = slant * hinge->limit, elastic = fmaxf(-most, fminf(bend, most)) - held;
+    float max = slant * hinge->limit, elastic = fmaxf(-max, fminf(bend, max)) - held;
     float excess = fabsf(elastic) - slant / radius - (1 / share - 1) * fabsf(held);
     return excess > 0 ? copysignf(share * excess, elastic) : 0;
 }
@@ -264,8 +264,8 @@ static float crease_counts(const Crease *job, uint32_t k) {
         sum += 0.5f * bend[k - 1], weight += 0.5f;
     if (k + 1 < green->count && flags[k + 1] & SINGE_ALIVE && green->ends[k + 1][0] == green->ends[k][1])
         sum += 0.5f * bend[k + 1], weight += 0.5f;
-    const float most = CREASE_PEAK * fabsf(sum) / weight;
-    return sum * bend[k] > 0 ? fmaxf(-most, fminf(bend[k], most)) : 0;
+    const float max = CREASE_PEAK * fabsf(sum) / weight;
+    return sum * bend[k] > 0 ? fmaxf(-max, fminf(bend[k], max)) : 0;
 }
 
 /// Returns whether there is a crease.
@@ -303,7 +303,7 @@ static double crease_springs(void *task, int begin, int end) {
 static void crease_normals(void *task, int begin, int end) {
     const Crease *job = task;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
-    for (int c = begin; c < end; c++) vec_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
+    for (int c = begin; c < end; c++) float3_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
 }
 
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,

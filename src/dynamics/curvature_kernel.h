@@ -7,14 +7,14 @@ typedef struct Bend {
 } Bend;
 
 /// Straightens what is bent too sharply by its share of the way; false where no lane is.
-static inline bool bend_straighten(Bend *bend, Lanes most) {
+static inline bool bend_straighten(Bend *bend, Lanes max) {
     Node a = quads_node(&bend->a), b = quads_node(&bend->b), c = quads_node(&bend->c);
     Lanes two = lanes_all(2), x = a.x - two * b.x + c.x, y = a.y - two * b.y + c.y, z = a.z - two * b.z + c.z;
-    Lanes square = x * x + y * y + z * z, limit = most * most, zero = lanes_all(0);
+    Lanes square = x * x + y * y + z * z, limit = max * max, zero = lanes_all(0);
     if (__builtin_expect(!lanes_any_less(limit, square), 1)) return false;
 
     Lanes weight = lanes_max(a.w + lanes_all(4) * b.w + c.w, lanes_all(1e-20f));
-    Lanes factor = (lanes_all(1) - most / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
+    Lanes factor = (lanes_all(1) - max / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
     factor = lanes_where_less(limit, square, factor, zero);
     // r = (c - b) - (b - a): a and c move by -w r factor, b by 2 w r factor
     Quads after = quads_push(&bend->b, &bend->c, factor), before = quads_push(&bend->a, &bend->b, factor);

@@ -44,7 +44,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->settings = *settings;
     SingeSolverDef *solver = &plan->settings.solver;
     if (solver->substeps == 0)
-        solver->substeps = firmness_substeps(shell, settings->time_step, solver->regularisation[SINGE_RED]);
+        solver->substeps = stiffness_substeps(shell, settings->time_step, solver->regularisation[SINGE_RED]);
     float h_sub = settings->time_step / (float)solver->substeps;
     plan->particle_count = shell->particle_count;
     plan->cell_count = shell->cell_count;
@@ -55,7 +55,7 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
         !curvature_create(memory, shell, &plan->strands) || !patches_create(memory, shell, &plan->patches) || !attach_create(memory, shell, &plan->attachments) ||
         (settings->contact.enabled &&
-         touch_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->touch)) ||
+         collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision)) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {
         dynamics_plan_free(memory, shell, plan);
         return SINGE_ERROR_MEMORY;
@@ -69,7 +69,7 @@ int dynamics_plan_substeps(const DynamicsPlan *plan) { return plan->settings.sol
 void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) {
     if (!plan) return;
     paper_free(memory, plan->paper);
-    touch_plan_free(memory, plan->touch);
+    collision_plan_free(memory, plan->collision);
     FREE(memory, plan->inverse_mass, plan->particle_count);
     FREE(memory, plan->drag, plan->particle_count);
     FREE(memory, plan->normal, plan->particle_count);
@@ -100,21 +100,21 @@ float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet) {
 void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare) {
     (void)shell, (void)state;
     attach_split(&plan->attachments, vertex, spare);
-    if (plan->touch) touch_plan_forget(plan->touch); // cells that shared a corner may touch from now on
+    if (plan->collision) collision_plan_forget(plan->collision); // cells that shared a corner may touch from now on
 }
 
 SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
-    return plan->touch ? touch_plan_stream(plan->touch, shell, state->ablate.cell_flags, stream) : SINGE_OK;
+    return plan->collision ? collision_plan_stream(plan->collision, shell, state->ablate.cell_flags, stream) : SINGE_OK;
 }
 
-TouchCounters dynamics_plan_touches(const DynamicsPlan *plan) {
-    return plan->touch ? touch_counters(plan->touch) : (TouchCounters){0};
+CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan) {
+    return plan->collision ? collision_counters(plan->collision) : (CollisionCounters){0};
 }
 
-void dynamics_plan_room(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room) {
+void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room) {
     for (uint32_t v = 0; v < shell->vertex_count; v++) room[v] = INFINITY;
-    if (plan->touch) touch_room(plan->touch, shell, state, room);
+    if (plan->collision) collision_clearance(plan->collision, shell, state, room);
 }
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {
@@ -126,7 +126,7 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
 }
 
 /// The colliders in use, with their poses at the ends of a substep.
-static uint32_t dynamics_place_colliders(DynamicsPlan *plan, const ColliderList *list, double before, double after) {
+static uint32_t dynamics_position_colliders(DynamicsPlan *plan, const ColliderList *list, double before, double after) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < list->count; i++) {
         const Collider *collider = &list->items[i];
@@ -177,15 +177,15 @@ static SingeResult dynamics_close(DynamicsPlan *plan, const Shell *shell, const 
     enum { TURNS = 8 };
     for (int turn = 0; turn < TURNS; turn++) {
         bool limited = dynamics_limit(plan, shell, state, pool, dynamics);
-        if (!plan->touch || (turn > 0 && !limited)) break;
-        uint64_t stops = touch_counters(plan->touch).stops;
-        TRY(touch_guard(plan->touch, shell, state, pool, h, dynamics));
-        if (touch_counters(plan->touch).stops == stops) break;
+        if (!plan->collision || (turn > 0 && !limited)) break;
+        uint64_t stops = collision_counters(plan->collision).stops;
+        TRY(ccd_apply(plan->collision, shell, state, pool, h, dynamics));
+        if (collision_counters(plan->collision).stops == stops) break;
     }
     return SINGE_OK;
 }
 
-static SingeResult dynamics_touched(SingeResult result, SingeError *error) {
+static SingeResult dynamics_contact_result(SingeResult result, SingeError *error) {
     return result ? error_set(error, result, "contact", -1, "out of memory for what is near each other") : SINGE_OK;
 }
 
@@ -196,7 +196,7 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     float h_sub = h / (float)solver->substeps;
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
-    if (plan->touch) TRY(dynamics_touched(touch_open(plan->touch, shell, state, pool, dynamics), error));
+    if (plan->collision) TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
     Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
@@ -204,10 +204,10 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         between.opens = substep < solver->substeps;
         between.attaches = between.opens && solver->attachments && !plan->paper;
         // held particles are where the substep ahead ends before the others set out
-        if (between.opens) dynamics_place_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        if (between.opens) dynamics_position_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
         if (!between.opens) break;
-        uint32_t collider_count = dynamics_place_colliders(plan, colliders, before, after);
+        uint32_t collider_count = dynamics_position_colliders(plan, colliders, before, after);
         before = after;
         if (plan->paper) {
             TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));
@@ -216,14 +216,14 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         for (int projection = 0; projection < solver->projections; projection++)
             dynamics_project(plan, shell, pool, h_sub, projection == 0, dynamics, counters);
         height_project(plan, shell, &state->ablate, pool, dynamics);
-        if (plan->touch) touch_push(plan->touch, (const float(*)[4])plan->predicted, h_sub, dynamics);
-        contact_middles(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics);
+        if (plan->collision) repulsion_apply(plan->collision, (const float(*)[4])plan->predicted, h_sub, dynamics);
+        contact_centroids(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics);
         between.closes = true;
         between.collider_count = collider_count;
     }
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    TRY(dynamics_touched(dynamics_close(plan, shell, state, pool, h, dynamics), error));
+    TRY(dynamics_contact_result(dynamics_close(plan, shell, state, pool, h, dynamics), error));
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;

@@ -53,10 +53,10 @@ void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *sta
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 
 /// What contact of sheets has done so far; zero without.
-TouchCounters dynamics_plan_touches(const DynamicsPlan *plan);
+CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan);
 
 /// How far another part of a sheet is from the cells at each vertex ([vertices], m), where that is near, else INFINITY.
-void dynamics_plan_room(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room);
+void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room);
 
 typedef struct DynamicsCounters {
     uint64_t strands, contacts, springs, iterations;

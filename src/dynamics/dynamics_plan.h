@@ -13,7 +13,7 @@
 typedef struct MovingCollider {
     const Collider *collider;
     Pose before, after;
-    Vec axis[3];           ///< of the box, which has `after.position` for its origin
+    Float3 axis[3];           ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
 } MovingCollider;
 
@@ -66,7 +66,7 @@ typedef struct Hinge {
     float arc;       ///< m, s, from middle to middle along the sheet
     float angle;     ///< rad, theta_0
     float twist;     ///< rad, tau_0
-    float most;      ///< rad, beta
+    float max;      ///< rad, beta
     float lean;      ///< rad, phi
     float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY where there is none
 } Hinge;
@@ -86,7 +86,7 @@ struct DynamicsPlan {
     Patches patches;
     bool strands_written; ///< their weights and targets, in a step that was done
     Attachments attachments;
-    TouchPlan *touch;        ///< NULL where sheets pass through each other
+    CollisionPlan *collision;        ///< NULL where sheets pass through each other
     Hinge *hinges;        ///< [green springs], or NULL where no bend stays
     bool creased;         ///< there are creases after the step before
     uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
@@ -114,7 +114,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                        DynamicsState *dynamics);
 
 /// Puts pinned particles on their paths (move.c).
-void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+void dynamics_position_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                          DynamicsState *dynamics);
 
 /// One projection of one colour, family after family (strand_project.c).
@@ -183,15 +183,15 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
 
 /// Contact and friction of particles [begin, end) with the colliders in plan->colliders (collider_contact.c). Returns the number
 /// of contacts.
-uint64_t contact_touch(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
+uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end);
 
 /// Contact and friction of one place that was at `previous` when the substep began, at that offset from the surface;
 /// false where it touches nothing.
-bool contact_particle(const MovingCollider *collider, float offset, Vec previous, float *place);
+bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 
 /// Contact of what lies between a cell's corners (cell_centroids.c).
-void contact_middles(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
+void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                      Pool *pool, float h, DynamicsState *dynamics);
 
 /// The same for all particles.

@@ -20,22 +20,22 @@ enum { GEODESIC_FAR = UINT32_MAX, GEODESIC_DONE = UINT32_MAX - 1 };
 
 bool geodesic_create(Memory *memory, uint32_t vertex_count, Geodesic *search) {
     *search = (Geodesic){0};
-    return NEW(memory, search->heap, vertex_count) && NEW(memory, search->place, vertex_count);
+    return NEW(memory, search->heap, vertex_count) && NEW(memory, search->position, vertex_count);
 }
 
 void geodesic_free(Memory *memory, uint32_t vertex_count, Geodesic *search) {
     FREE(memory, search->heap, vertex_count);
-    FREE(memory, search->place, vertex_count);
+    FREE(memory, search->position, vertex_count);
 }
 
 static void heap_put(Geodesic *search, uint32_t at, uint32_t vertex) {
     search->heap[at] = vertex;
-    search->place[vertex] = at;
+    search->position[vertex] = at;
 }
 
 /// Moves a vertex up to its place, after its distance has become smaller.
 static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) {
-    uint32_t at = search->place[vertex];
+    uint32_t at = search->position[vertex];
     for (; at > 0; at = (at - 1) / 2) {
         uint32_t above = search->heap[(at - 1) / 2];
         if (distance[above] <= distance[vertex]) break;
@@ -46,7 +46,7 @@ static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) 
 
 static uint32_t heap_pop(Geodesic *search, const float *distance) {
     uint32_t nearest = search->heap[0], last = search->heap[--search->waiting], at = 0;
-    search->place[nearest] = GEODESIC_DONE;
+    search->position[nearest] = GEODESIC_DONE;
     if (search->waiting == 0) return nearest;
     for (;;) {
         uint32_t below = 2 * at + 1;
@@ -80,7 +80,7 @@ static float cell_length(const Shell *shell, const State *state, uint32_t cell, 
                                       : state->burn.spring_length[SINGE_BLUE][springs->blue[side]];
     uint32_t a = shell->cells[cell][i], b = shell->cells[cell][j];
     if (!dynamics->pinned[a] || !dynamics->pinned[b]) return length;
-    return fmaxf(length, vec_length(vec_sub(vec_load(dynamics->position[a]), vec_load(dynamics->position[b]))));
+    return fmaxf(length, float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.
@@ -91,24 +91,24 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
     for (int turn = 1; turn < 4; turn++) {
         int j = (i + turn) & 3;
         uint32_t u = corner[j];
-        if (search->place[u] == GEODESIC_DONE) continue;
+        if (search->position[u] == GEODESIC_DONE) continue;
         float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
         for (int other = 1; other < 4; other++) {
             int k = (i + other) & 3;
-            if (k == j || search->place[corner[k]] != GEODESIC_DONE) continue;
+            if (k == j || search->position[corner[k]] != GEODESIC_DONE) continue;
             d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, state, cell, i, k), vu,
                                           cell_length(shell, state, cell, k, j)));
         }
         if (d >= distance[u]) continue;
         distance[u] = d;
-        if (search->place[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
+        if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);
         heap_rise(search, distance, u);
     }
 }
 
 void geodesic_from(Geodesic *search, const Shell *shell, const State *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance) {
-    for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->place[v] = GEODESIC_FAR;
+    for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->position[v] = GEODESIC_FAR;
     distance[source] = 0;
     search->waiting = 1;
     heap_put(search, 0, source);

@@ -19,7 +19,7 @@ enum { HEIGHT_WAIT = 5, HEIGHT_BLOCK = 64 };
 
 /// The most that is mended at once, of the square root of |n|, which is 1.4 cells: shells thicker than their cells
 /// would else be thrown about.
-static const float HEIGHT_MOST = 0.05f;
+static const float HEIGHT_MAX = 0.05f;
 
 typedef struct Height {
     DynamicsPlan *plan;
@@ -37,17 +37,17 @@ static bool height_is_enough(float above, float square, float enough) {
 }
 
 /// Projects a centre that is too low.
-static void height_mend(const Height *job, uint32_t c, Quad normal, float square, float missing) {
+static void height_mend(const Height *job, uint32_t c, Float4 normal, float square, float missing) {
     float(*x)[4] = job->position;
     const uint32_t *corner = job->shell->cells[c];
-    float *centre = x[shell_centre(job->shell, c)], length = sqrtf(square), most = HEIGHT_MOST * sqrtf(length);
+    float *centre = x[shell_centre(job->shell, c)], length = sqrtf(square), max = HEIGHT_MAX * sqrtf(length);
     float w[4] = {x[corner[0]][3], x[corner[1]][3], x[corner[2]][3], x[corner[3]][3]};
     float weight = centre[3] + (w[0] + w[1] + w[2] + w[3]) / 16;
     if (weight <= 0) return;
     float gain = job->plan->settings.solver.height_gain;
-    Quad push = gain * (missing < most ? missing : most) / (weight * length) * normal;
-    quad_store(centre, quad_load(centre) + centre[3] * push);
-    for (int i = 0; i < 4; i++) quad_store(x[corner[i]], quad_load(x[corner[i]]) - 0.25f * w[i] * push);
+    Float4 push = gain * (missing < max ? missing : max) / (weight * length) * normal;
+    float4_store(centre, float4_load(centre) + centre[3] * push);
+    for (int i = 0; i < 4; i++) float4_store(x[corner[i]], float4_load(x[corner[i]]) - 0.25f * w[i] * push);
 }
 
 /// Returns whether the centre is twice as high as it must be.
@@ -55,12 +55,12 @@ static inline bool height_cell(const Height *job, uint32_t c) {
     const float(*x)[4] = (const float(*)[4])job->position;
     uint32_t centre = shell_centre(job->shell, c);
     const uint32_t *corner = job->shell->cells[c];
-    Quad p0 = quad_load(x[corner[0]]), p1 = quad_load(x[corner[1]]);
-    Quad p2 = quad_load(x[corner[2]]), p3 = quad_load(x[corner[3]]);
-    Quad normal = quad_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
+    Float4 p0 = float4_load(x[corner[0]]), p1 = float4_load(x[corner[1]]);
+    Float4 p2 = float4_load(x[corner[2]]), p3 = float4_load(x[corner[3]]);
+    Float4 normal = float4_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
     normal[3] = 0; // positions hold masses there
     float enough = job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
-    float above = quad_dot(quad_load(x[centre]) - mean, normal), square = quad_dot(normal, normal);
+    float above = float4_dot(float4_load(x[centre]) - mean, normal), square = float4_dot(normal, normal);
     if (height_is_enough(above, square, 2 * enough)) return true;
     if (!height_is_enough(above, square, enough) && square > 0)
         height_mend(job, c, normal, square, enough - above / sqrtf(square));

@@ -16,7 +16,7 @@
 #include "dynamics/dynamics_plan.h"
 
 /// z_least over height_min thicknesses: well under where height.c mends, so that this pass stays the exception.
-static const float ORDER_LEAST = 0.1f;
+static const float ORDER_MIN = 0.1f;
 
 typedef struct Order {
     const DynamicsPlan *plan;
@@ -26,29 +26,29 @@ typedef struct Order {
 } Order;
 
 /// Takes from a centre's velocity what leads it back through its corners.
-static void order_calm(const Order *job, const uint32_t *corner, uint32_t centre, Quad normal) {
+static void order_calm(const Order *job, const uint32_t *corner, uint32_t centre, Float4 normal) {
     float(*v)[4] = job->dynamics->velocity;
-    Quad mean = 0.25f * (quad_load(v[corner[0]]) + quad_load(v[corner[1]]) +
-                         (quad_load(v[corner[2]]) + quad_load(v[corner[3]])));
-    float away = quad_dot(quad_load(v[centre]) - mean, normal);
-    if (away < 0) quad_store(v[centre], quad_load(v[centre]) - away * normal);
+    Float4 mean = 0.25f * (float4_load(v[corner[0]]) + float4_load(v[corner[1]]) +
+                         (float4_load(v[corner[2]]) + float4_load(v[corner[3]])));
+    float away = float4_dot(float4_load(v[centre]) - mean, normal);
+    if (away < 0) float4_store(v[centre], float4_load(v[centre]) - away * normal);
 }
 
 static inline void order_cell(const Order *job, uint32_t c) {
     float(*x)[4] = job->dynamics->position;
     uint32_t centre = shell_centre(job->shell, c);
     const uint32_t *corner = job->shell->cells[c];
-    Quad p0 = quad_load(x[corner[0]]), p1 = quad_load(x[corner[1]]);
-    Quad p2 = quad_load(x[corner[2]]), p3 = quad_load(x[corner[3]]);
-    Quad normal = quad_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
+    Float4 p0 = float4_load(x[corner[0]]), p1 = float4_load(x[corner[1]]);
+    Float4 p2 = float4_load(x[corner[2]]), p3 = float4_load(x[corner[3]]);
+    Float4 normal = float4_cross(p2 - p0, p3 - p1), mean = 0.25f * (p0 + p1 + (p2 + p3));
     normal[3] = 0; // positions hold masses there
-    float least = ORDER_LEAST * job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
-    float above = quad_dot(quad_load(x[centre]) - mean, normal), square = quad_dot(normal, normal);
-    if (above > 0 && above * above >= least * least * square) return;
+    float min = ORDER_MIN * job->plan->settings.solver.height_min * field_at(job->shell->matter.thickness, centre);
+    float above = float4_dot(float4_load(x[centre]) - mean, normal), square = float4_dot(normal, normal);
+    if (above > 0 && above * above >= min * min * square) return;
     if (!(square > 0)) return;
     float length = sqrtf(square);
     normal = normal * (1 / length);
-    quad_store(x[centre], quad_load(x[centre]) + (least - above / length) * normal);
+    float4_store(x[centre], float4_load(x[centre]) + (min - above / length) * normal);
     if (x[centre][3] > 0) order_calm(job, corner, centre, normal);
 }
 

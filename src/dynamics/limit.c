@@ -40,19 +40,19 @@ typedef struct LimitRange {
     uint32_t first, end;
 } LimitRange;
 
-static Quad limit_way(const Limit *job, SingeColour colour, uint32_t spring) {
+static Float4 limit_displacement(const Limit *job, SingeColour colour, uint32_t spring) {
     const uint32_t *ends = job->shell->springs[colour].ends[spring];
-    return quad_load(job->dynamics->position[ends[1]]) - quad_load(job->dynamics->position[ends[0]]);
+    return float4_load(job->dynamics->position[ends[1]]) - float4_load(job->dynamics->position[ends[0]]);
 }
 
 static float limit_factor(SingeColour colour) { return colour == SINGE_BLUE ? LIMIT_SIDE : LIMIT_DIAGONAL; }
 
 /// Bit k: whether spring first + k, of four, is too long, by more than rounding.
 static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t first) {
-    Quad most = limit_factor(colour) * quad_load(job->state->burn.spring_length[colour] + first), way[4];
-    for (uint32_t k = 0; k < 4; k++) way[k] = limit_way(job, colour, first + k);
-    quad_transpose(way);
-    return quad_bits(way[0] * way[0] + way[1] * way[1] + way[2] * way[2] > most * most * 1.0001f);
+    Float4 max = limit_factor(colour) * float4_load(job->state->burn.spring_length[colour] + first), displacement[4];
+    for (uint32_t k = 0; k < 4; k++) displacement[k] = limit_displacement(job, colour, first + k);
+    float4_transpose(displacement);
+    return float4_bits(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2] > max * max * 1.0001f);
 }
 
 /// Whether a spring that is too long may be shortened: it is left, no part of a mesh that may stretch, its ends are not
@@ -67,9 +67,9 @@ static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
 }
 
 static bool limit_is_over(const Limit *job, SingeColour colour, uint32_t spring) {
-    Quad way = limit_way(job, colour, spring);
-    float most = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
-    return quad_dot(way, way) > most * most * 1.0001f && limit_holds(job, colour, spring);
+    Float4 displacement = limit_displacement(job, colour, spring);
+    float max = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
+    return float4_dot(displacement, displacement) > max * max * 1.0001f && limit_holds(job, colour, spring);
 }
 
 /// The springs of a colour with numbers from begin on, in one block of POOL_BLOCK.
@@ -95,17 +95,17 @@ static double limit_count(void *task, int begin, int end) {
 static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring) {
     float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
     const uint32_t *ends = job->shell->springs[colour].ends[spring], a = ends[0], b = ends[1];
-    const float most = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
+    const float max = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
     float wa = x[a][3], wb = x[b][3];
-    Quad way = limit_way(job, colour, spring), relative = quad_load(v[b]) - quad_load(v[a]);
-    way[3] = 0;
-    float length = sqrtf(quad_dot(way, way)), opens = quad_dot(relative, way) / length;
-    Quad unit = way / length, shift = (length - most) / (wa + wb) * unit;
-    Quad slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
-    quad_store(x[a], quad_load(x[a]) + wa * shift);
-    quad_store(x[b], quad_load(x[b]) - wb * shift);
-    quad_store(v[a], quad_load(v[a]) + wa * slow);
-    quad_store(v[b], quad_load(v[b]) - wb * slow);
+    Float4 displacement = limit_displacement(job, colour, spring), relative = float4_load(v[b]) - float4_load(v[a]);
+    displacement[3] = 0;
+    float length = sqrtf(float4_dot(displacement, displacement)), opens = float4_dot(relative, displacement) / length;
+    Float4 unit = displacement / length, shift = (length - max) / (wa + wb) * unit;
+    Float4 slow = (opens > 0 ? opens : 0) / (wa + wb) * unit;
+    float4_store(x[a], float4_load(x[a]) + wa * shift);
+    float4_store(x[b], float4_load(x[b]) - wb * shift);
+    float4_store(v[a], float4_load(v[a]) + wa * slow);
+    float4_store(v[b], float4_load(v[b]) - wb * slow);
 }
 
 /// Shortens what is too long in blocks with a count above 0, one after another. Whether there was any.

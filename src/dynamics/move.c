@@ -23,8 +23,8 @@ typedef struct Move {
 } Move;
 
 /// Drag on a velocity that gravity and damping have been at.
-static inline Quad move_drag(const DynamicsPlan *plan, uint32_t i, float h, Quad velocity) {
-    Quad normal = quad_load(plan->normal[i]), slips = (velocity - quad_load(plan->air[i])) * normal;
+static inline Float4 move_drag(const DynamicsPlan *plan, uint32_t i, float h, Float4 velocity) {
+    Float4 normal = float4_load(plan->normal[i]), slips = (velocity - float4_load(plan->air[i])) * normal;
     float slip = slips[0] + slips[1] + slips[2], k = h * plan->drag[i] * fabsf(slip);
     return velocity - slip * k / (1 + k) * normal;
 }
@@ -37,20 +37,20 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
     float(*restrict position)[4] = job->dynamics->position, (*restrict velocities)[4] = job->dynamics->velocity;
     float(*restrict predicted)[4] = plan->predicted;
     float h = job->h, inverse_h = 1 / h, keep = 1 / (1 + h * field_at(damping, 0));
-    Quad fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
+    Float4 fall = {h * gravity[0], h * gravity[1], h * gravity[2], 0};
     for (int i = begin; i < end; i++) {
-        Quad place = quad_load(position[i]), velocity = quad_load(velocities[i]);
-        if (place[3] == 0) continue; // pinned or gone
-        if (closes) velocity += (place - quad_load(predicted[i])) * inverse_h;
+        Float4 point = float4_load(position[i]), velocity = float4_load(velocities[i]);
+        if (point[3] == 0) continue; // pinned or gone
+        if (closes) velocity += (point - float4_load(predicted[i])) * inverse_h;
         if (opens) {
             if (!plain) keep = 1 / (1 + h * field_at(damping, (uint32_t)i));
             velocity = (velocity + fall) * keep;
             if (!plain && drag[i] > 0) velocity = move_drag(plan, (uint32_t)i, h, velocity);
-            place += h * velocity;
-            quad_store(position[i], place);
-            quad_store(predicted[i], place);
+            point += h * velocity;
+            float4_store(position[i], point);
+            float4_store(predicted[i], point);
         }
-        quad_store(velocities[i], velocity);
+        float4_store(velocities[i], velocity);
     }
 }
 
@@ -58,7 +58,7 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
 static double move_block(void *task, int begin, int end) {
     const Move *job = task;
     DynamicsPlan *plan = job->plan;
-    uint64_t contacts = contact_touch(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
+    uint64_t contacts = contact_range(plan, job->between.collider_count, job->h, job->dynamics, begin, end);
     bool closes = job->between.closes, opens = job->between.opens;
     const Field drag = job->shell->matter.drag, damping = job->shell->matter.damping;
     bool still = plan->settings.air_density == 0 || (drag.mask == 0 && field_at(drag, 0) == 0);
@@ -76,11 +76,11 @@ static double move_block(void *task, int begin, int end) {
 uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, const Between *between,
                        DynamicsState *dynamics) {
     Move job = {plan, shell, dynamics, *between, h};
-    if (between->attaches) attach_place(&plan->attachments, shell, dynamics);
+    if (between->attaches) attach_position(&plan->attachments, shell, dynamics);
     return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
 }
 
-void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+void dynamics_position_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                          DynamicsState *dynamics) {
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];
@@ -89,10 +89,10 @@ void dynamics_place_pins(DynamicsPlan *plan, const PinList *pins, const AblateSt
         for (uint32_t k = 0; k < pin->count; k++) {
             uint32_t i = pin->particles[k];
             if (!(ablate->particle_flags[i] & SINGE_ALIVE)) continue;
-            Vec place = pose_apply(&pose, vec_load(pin->anchors[k]));
-            vec_store(dynamics->velocity[i], vec_scale(vec_sub(place, vec_load(dynamics->position[i])), 1 / h));
-            vec_store(dynamics->position[i], place);
-            vec_store(plan->predicted[i], place);
+            Float3 point = pose_apply(&pose, float3_load(pin->anchors[k]));
+            float3_store(dynamics->velocity[i], float3_scale(float3_sub(point, float3_load(dynamics->position[i])), 1 / h));
+            float3_store(dynamics->position[i], point);
+            float3_store(plan->predicted[i], point);
         }
     }
 }

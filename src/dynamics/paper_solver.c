@@ -124,8 +124,8 @@ static void paper_fill_particles(void *task, int begin, int end) {
 
 static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
-    Firmness firmness;
-    firmness_begin(job->shell, job->colour, 0, 0, &firmness);
+    Stiffness stiffness;
+    stiffness_begin(job->shell, job->colour, 0, 0, &stiffness);
     const float *length = job->state->burn.spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
@@ -133,7 +133,7 @@ static void paper_fill_springs(void *task, int begin, int end) {
         uint32_t spring = job->paper->order[job->colour][k], row = job->offset + k;
         const uint32_t *ends = job->group->ends[row];
         job->group->length[row] = (double)length[spring];
-        job->group->compliance[row] = (double)firmness_compliance(&firmness, spring);
+        job->group->compliance[row] = (double)stiffness_compliance(&stiffness, spring);
         bool alive = flags[spring] & SINGE_ALIVE;
         job->group->weight[row] = alive ? (double)dynamics_weight(material, job->plan->soft, ends[0], ends[1]) : 0;
     }
@@ -246,8 +246,8 @@ SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateSt
                                              .inverse_h2 = 1 / ((double)h * (double)h)};
     pool_for(pool, particles, POOL_BLOCK, paper_begin, &exchange);
     bool solved = true;
-    int most = solver->method == SINGE_SOLVER_MASS_SPRING ? 1 : solver->projections; // forces act once a substep
-    for (int projection = 0; projection < most && (solved || !solver->early_exit); projection++) {
+    int max = solver->method == SINGE_SOLVER_MASS_SPRING ? 1 : solver->projections; // forces act once a substep
+    for (int projection = 0; projection < max && (solved || !solver->early_exit); projection++) {
         double start = clock_seconds();
         if (solver->method == SINGE_SOLVER_MASS_SPRING) paper_hooke(paper, pool, h, dynamics, counters);
         else TRY(paper_step(paper, pool, counters, &solved, error));

@@ -44,9 +44,9 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches) {
 static float strand_compliance(const StrandSet *set, const SpringSet *springs, uint32_t spring) {
     uint32_t low = 0, high = springs->strand_count;
     while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (springs->strand_first[middle] <= spring) low = middle;
-        else high = middle;
+        uint32_t centroid = low + (high - low) / 2;
+        if (springs->strand_first[centroid] <= spring) low = centroid;
+        else high = centroid;
     }
     return set->compliance[set->strand_slot[low] + (size_t)(spring - springs->strand_first[low]) * STRAND_LANES];
 }
@@ -105,7 +105,7 @@ void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, Dyn
     const float softness = 1 + 0.5f * plan->settings.solver.regularisation[colour];
     for (uint32_t k = 0; k < plan->patches.count[colour]; k++) {
         Patch *patch = &plan->patches.items[colour][k];
-        Quad a = quad_load(dynamics->position[patch->a]), b = quad_load(dynamics->position[patch->b]), d = b - a;
+        Float4 a = float4_load(dynamics->position[patch->a]), b = float4_load(dynamics->position[patch->b]), d = b - a;
         float weights = a[3] + b[3], target = patch->length * patch->length;
         if (!(patch->weight > 0 && weights > 0)) continue;
         float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], e = (square - target) * 0.5f;
@@ -116,8 +116,8 @@ void patch_project(DynamicsPlan *plan, SingeColour colour, float inverse_h2, Dyn
         float mu = patch->weight * e / fmaxf(diagonal, 1e-20f);
         patch->pull += mu;
         d[3] = 0;
-        quad_store(dynamics->position[patch->a], a + a[3] * mu * d);
-        quad_store(dynamics->position[patch->b], b - b[3] * mu * d);
+        float4_store(dynamics->position[patch->a], a + a[3] * mu * d);
+        float4_store(dynamics->position[patch->b], b - b[3] * mu * d);
     }
 }
 

@@ -26,20 +26,20 @@ static void prepare_cells(void *task, int begin, int end) {
     const float(*x)[4] = (const float(*)[4])job->state->dynamics.position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
-        Vec a = vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]]));
-        Vec b = vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]));
-        vec_store(job->plan->cell_normal[c], vec_cross(a, b));
+        Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
+        Float3 b = float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]));
+        float3_store(job->plan->cell_normal[c], float3_cross(a, b));
     }
 }
 
-static Vec prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags, uint32_t particle) {
-    if (particle >= shell->vertex_count) return vec_unit(vec_load(plan->cell_normal[particle - shell->vertex_count]));
-    Vec sum = {0, 0, 0};
+static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags, uint32_t particle) {
+    if (particle >= shell->vertex_count) return float3_unit(float3_load(plan->cell_normal[particle - shell->vertex_count]));
+    Float3 sum = {0, 0, 0};
     for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++) {
         uint32_t cell = shell->fan[k];
-        if (cell_flags[cell] & SINGE_ALIVE) sum = vec_add(sum, vec_load(plan->cell_normal[cell]));
+        if (cell_flags[cell] & SINGE_ALIVE) sum = float3_add(sum, float3_load(plan->cell_normal[cell]));
     }
-    return vec_unit(sum);
+    return float3_unit(sum);
 }
 
 static void prepare_particles(void *task, int begin, int end) {
@@ -59,9 +59,9 @@ static void prepare_particles(void *task, int begin, int end) {
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
-        vec_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        Vec air = wind_velocity(job->wind, vec_load(state->dynamics.position[i]), state->time);
-        vec_store(plan->air[i], state->gas.awake ? vec_add(air, vec_load(state->gas.air[i])) : air);
+        float3_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
+        Float3 air = wind_velocity(job->wind, float3_load(state->dynamics.position[i]), state->time);
+        float3_store(plan->air[i], state->gas.awake ? float3_add(air, float3_load(state->gas.air[i])) : air);
     }
 }
 

@@ -31,11 +31,11 @@ static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint
     float wa = job->position[a][3], wb = job->position[b][3], wc = job->position[c][3];
     float weight = wa + 4 * wb + wc;
     if (weight <= 0) return;
-    Quad va = quad_load(job->velocity[a]), vb = quad_load(job->velocity[b]), vc = quad_load(job->velocity[c]);
-    Quad j = (job->share / weight) * (va - 2 * vb + vc);
-    quad_store(job->velocity[a], va - wa * j);
-    quad_store(job->velocity[b], vb + 2 * wb * j);
-    quad_store(job->velocity[c], vc - wc * j);
+    Float4 va = float4_load(job->velocity[a]), vb = float4_load(job->velocity[b]), vc = float4_load(job->velocity[c]);
+    Float4 j = (job->share / weight) * (va - 2 * vb + vc);
+    float4_store(job->velocity[a], va - wa * j);
+    float4_store(job->velocity[b], vb + 2 * wb * j);
+    float4_store(job->velocity[c], vc - wc * j);
 }
 
 /// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.

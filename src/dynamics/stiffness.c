@@ -44,39 +44,39 @@ static float mean_compliance(const Shell *shell, SingeColour colour, const uint3
     return 0.5f * (field_at(compliance, ends[0]) + field_at(compliance, ends[1]));
 }
 
-void firmness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Firmness *firmness) {
+void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness) {
     float softness = (colour == SINGE_RED ? COUPLING : 0) + regularisation;
-    *firmness = (Firmness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
+    *stiffness = (Stiffness){.shell = shell, .colour = colour, .softness = softness * h * h, .sheet = UINT32_MAX};
 }
 
-float firmness_compliance(Firmness *firmness, uint32_t spring) {
-    const Shell *shell = firmness->shell;
-    const uint32_t *ends = shell->springs[firmness->colour].ends[spring];
-    float compliance = mean_compliance(shell, firmness->colour, ends);
+float stiffness_compliance(Stiffness *stiffness, uint32_t spring) {
+    const Shell *shell = stiffness->shell;
+    const uint32_t *ends = shell->springs[stiffness->colour].ends[spring];
+    float compliance = mean_compliance(shell, stiffness->colour, ends);
     uint32_t index = shell->matter.sheet[ends[0]];
     const Sheet *sheet = &shell->sheets[index];
-    if (index != firmness->sheet) {
-        float mass = firmness->softness > 0 ? particle_mass(shell, sheet) : 0;
-        firmness->sheet = index;
-        firmness->own = mass > 0 ? firmness->softness / mass : 0;
+    if (index != stiffness->sheet) {
+        float mass = stiffness->softness > 0 ? particle_mass(shell, sheet) : 0;
+        stiffness->sheet = index;
+        stiffness->own = mass > 0 ? stiffness->softness / mass : 0;
     }
     uint32_t centre = ends[0] > ends[1] ? ends[0] : ends[1]; // of a red spring: they come after all vertices
-    if (firmness->colour == SINGE_RED) compliance *= thickness_share(shell, sheet, centre);
-    return compliance > firmness->own ? compliance - firmness->own : 0;
+    if (stiffness->colour == SINGE_RED) compliance *= thickness_share(shell, sheet, centre);
+    return compliance > stiffness->own ? compliance - stiffness->own : 0;
 }
 
-int firmness_substeps(const Shell *shell, float h, float regularisation) {
+int stiffness_substeps(const Shell *shell, float h, float regularisation) {
     const float softness = COUPLING + regularisation;
     float count = 1;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
         const Sheet *sheet = &shell->sheets[i];
-        float mass = particle_mass(shell, sheet), least = INFINITY;
+        float mass = particle_mass(shell, sheet), min = INFINITY;
         for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
             uint32_t centre = shell_centre(shell, c);
             float compliance = field_at(shell->matter.compliance[SINGE_RED], centre);
-            least = fminf(least, compliance * thickness_share(shell, sheet, centre));
+            min = fminf(min, compliance * thickness_share(shell, sheet, centre));
         }
-        if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (least * mass))));
+        if (sheet->cell_count > 0) count = fmaxf(count, ceilf(h * sqrtf(softness / (min * mass))));
     }
-    return count < FIRMNESS_MOST ? (int)count : FIRMNESS_MOST;
+    return count < STIFFNESS_MAX ? (int)count : STIFFNESS_MAX;
 }

@@ -4,26 +4,26 @@
 
 #include "shell/shell.h"
 
-/// Substeps in a step that firmness_substeps asks for at most.
-enum { FIRMNESS_MOST = 1000 };
+/// Substeps in a step that stiffness_substeps asks for at most.
+enum { STIFFNESS_MAX = 1000 };
 
 /// The springs of a colour for the solver.
-typedef struct Firmness {
+typedef struct Stiffness {
     const Shell *shell;
     SingeColour colour;
     float softness; ///< s2, of the solver itself: over the mass of a particle a compliance
     uint32_t sheet; ///< of the spring asked for last
     float own;      ///< m/N, what its springs give without any compliance
-} Firmness;
+} Stiffness;
 
 /// For substeps of h seconds, or 0 for a solver without softness of its own.
-void firmness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Firmness *firmness);
+void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness);
 
 /// Compliance of a spring, m/N.
-float firmness_compliance(Firmness *firmness, uint32_t spring);
+float stiffness_compliance(Stiffness *stiffness, uint32_t spring);
 
 /// The least number of substeps in a step of h seconds for which all red springs of this regularisation can be as firm
 /// as they should.
-int firmness_substeps(const Shell *shell, float h, float regularisation);
+int stiffness_substeps(const Shell *shell, float h, float regularisation);
 
 #endif

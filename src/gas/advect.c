@@ -22,12 +22,12 @@
 #include <limits.h>
 #include <string.h>
 
-enum { ADVECT_PARTS_MOST = 8 };
+enum { ADVECT_PARTS_MAX = 8 };
 static const float ADVECT_COURANT = 0.9f;
 static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
 static const float ADVECT_MIXING = 2e-4f; ///< m2/s, of hot air: 1.9e-4 at 1100 K
 static const float ADVECT_EDDY = 0.2f;    ///< C
-static const float ADVECT_MIX_MOST = 0.1f; ///< twice as much must be stable along one axis
+static const float ADVECT_MIX_MAX = 0.1f; ///< twice as much must be stable along one axis
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
@@ -79,7 +79,7 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
     const float *const *through = (const float *const *)&pass->from->field[GAS_THROUGH];
     const float *L = pass->from->field[GAS_LIGHTNESS] + c, *fuel = pass->from->field[GAS_FUEL] + c;
     const float *smoke = pass->from->field[GAS_SMOKE] + c;
-    float speed[SWEEP_RUN], most = 0;
+    float speed[SWEEP_RUN], max = 0;
     for (int i = 0; i < count; i++) speed[i] = 0;
     for (int d = 0; d < 3; d++) {
         const float *restrict lower = through[d] + c, *restrict upper = lower + plan->grid.stride[d];
@@ -95,11 +95,11 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
     for (int i = 0; i < count; i++) {
         const bool something[GAS_BOXES] = {L[i] > 0 || fuel[i] > 0, smoke[i] > 0,
                                            speed[i] > calm || L[i] > ADVECT_LIGHT};
-        most = speed[i] > most ? speed[i] : most;
+        max = speed[i] > max ? speed[i] : max;
         for (int b = 0; b < GAS_BOXES; b++)
             if (something[b]) busy[b][0] = i < busy[b][0] ? i : busy[b][0], busy[b][1] = i;
     }
-    return most;
+    return max;
 }
 
 static void advect_look(void *context, int begin, int end) {
@@ -107,20 +107,20 @@ static void advect_look(void *context, int begin, int end) {
     const GasGrid *grid = &pass->plan->grid;
     for (int k = begin; k < end; k++) {
         GasBox *box = pass->plan->plane_busy[k];
-        float most = 0;
+        float max = 0;
         for (int b = 0; b < GAS_BOXES; b++) box[b] = GAS_NO_BOX;
         for (int j = 0; j < grid->n[1]; j++)
             for (int first = 0; first < grid->n[0]; first += SWEEP_RUN) {
                 int count = grid->n[0] - first, busy[GAS_BOXES][2] = {{INT_MAX, -1}, {INT_MAX, -1}, {INT_MAX, -1}};
                 count = count < SWEEP_RUN ? count : SWEEP_RUN;
                 float fastest = advect_row(pass, gas_at(grid, first, j, k), count, busy);
-                most = fastest > most ? fastest : most;
+                max = fastest > max ? fastest : max;
                 for (int b = 0; b < GAS_BOXES; b++)
                     if (busy[b][1] >= 0)
                         gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k},
                                                       {first + busy[b][1] + 1, j + 1, k + 1}});
             }
-        pass->plan->partial[k] = (double)most;
+        pass->plan->partial[k] = (double)max;
     }
 }
 
@@ -148,7 +148,7 @@ static void advect_mixing(void *context, int begin, int end) {
     const float *const *u = (const float *const *)&pass->from->field[GAS_VELOCITY];
     float still = 0.5f * ADVECT_MIXING * pass->courant / plan->cell;
     float eddy = 0.5f * ADVECT_EDDY * ADVECT_EDDY * pass->courant * 0.5f;
-    still = still < ADVECT_MIX_MOST ? still : ADVECT_MIX_MOST;
+    still = still < ADVECT_MIX_MAX ? still : ADVECT_MIX_MAX;
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
             size_t c = gas_at(grid, 0, j, k);
@@ -161,7 +161,7 @@ static void advect_mixing(void *context, int begin, int end) {
                 }
             for (int i = 0; i < grid->n[0]; i++) {
                 float mix = still + eddy * sqrtf(mixing[i]);
-                mixing[i] = mix < ADVECT_MIX_MOST ? mix : ADVECT_MIX_MOST;
+                mixing[i] = mix < ADVECT_MIX_MAX ? mix : ADVECT_MIX_MAX;
             }
         }
 }
@@ -197,10 +197,10 @@ void gas_advect(GasPass *pass) {
     double fastest = 0;
     gas_planes(pass, &plan->grid, advect_look);
     for (int k = 0; k < plan->grid.n[2]; k++) fastest = plan->partial[k] > fastest ? plan->partial[k] : fastest;
-    float way = (float)fastest * pass->dt / (plan->cell * ADVECT_COURANT);
-    int parts = way > 1 ? way < ADVECT_PARTS_MOST ? (int)ceilf(way) : ADVECT_PARTS_MOST : 1;
+    float displacement = (float)fastest * pass->dt / (plan->cell * ADVECT_COURANT);
+    int parts = displacement > 1 ? displacement < ADVECT_PARTS_MAX ? (int)ceilf(displacement) : ADVECT_PARTS_MAX : 1;
     // a wind so strong that it blows everything away in a few steps may do so more slowly
-    float slower = way > ADVECT_PARTS_MOST ? ADVECT_PARTS_MOST / way : 1;
+    float slower = displacement > ADVECT_PARTS_MAX ? ADVECT_PARTS_MAX / displacement : 1;
     pass->courant = slower * pass->dt / (plan->cell * (float)parts);
     advect_boxes(pass, parts);
     gas_planes(pass, &plan->grid, advect_mixing);

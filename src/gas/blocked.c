@@ -17,7 +17,7 @@ static void blocked_planes(void *context, int begin, int end) {
                 if (collider->generation == 0) continue;
                 Pose pose = path_pose(&collider->path, pass->state->time);
                 for (int i = 0; i < grid->n[0]; i++) {
-                    Vec x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
+                    Float3 x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
                              plan->origin[1] + plan->cell * ((float)j + 0.5f),
                              plan->origin[2] + plan->cell * ((float)k + 0.5f)}, normal;
                     plan->solid[c + (size_t)i] |= collider_distance(collider, pose_unapply(&pose, x), 0, &normal) < 0;
@@ -27,13 +27,13 @@ static void blocked_planes(void *context, int begin, int end) {
 }
 
 /// Adds to what is covered of the faces across axis d.
-static void blocked_cover(GasPlan *plan, int d, const float place[3], float share) {
+static void blocked_cover(GasPlan *plan, int d, const float position[3], float share) {
     const GasGrid *grid = &plan->grid;
     int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
     float part[3];
-    at[d] = (int)floorf(place[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
+    at[d] = (int)floorf(position[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
     for (int q = 0; q < 3; q++)
-        if (q != d) at[q] = (int)(place[q] + 1) - 1, part[q] = place[q] - (float)at[q];
+        if (q != d) at[q] = (int)(position[q] + 1) - 1, part[q] = position[q] - (float)at[q];
     size_t c = gas_at(grid, at[0], at[1], at[2]);
     float *open = plan->open[d];
     open[c] += share * (1 - part[e]) * (1 - part[f]);
@@ -45,13 +45,13 @@ static void blocked_cover(GasPlan *plan, int d, const float place[3], float shar
 static void blocked_by_sheets(const GasPass *pass) {
     GasPlan *plan = pass->plan;
     const Shell *shell = pass->shell;
-    float face = 1 / (plan->cell * plan->cell), place[3];
+    float face = 1 / (plan->cell * plan->cell), position[3];
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(pass->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         uint32_t i = shell_centre(shell, c);
-        if (!gas_place(plan, vec_load(pass->state->dynamics.position[i]), place)) continue;
+        if (!gas_position(plan, float3_load(pass->state->dynamics.position[i]), position)) continue;
         for (int d = 0; d < 3; d++)
-            blocked_cover(plan, d, place, shell->matter.area[i] * face * fabsf(plan->normal[i][d]));
+            blocked_cover(plan, d, position, shell->matter.area[i] * face * fabsf(plan->normal[i][d]));
     }
 }
 

@@ -9,15 +9,15 @@
 
 static const float FLAME_TIME = 0.01f, SMOKE_TIME = 4;
 static const float FLAME_FUEL_HEAT = 13e6f; ///< J/kg that smoke is reckoned with: of the gas of paper and cotton
-static const float FLAME_FUEL_LEAST = 1, FLAME_LIGHTNESS_LEAST = 1e-4f, FLAME_SMOKE_LEAST = 1e-7f;
+static const float FLAME_FUEL_MIN = 1, FLAME_LIGHTNESS_MIN = 1e-4f, FLAME_SMOKE_MIN = 1e-7f;
 
 static void flame_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const SingeGasDef *def = &plan->settings.def;
-    float most = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
-    most = most > 0.01f ? most : 0.01f;
+    float max = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
+    max = max > 0.01f ? max : 0.01f;
     float rate = pass->dt / FLAME_TIME, thin = 1 / (1 + pass->dt / SMOKE_TIME);
     float shown = 1 / (pass->dt * (1 - def->radiated));
     float sooty = def->soot / (FLAME_FUEL_HEAT * (1 - def->radiated));
@@ -28,9 +28,9 @@ static void flame_planes(void *context, int begin, int end) {
             float *restrict smoke = pass->to->field[GAS_SMOKE] + c, *restrict flame = pass->to->field[GAS_FLAME] + c;
             float *restrict expansion = plan->expansion + c;
             for (int i = 0; i < grid->n[0]; i++) {
-                float air = 1 - L[i] / most;
+                float air = 1 - L[i] / max;
                 air = air > 0 ? air : 0;
-                float step = rate * air, burnt = fuel[i] * step / (1 + step), room = (most - L[i]) * GAS_HEAT;
+                float step = rate * air, burnt = fuel[i] * step / (1 + step), room = (max - L[i]) * GAS_HEAT;
                 room = room > 0 ? room : 0;
                 burnt = burnt < room ? burnt : room;
                 fuel[i] -= burnt;
@@ -39,9 +39,9 @@ static void flame_planes(void *context, int begin, int end) {
                 flame[i] = burnt * shown;
                 smoke[i] = (smoke[i] + burnt * sooty) * thin;
                 // what is next to nothing is nothing: numbers near the smallest are slow
-                fuel[i] = fuel[i] > FLAME_FUEL_LEAST ? fuel[i] : 0;
-                L[i] = L[i] > FLAME_LIGHTNESS_LEAST ? L[i] < GAS_LIGHTEST ? L[i] : GAS_LIGHTEST : 0;
-                smoke[i] = smoke[i] > FLAME_SMOKE_LEAST ? smoke[i] : 0;
+                fuel[i] = fuel[i] > FLAME_FUEL_MIN ? fuel[i] : 0;
+                L[i] = L[i] > FLAME_LIGHTNESS_MIN ? L[i] < GAS_LIGHTEST ? L[i] : GAS_LIGHTEST : 0;
+                smoke[i] = smoke[i] > FLAME_SMOKE_MIN ? smoke[i] : 0;
             }
         }
 }

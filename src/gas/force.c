@@ -32,10 +32,10 @@ static void force_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
-    Vec g = vec_load(plan->settings.gravity), up = vec_unit(g);
+    Float3 g = float3_load(plan->settings.gravity), up = float3_unit(g);
     for (int d = 0; d < 3; d++) {
         float lift = -plan->settings.gravity[d] * pass->dt, along = d == 0 ? up.x : d == 1 ? up.y : up.z;
-        float unrest = FORCE_UNREST * vec_length(g) * (1 - fabsf(along)) * pass->dt;
+        float unrest = FORCE_UNREST * float3_length(g) * (1 - fabsf(along)) * pass->dt;
         for (int k = begin; k < end; k++)
             for (int j = 0; j < grid->n[1]; j++) {
                 size_t c = gas_at(grid, 0, j, k);

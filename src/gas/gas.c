@@ -80,9 +80,9 @@ void gas_step(GasPlan *plan, const Shell *shell, const State *state, const Colli
                     .from = &plan->turn[gas->turn], .to = &plan->turn[!gas->turn], .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
     if (!gas_fed(&pass) && !gas->awake) return;
-    Vec middle = vec_load(plan->origin);
+    Float3 middle = float3_load(plan->origin);
     for (int d = 0; d < 3; d++) (&middle.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
-    vec_store(pass.wind, wind_velocity(wind, middle, state->time));
+    float3_store(pass.wind, wind_velocity(wind, middle, state->time));
     gas_normals(&pass);
     gas_blocked(&pass);
     gas->awake = true;

@@ -8,10 +8,10 @@
 
 static const float PLAN_RATE = 60;         ///< 1/s, steps of the gas
 static const float PLAN_CELLS_ACROSS = 42; ///< cells along the diagonal of the sheets
-static const float PLAN_CELL_LEAST = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
-static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MOST = 2e6;
-enum { PLAN_PARTS_MOST = 16, PLAN_COARSEST = 4 };
-enum { PLAN_SIDE_MOST = 4096 }; ///< cells along an axis: as many as a frame's file holds
+static const float PLAN_CELL_MIN = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
+static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MAX = 2e6;
+enum { PLAN_PARTS_MAX = 16, PLAN_COARSEST = 4 };
+enum { PLAN_SIDE_MAX = 4096 }; ///< cells along an axis: as many as a frame's file holds
 
 SingeResult gas_check(const SingeGasDef *def, SingeError *error) {
     const char *what = NULL;
@@ -75,10 +75,10 @@ static void plan_lay(GasPlan *plan, const Shell *shell) {
     for (int d = 0; d < 3; d++) diagonal += (high[d] - low[d]) * (high[d] - low[d]);
     float cell = sqrtf(diagonal) / PLAN_CELLS_ACROSS;
     if (wanted > 0) cell = wanted;
-    else if (cell < PLAN_CELL_LEAST) cell = PLAN_CELL_LEAST;
+    else if (cell < PLAN_CELL_MIN) cell = PLAN_CELL_MIN;
     if (cell < 1e-4f) cell = 1e-4f;
-    double most = wanted > 0 ? PLAN_CELLS_MOST : PLAN_CELLS_USUAL;
-    while (plan_fit(plan, low, high, cell) > most || plan_longest(plan) > PLAN_SIDE_MOST) cell *= 1.05f;
+    double max = wanted > 0 ? PLAN_CELLS_MAX : PLAN_CELLS_USUAL;
+    while (plan_fit(plan, low, high, cell) > max || plan_longest(plan) > PLAN_SIDE_MAX) cell *= 1.05f;
     plan->grid = plan_grid(plan->grid.n);
 }
 
@@ -166,7 +166,7 @@ SingeResult gas_plan_create(Memory *memory, const Shell *shell, const GasSetting
     float steps = 1 / (PLAN_RATE * settings->time_step);
     plan->every = steps > 1 ? (uint64_t)(steps + 0.5f) : 1;
     float length = (float)plan->every * settings->time_step, parts = ceilf(length * PLAN_RATE * 0.99f);
-    plan->parts = parts < PLAN_PARTS_MOST ? (int)parts : PLAN_PARTS_MOST;
+    plan->parts = parts < PLAN_PARTS_MAX ? (int)parts : PLAN_PARTS_MAX;
     plan->dt = length / (float)plan->parts;
     plan_lay(plan, shell);
     plan_levels(plan);

@@ -164,22 +164,22 @@ void gas_solve(GasPass *pass, int cycles);
 void gas_show(GasPass *pass, const GasTurn *turn);
 
 /// A place in cells, from the middle of cell (0, 0, 0). False when it is not within the grid or not finite.
-static inline bool gas_place(const GasPlan *plan, Vec x, float place[3]) {
+static inline bool gas_position(const GasPlan *plan, Float3 x, float position[3]) {
     const float at[3] = {x.x, x.y, x.z};
     for (int d = 0; d < 3; d++) {
-        place[d] = (at[d] - plan->origin[d]) / plan->cell - 0.5f;
-        if (!(place[d] > -1 && place[d] < (float)plan->grid.n[d])) return false;
+        position[d] = (at[d] - plan->origin[d]) / plan->cell - 0.5f;
+        if (!(position[d] > -1 && position[d] < (float)plan->grid.n[d])) return false;
     }
     return true;
 }
 
-/// Linear between the middles of cells; place is one that gas_place has found.
-static inline float gas_sample(const GasGrid *grid, const float *field, const float place[3]) {
+/// Linear between the middles of cells; place is one that gas_position has found.
+static inline float gas_sample(const GasGrid *grid, const float *field, const float position[3]) {
     int i[3];
     float part[3];
     for (int d = 0; d < 3; d++) {
-        i[d] = (int)(place[d] + 1) - 1;
-        part[d] = place[d] - (float)i[d];
+        i[d] = (int)(position[d] + 1) - 1;
+        part[d] = position[d] - (float)i[d];
     }
     const float *q = field + gas_at(grid, i[0], i[1], i[2]);
     size_t y = grid->stride[1], z = grid->stride[2];

@@ -26,7 +26,7 @@ static const float SHEET_REACH = 1.25f;     ///< cells
 static const float SHEET_LAYER = 7e-3f;     ///< m, of the gas that flows along a sheet
 static const float SHEET_STILL = 0.05f;     ///< m/s, u_0
 static const float SHEET_LEVEL = 0.5f;      ///< cosine between down and a side that looks down
-static const float SHEET_LEAST = 1;         ///< K above the ambient that are felt
+static const float SHEET_MIN = 1;         ///< K above the ambient that are felt
 static const float SHEET_CP = 1005;         ///< J/(kg K)
 
 static void sheets_cells(void *context, int begin, int end) {
@@ -35,9 +35,9 @@ static void sheets_cells(void *context, int begin, int end) {
     const float(*x)[4] = (const float(*)[4])pass->state->dynamics.position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = shell->cells[c];
-        Vec a = vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]]));
-        Vec b = vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]));
-        vec_store(pass->plan->normal[shell_centre(shell, (uint32_t)c)], vec_unit(vec_cross(a, b)));
+        Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
+        Float3 b = float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]));
+        float3_store(pass->plan->normal[shell_centre(shell, (uint32_t)c)], float3_unit(float3_cross(a, b)));
     }
 }
 
@@ -45,11 +45,11 @@ static void sheets_corners(void *context, int begin, int end) {
     const GasPass *pass = context;
     const Shell *shell = pass->shell;
     for (int v = begin; v < end; v++) {
-        Vec sum = {0, 0, 0};
+        Float3 sum = {0, 0, 0};
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
             if (pass->state->ablate.cell_flags[shell->fan[k]] & SINGE_ALIVE)
-                sum = vec_add(sum, vec_load(pass->plan->normal[shell_centre(shell, shell->fan[k])]));
-        vec_store(pass->plan->normal[v], vec_unit(sum));
+                sum = float3_add(sum, float3_load(pass->plan->normal[shell_centre(shell, shell->fan[k])]));
+        float3_store(pass->plan->normal[v], float3_unit(sum));
     }
 }
 
@@ -64,22 +64,22 @@ static float sheets_side(const GasPass *pass, uint32_t i) { return shell_is_corn
 /// The side on which its gas comes out: its own, unless that looks down. Then the gas goes up through what has burnt.
 static float sheets_vent(const GasPass *pass, uint32_t i) {
     float side = sheets_side(pass, i);
-    Vec down = vec_unit(vec_load(pass->plan->settings.gravity)), normal = vec_load(pass->plan->normal[i]);
-    return 2 * side * vec_dot(normal, down) > SHEET_LEVEL ? -side : side;
+    Float3 down = float3_unit(float3_load(pass->plan->settings.gravity)), normal = float3_load(pass->plan->normal[i]);
+    return 2 * side * float3_dot(normal, down) > SHEET_LEVEL ? -side : side;
 }
 
 /// The particle's place half a cell off the sheet, on that side or, where it is a collider's, on the other. False
 /// outside of the grid.
-static bool sheets_place(const GasPass *pass, uint32_t i, float side, Vec *x) {
+static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 *x) {
     const GasPlan *plan = pass->plan;
-    Vec at = vec_load(pass->state->dynamics.position[i]), normal = vec_load(plan->normal[i]);
-    float place[3];
+    Float3 at = float3_load(pass->state->dynamics.position[i]), normal = float3_load(plan->normal[i]);
+    float position[3];
     for (int k = 0; k < 2; k++, side = -side) {
-        *x = vec_mad(at, normal, side * plan->cell);
-        if (!gas_place(plan, *x, place)) continue;
+        *x = float3_mad(at, normal, side * plan->cell);
+        if (!gas_position(plan, *x, position)) continue;
         int cell[3];
         for (int d = 0; d < 3; d++) {
-            cell[d] = (int)(place[d] + 0.5f);
+            cell[d] = (int)(position[d] + 0.5f);
             if (cell[d] >= plan->grid.n[d]) cell[d] = plan->grid.n[d] - 1;
         }
         if (!plan->solid[gas_at(&plan->grid, cell[0], cell[1], cell[2])]) return true;
@@ -88,13 +88,13 @@ static bool sheets_place(const GasPass *pass, uint32_t i, float side, Vec *x) {
 }
 
 /// Adds to a field, shared among the cells whose middles are about x and where there is gas.
-static void sheets_add(const GasPlan *plan, float *field, Vec x, float amount) {
-    float place[3];
-    if (!gas_place(plan, x, place)) return;
+static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount) {
+    float position[3];
+    if (!gas_position(plan, x, position)) return;
     int at[3];
     float part[3], weight[8], sum = 0;
     size_t cell[8];
-    for (int d = 0; d < 3; d++) at[d] = (int)(place[d] + 1) - 1, part[d] = place[d] - (float)at[d];
+    for (int d = 0; d < 3; d++) at[d] = (int)(position[d] + 1) - 1, part[d] = position[d] - (float)at[d];
     for (int e = 0; e < 8; e++) {
         weight[e] = 1;
         bool inside = true;
@@ -124,11 +124,11 @@ void gas_feed(GasPass *pass) {
     const float *now = pass->state->burn.fuel, *before = pass->from->fuel;
     float volume = plan->cell * plan->cell * plan->cell;
     float scale = (1 - plan->settings.def.radiated) / (plan->settings.pace * volume);
-    Vec x;
+    Float3 x;
     for (uint32_t i = 0; i < plan->particles; i++) {
         float gone = (before[i] - now[i]) * (1 - field_at(matter->char_yield, i));
         pass->to->fuel[i] = now[i];
-        if (gone > 0 && sheets_place(pass, i, sheets_vent(pass, i), &x))
+        if (gone > 0 && sheets_position(pass, i, sheets_vent(pass, i), &x))
             sheets_add(plan, pass->to->field[GAS_FUEL], x,
                        gone * matter->mass[i] * field_at(matter->gas_heat, i) * scale);
     }
@@ -138,53 +138,53 @@ void gas_feed(GasPass *pass) {
 static float sheets_blown(float b) { return b > 1e-3f ? b < 30 ? b / expm1f(b) : 0 : 1; }
 
 /// Where the gas comes from that meets a particle.
-static Vec sheets_upstream(const GasPass *pass, Vec x) {
+static Float3 sheets_upstream(const GasPass *pass, Float3 x) {
     const GasPlan *plan = pass->plan;
-    float place[3], u[3];
-    if (!gas_place(plan, x, place)) return x;
+    float position[3], u[3];
+    if (!gas_position(plan, x, position)) return x;
     for (int d = 0; d < 3; d++)
-        u[d] = gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place) + pass->wind[d];
-    Vec v = vec_load(u);
-    return vec_mad(x, v, -SHEET_REACH * plan->cell / (vec_length(v) + SHEET_STILL));
+        u[d] = gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position) + pass->wind[d];
+    Float3 v = float3_load(u);
+    return float3_mad(x, v, -SHEET_REACH * plan->cell / (float3_length(v) + SHEET_STILL));
 }
 
 /// Share of the air that can pass by at a particle: nearly all at a flake, nothing where the sheet is whole.
-static float sheets_open(const GasPlan *plan, const float place[3], const float normal[3]) {
+static float sheets_open(const GasPlan *plan, const float position[3], const float normal[3]) {
     float sum = 0;
     for (int d = 0; d < 3; d++) {
         int at[3];
-        for (int e = 0; e < 3; e++) at[e] = (int)(place[e] + (e == d ? 1 : 0.5f));
+        for (int e = 0; e < 3; e++) at[e] = (int)(position[e] + (e == d ? 1 : 0.5f));
         sum += normal[d] * normal[d] * plan->open[d][gas_at(&plan->grid, at[0], at[1], at[2])];
     }
     return sum;
 }
 
 /// L of the gas that flows along a sheet at a place: a cell's heat, where it is thicker than that layer, is all in it.
-static float sheets_lightness(const GasPlan *plan, const float *L, const float place[3]) {
-    float thick = plan->cell / SHEET_LAYER, most = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
-    float light = gas_sample(&plan->grid, L, place), layer = thick > 1 ? light * thick : light;
-    most = light > most ? light : most;
-    return layer < most ? layer : most;
+static float sheets_lightness(const GasPlan *plan, const float *L, const float position[3]) {
+    float thick = plan->cell / SHEET_LAYER, max = 1 - plan->settings.ambient_temperature / GAS_HOTTEST;
+    float light = gas_sample(&plan->grid, L, position), layer = thick > 1 ? light * thick : light;
+    max = light > max ? light : max;
+    return layer < max ? layer : max;
 }
 
 static void sheets_meet(void *context, int begin, int end) {
     const GasPass *pass = context;
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
-    float ambient = plan->settings.ambient_temperature, g0 = plan->settings.def.conductance, place[3];
+    float ambient = plan->settings.ambient_temperature, g0 = plan->settings.def.conductance, position[3];
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         float *air = pass->to->air[i];
         air[0] = air[1] = air[2] = air[3] = 0;
         pass->to->conductance[i] = 0, pass->to->temperature[i] = ambient;
         if (!(pass->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
-        Vec x = vec_load(pass->state->dynamics.position[i]);
-        if (!gas_place(plan, x, place)) continue;
-        float open = sheets_open(plan, place, plan->normal[i]);
-        for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], place);
-        if (!(g0 > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x)) continue;
-        if (!gas_place(plan, sheets_upstream(pass, x), place)) continue;
-        float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], place));
-        if (temperature < ambient + SHEET_LEAST) continue;
+        Float3 x = float3_load(pass->state->dynamics.position[i]);
+        if (!gas_position(plan, x, position)) continue;
+        float open = sheets_open(plan, position, plan->normal[i]);
+        for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
+        if (!(g0 > 0) || !sheets_position(pass, i, sheets_side(pass, i), &x)) continue;
+        if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
+        float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], position));
+        if (temperature < ambient + SHEET_MIN) continue;
         float gone = (pass->from->fuel[i] - pass->state->burn.fuel[i]) * (1 - field_at(matter->char_yield, i));
         float flux = gone * matter->mass[i] / (matter->area[i] * pass->fire); // m''
         float slower = shell_glow_slowing(matter, i, pass->state->burn.fuel[i]);
@@ -197,14 +197,14 @@ static void sheets_meet(void *context, int begin, int end) {
 static void sheets_cool(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const float *sheet = pass->state->heat.temperature;
-    float volume = plan->cell * plan->cell * plan->cell, scale = pass->dt / (GAS_HEAT * volume), place[3];
-    Vec x;
+    float volume = plan->cell * plan->cell * plan->cell, scale = pass->dt / (GAS_HEAT * volume), position[3];
+    Float3 x;
     for (uint32_t i = 0; i < plan->particles; i++) {
         float excess = pass->to->temperature[i] - sheet[i];
-        if (!(pass->to->conductance[i] > 0) || !(excess > 0) || !sheets_place(pass, i, sheets_side(pass, i), &x))
+        if (!(pass->to->conductance[i] > 0) || !(excess > 0) || !sheets_position(pass, i, sheets_side(pass, i), &x))
             continue;
-        if (!gas_place(plan, sheets_upstream(pass, x), place)) continue;
-        size_t c = gas_at(&plan->grid, (int)(place[0] + 0.5f), (int)(place[1] + 0.5f), (int)(place[2] + 0.5f));
+        if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
+        size_t c = gas_at(&plan->grid, (int)(position[0] + 0.5f), (int)(position[1] + 0.5f), (int)(position[2] + 0.5f));
         float *L = &pass->to->field[GAS_LIGHTNESS][c];
         float loss = pass->to->conductance[i] * excess * pass->shell->matter.area[i] * scale;
         loss = loss < *L ? loss : *L;

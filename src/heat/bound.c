@@ -16,7 +16,7 @@
 #include "heat/heat_plan.h"
 
 static double bound_within(const HeatPass *pass, double T) {
-    return T > (double)pass->least ? fmin(T, (double)pass->most) : (double)pass->least;
+    return T > (double)pass->min ? fmin(T, (double)pass->max) : (double)pass->min;
 }
 
 static bool bound_of_surface(const HeatPass *pass, uint32_t i) {
@@ -56,8 +56,8 @@ static void bound_means(void *context, int begin, int end) {
                 plan->next[i] = (float)bound_mean(pass, i);
                 if (!bound_of_surface(pass, i)) continue;
                 lacking += (double)capacity[i] * (bound_star(pass, i) - (double)plan->next[i]);
-                above += (double)capacity[i] * ((double)pass->most - (double)plan->next[i]);
-                below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->least);
+                above += (double)capacity[i] * ((double)pass->max - (double)plan->next[i]);
+                below += (double)capacity[i] * ((double)plan->next[i] - (double)pass->min);
             }
         }
         plan->partial[block][0] = lacking, plan->partial[block][1] = above, plan->partial[block][2] = below;
@@ -67,7 +67,7 @@ static void bound_means(void *context, int begin, int end) {
 static void bound_shares(void *context, int begin, int end) {
     const HeatPass *pass = context;
     HeatPlan *plan = pass->plan;
-    double towards = pass->share > 0 ? (double)pass->most : (double)pass->least, share = fabs(pass->share);
+    double towards = pass->share > 0 ? (double)pass->max : (double)pass->min, share = fabs(pass->share);
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
     for (int block = begin; block < end; block++) {
         double made = 0;

@@ -58,7 +58,7 @@ static inline uint32_t conduct_slice_end(uint32_t i, uint32_t last) {
 
 static void conduct_start_group(const HeatPass *pass, uint32_t group, double sums[4]) {
     HeatPlan *plan = pass->plan;
-    float ambient = plan->settings.ambient_temperature, least = INFINITY, most = 0;
+    float ambient = plan->settings.ambient_temperature, min = INFINITY, max = 0;
     double residual = sums[0], whole = sums[1];
     uint32_t last = heat_group_last(plan, group), next;
     for (uint32_t i = group * HEAT_GROUP; i < last; i = next) {
@@ -70,12 +70,12 @@ static void conduct_start_group(const HeatPass *pass, uint32_t group, double sum
             plan->correction[i] = plan->search[i] = 0;
             residual += (double)r * r * inverse;
             whole += (double)b * b * inverse;
-            least = plan->alive[i] && star < least ? star : least;
-            most = plan->alive[i] && star > most ? star : most;
+            min = plan->alive[i] && star < min ? star : min;
+            max = plan->alive[i] && star > max ? star : max;
         }
     }
     sums[0] = residual, sums[1] = whole;
-    sums[2] = fmin(sums[2], (double)least), sums[3] = fmax(sums[3], (double)most);
+    sums[2] = fmin(sums[2], (double)min), sums[3] = fmax(sums[3], (double)max);
 }
 
 /// Residual, right-hand side, and the range of T*.
@@ -170,7 +170,7 @@ static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *m
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
     bool within = true;
-    double least = (double)pass->least - pass->slack, most = (double)pass->most + pass->slack;
+    double min = (double)pass->min - pass->slack, max = (double)pass->max + pass->slack;
     HeatLanes inflow = {0};
     for (uint32_t i = group * HEAT_GROUP; i < heat_group_last(plan, group); i++) {
         if (i % HEAT_ROWS == 0) inflow = conduct_inflow(&plan->matrix, plan->star, i);
@@ -181,7 +181,7 @@ static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *m
         double change = plan->delta[i] + rise;
         if (change != 0)
             plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
-        within &= (double)plan->next[i] >= least && (double)plan->next[i] <= most;
+        within &= (double)plan->next[i] >= min && (double)plan->next[i] <= max;
         if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
             *made += matter->capacity[i] * rise;
     }
@@ -233,17 +233,17 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
     HeatPlan *plan = pass->plan;
     heat_blocks(pass, conduct_start);
     double residual = heat_sum(plan, 0), whole = heat_sum(plan, 1), tolerance = plan->settings.tolerance;
-    double least = INFINITY, most = 0;
+    double min = INFINITY, max = 0;
     for (int block = 0; block < plan->blocks; block++)
-        least = fmin(least, plan->partial[block][2]), most = fmax(most, plan->partial[block][3]);
-    if (!(least > 0 && most < INFINITY) || !isfinite(residual + whole)) {
+        min = fmin(min, plan->partial[block][2]), max = fmax(max, plan->partial[block][3]);
+    if (!(min > 0 && max < INFINITY) || !isfinite(residual + whole)) {
         int64_t fault = conduct_fault(plan);
         if (fault >= 0)
             return error_set(error, SINGE_ERROR_DIVERGED, "heat", fault,
                              "the temperature of particle %lld is not a positive finite number", (long long)fault);
     }
-    pass->least = (float)least, pass->most = (float)most;
-    pass->slack = tolerance * fmax(most - least, 0) + 1e-6 * most; // what was asked for, and rounding
+    pass->min = (float)min, pass->max = (float)max;
+    pass->slack = tolerance * fmax(max - min, 0) + 1e-6 * max; // what was asked for, and rounding
     pass->direction = 0;
     pass->turn = 0;
     bool converged = conduct_solve(pass, residual, tolerance * tolerance * whole, counters), within = true;

@@ -13,7 +13,7 @@ typedef struct Source {
     Path path;
     uint32_t strength_count;
     SingeValueKey *strength;
-    float *picture;      ///< [particle_count] or NULL
+    float *texture;      ///< [particle_count] or NULL
 } Source;
 
 typedef struct SourceList {
@@ -35,7 +35,7 @@ typedef struct HeatSettings {
     float ambient_temperature; ///< K
     float tolerance;           ///< relative residual of the diffusion
     float pace;
-    size_t scratch_least;      ///< bytes
+    size_t scratch_min;      ///< bytes
 } HeatSettings;
 
 /// Operators and scratch of the stage, built once.
@@ -47,7 +47,7 @@ SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSetti
 void heat_plan_free(Memory *memory, HeatPlan *plan);
 
 /// Memory that the stage needs while it runs, and that the caller may use from one heat_step to the next: at least
-/// settings.scratch_least bytes.
+/// settings.scratch_min bytes.
 void *heat_scratch(HeatPlan *plan);
 
 /// The front thickening F used for a sheet (thicken.c).

@@ -34,8 +34,8 @@ static bool plan_allocate_scratch(Memory *memory, HeatPlan *plan) {
                         &plan->correction, &plan->residual, &plan->search, &plan->product, &plan->next};
     enum { ARRAYS = sizeof arrays / sizeof *arrays };
     size_t slices = plan->particles / HEAT_ROWS + 1, stride = slices * HEAT_ROWS; // whole slices can be read
-    size_t needed = ARRAYS * stride * sizeof(float), least = plan->settings.scratch_least;
-    plan->scratch_size = needed > least ? needed : least;
+    size_t needed = ARRAYS * stride * sizeof(float), min = plan->settings.scratch_min;
+    plan->scratch_size = needed > min ? needed : min;
     if (!(plan->scratch = memory_new(memory, plan->scratch_size, 1))) return false;
     for (size_t k = 0; k < ARRAYS; k++) *arrays[k] = (float *)plan->scratch + k * stride;
     return true;

@@ -98,7 +98,7 @@ typedef struct HeatPass {
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
     int turn;          ///< which of rest.awake holds
-    float least, most; ///< K, the range of T*
+    float min, max; ///< K, the range of T*
     double slack;      ///< K, beyond it, before a step ends by bound.c
     double share;      ///< of what is missing to the range's end, in bound.c
 } HeatPass;
@@ -109,10 +109,10 @@ void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state);
 /// What one cell gives to the springs along its four sides and two diagonals by linear elements, without diffusivity
 /// and F. Sides opposite to obtuse angles are negative. False, and zeros, where it cannot be cut into two triangles
 /// (weights.c).
-bool heat_cell_linear(const Vec corners[4], double weights[6]);
+bool heat_cell_linear(const Float3 corners[4], double weights[6]);
 /// The same, so that no side is negative once what the cell `across` it gives by linear elements (0 at a border) is
 /// added, and no diagonal.
-void heat_cell_weights(const Vec corners[4], const double across[4], double weights[6]);
+void heat_cell_weights(const Float3 corners[4], const double across[4], double weights[6]);
 
 /// Fills plan->conductance and plan->measure (operator.c).
 void heat_operator(HeatPlan *plan, const Shell *shell);

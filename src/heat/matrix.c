@@ -229,9 +229,9 @@ void heat_matrix_free(Memory *memory, HeatPlan *plan) {
 static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
     uint32_t low = 0, high = matrix->twin_count;
     while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (matrix->twins[middle].spring < spring) low = middle + 1;
-        else high = middle;
+        uint32_t centroid = low + (high - low) / 2;
+        if (matrix->twins[centroid].spring < spring) low = centroid + 1;
+        else high = centroid;
     }
     return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
 }

@@ -37,8 +37,8 @@
 
 #include "heat/heat_plan.h"
 
-static double operator_triangle(Vec a, Vec b, Vec c, Vec normal) {
-    return vec_dot(vec_cross(vec_sub(b, a), vec_sub(c, a)), normal);
+static double operator_triangle(Float3 a, Float3 b, Float3 c, Float3 normal) {
+    return float3_dot(float3_cross(float3_sub(b, a), float3_sub(c, a)), normal);
 }
 
 /// Diffusivity of a spring with F and r, m2/s.
@@ -77,15 +77,15 @@ static int operator_scale(const Shell *shell, uint32_t cell) {
     return ilogbf(widest);
 }
 
-static void operator_corners(const Shell *shell, uint32_t cell, int scale, Vec x[4]) {
+static void operator_corners(const Shell *shell, uint32_t cell, int scale, Float3 x[4]) {
     for (int k = 0; k < 4; k++) {
-        const float *place = shell->rest_position[shell->cells[cell][k]];
-        x[k] = vec(ldexpf(place[0], -scale), ldexpf(place[1], -scale), ldexpf(place[2], -scale));
+        const float *position = shell->rest_position[shell->cells[cell][k]];
+        x[k] = float3(ldexpf(position[0], -scale), ldexpf(position[1], -scale), ldexpf(position[2], -scale));
     }
 }
 
 /// Linear elements' weights of a cell; false where it cannot do with them alone.
-static bool operator_linear(const Shell *shell, uint32_t cell, Vec x[4], double w[6]) {
+static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], double w[6]) {
     operator_corners(shell, cell, operator_scale(shell, cell), x);
     bool good = heat_cell_linear(x, w);
     for (int k = 0; k < 6; k++) good &= w[k] >= 0;
@@ -96,7 +96,7 @@ static bool operator_linear(const Shell *shell, uint32_t cell, Vec x[4], double 
 static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
     const CellSprings *springs = &shell->cell_springs[cell];
     double across[4] = {0}, there[6];
-    Vec x[4], y[4];
+    Float3 x[4], y[4];
     if (operator_linear(shell, cell, x, w)) return;
     for (int k = 0; k < 4; k++) {
         uint32_t other = shell_neighbour(shell, cell, k);
@@ -118,14 +118,14 @@ static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t ce
 
 /// Two-point flux through the side that two cells share: its weight, without diffusivity and F.
 static double operator_flux(const Shell *shell, uint32_t cell, int side, uint32_t other) {
-    Vec x[4], y[4];
+    Float3 x[4], y[4];
     int scale = operator_scale(shell, cell);
     operator_corners(shell, cell, scale, x);
     operator_corners(shell, other, scale, y);
-    Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
-    Vec d = vec_sub(vec_scale(vec_add(vec_add(y[0], y[1]), vec_add(y[2], y[3])), 0.25f), middle);
-    float square = vec_dot(d, d);
-    float face = vec_length(vec_cross(vec_sub(x[(side + 1) % 4], x[side]), d));
+    Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
+    Float3 d = float3_sub(float3_scale(float3_add(float3_add(y[0], y[1]), float3_add(y[2], y[3])), 0.25f), centroid);
+    float square = float3_dot(d, d);
+    float face = float3_length(float3_cross(float3_sub(x[(side + 1) % 4], x[side]), d));
     return square > 0 ? (double)(face / square) : 0;
 }
 
@@ -158,15 +158,15 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     uint32_t centre = shell_centre(shell, cell);
     float area = shell->matter.area[centre];
-    Vec x[4];
+    Float3 x[4];
     int scale = operator_scale(shell, cell);
     operator_corners(shell, cell, scale, x);
-    Vec normal = vec_unit(vec_cross(vec_sub(x[2], x[0]), vec_sub(x[3], x[1])));
-    Vec middle = vec_scale(vec_add(vec_add(x[0], x[1]), vec_add(x[2], x[3])), 0.25f);
+    Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
+    Float3 centroid = float3_scale(float3_add(float3_add(x[0], x[1]), float3_add(x[2], x[3])), 0.25f);
     double triangle[4];
     bool even = false;
     for (int k = 0; k < 4; k++)
-        triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], middle, normal) / 2, 2 * scale);
+        triangle[k] = ldexp(operator_triangle(x[k], x[(k + 1) % 4], centroid, normal) / 2, 2 * scale);
     for (int k = 0; k < 4; k++) even |= !(triangle[k] + triangle[(k + 3) % 4] > area / 16);
     for (int k = 0; k < 4; k++) {
         double share = even ? area / 4 : (triangle[k] + triangle[(k + 3) % 4]) / 2;
@@ -247,6 +247,6 @@ void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) 
 
 bool heat_operator_may_change(const Shell *shell, uint32_t cell) {
     double w[6];
-    Vec x[4];
+    Float3 x[4];
     return !operator_linear(shell, cell, x, w);
 }

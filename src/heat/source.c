@@ -11,21 +11,21 @@ static SingeResult source_bad(SingeError *error, const char *what) {
     return error_set(error, SINGE_ERROR_ARGUMENT, "source", -1, "%s", what);
 }
 
-static bool source_in(float x, float least, float most) { return x >= least && x <= most; }
+static bool source_in(float x, float min, float max) { return x >= min && x <= max; }
 static bool source_not_negative(float x) { return x >= 0 && isfinite(x); }
 
 /// W/m2, of a picture: far beyond any fire, and finite whatever a step makes of it.
 static const float SOURCE_FLUX_MAX = 1e15f;
 
-static SingeResult source_check_picture(const SingeSourceDef *def, SingeError *error) {
-    const SingePicture *picture = &def->picture;
-    if (picture->width < 1 || picture->height < 1 || !picture->values) return source_bad(error, "the picture is empty");
+static SingeResult source_check_texture(const SingeSourceDef *def, SingeError *error) {
+    const SingeTexture *texture = &def->texture;
+    if (texture->width < 1 || texture->height < 1 || !texture->values) return source_bad(error, "the picture is empty");
     if (!isfinite(def->flux)) return source_bad(error, "flux must be finite");
     float whitest = 0, strongest = def->strength_count ? 0 : 1;
-    size_t count = (size_t)picture->width * (size_t)picture->height;
+    size_t count = (size_t)texture->width * (size_t)texture->height;
     for (size_t k = 0; k < count; k++) {
-        whitest = fmaxf(whitest, fabsf(picture->values[k]));
-        if (!isfinite(picture->values[k]))
+        whitest = fmaxf(whitest, fabsf(texture->values[k]));
+        if (!isfinite(texture->values[k]))
             return error_set(error, SINGE_ERROR_ARGUMENT, "source", (int64_t)k,
                              "value %lld of the picture is not finite", (long long)k);
     }
@@ -57,24 +57,24 @@ static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
         if (def->kind == SINGE_SOURCE_SPOT && def->path_count != 1)
             return source_bad(error, "the path of a spot has exactly one key");
         return SINGE_OK;
-    case SINGE_SOURCE_PICTURE: return source_check_picture(def, error);
+    case SINGE_SOURCE_TEXTURE: return source_check_texture(def, error);
     case SINGE_SOURCE_CALLBACK: return SINGE_OK; // may be set later
     }
     return source_bad(error, "there is no such kind of source");
 }
 
-static SingeResult source_set_picture(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+static SingeResult source_set_texture(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                                       SingeError *error) {
     bool mapped = false;
     for (uint32_t i = 0; i < shell->particle_count && !mapped; i++)
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
     if (!mapped) return source_bad(error, "a picture needs a sheet with uv");
-    if (!NEW(memory, source->picture, shell->particle_count) || !NEW(memory, source->strength, def->strength_count))
+    if (!NEW(memory, source->texture, shell->particle_count) || !NEW(memory, source->strength, def->strength_count))
         return error_set(error, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
     source->strength_count = def->strength_count;
     if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        source->picture[i] = shell_sample_picture(&def->picture, shell->uv[i][0], shell->uv[i][1]);
+        source->texture[i] = shell_sample_texture(&def->texture, shell->uv[i][0], shell->uv[i][1]);
     return SINGE_OK;
 }
 
@@ -85,12 +85,12 @@ SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceD
     *source = (Source){.generation = generation, .def = *def};
     source->def.path = NULL;
     source->def.strength = NULL;
-    source->def.picture.values = NULL;
+    source->def.texture.values = NULL;
     SingeResult result = SINGE_OK;
     if (def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT)
         result = path_set(&source->path, memory, def->path_count, def->path, "source", error);
-    else if (def->kind == SINGE_SOURCE_PICTURE)
-        result = source_set_picture(memory, shell, def, source, error);
+    else if (def->kind == SINGE_SOURCE_TEXTURE)
+        result = source_set_texture(memory, shell, def, source, error);
     if (result) {
         source->strength_count = def->strength_count; // as it was asked for, should the array be there
         source_free(memory, shell, source);
@@ -102,9 +102,9 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
     SingeSourceDef def = source->def;
     def.path_count = source->path.count, def.path = source->path.keys;
     def.strength_count = source->strength_count, def.strength = source->strength;
-    def.picture = (SingePicture){(int)shell->particle_count, 1, source->picture};
+    def.texture = (SingeTexture){(int)shell->particle_count, 1, source->texture};
     TRY(source_check(&def, error));
-    if (source->picture && def.kind != SINGE_SOURCE_PICTURE)
+    if (source->texture && def.kind != SINGE_SOURCE_TEXTURE)
         return source_bad(error, "a picture needs a source of its kind");
     return path_check(def.path_count, def.path, "source", error);
 }
@@ -112,7 +112,7 @@ SingeResult source_check_read(const Shell *shell, const Source *source, SingeErr
 void source_free(Memory *memory, const Shell *shell, Source *source) {
     path_free(&source->path, memory);
     FREE(memory, source->strength, source->strength_count);
-    FREE(memory, source->picture, shell->particle_count);
+    FREE(memory, source->texture, shell->particle_count);
     source->strength_count = 0;
 }
 
@@ -150,8 +150,8 @@ static void source_ball_task(void *context, int begin, int end) {
     float reach = def->radius + def->falloff, square = reach * reach;
     const float(*position)[4] = (const float(*)[4])job->pass->state->dynamics.position;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
-        Vec away = vec_sub(vec_load(position[i]), job->pose.position);
-        float d2 = vec_dot(away, away);
+        Float3 away = float3_sub(float3_load(position[i]), job->pose.position);
+        float d2 = float3_dot(away, away);
         if (!(d2 <= square) || !plan->alive[i]) continue;
         source_add(plan, i, def->conductance * source_falloff(sqrtf(d2), def->radius, def->falloff), def->temperature);
     }
@@ -177,19 +177,19 @@ static float source_strength(const Source *source, double time) {
     return keys[count - 1].value;
 }
 
-static void source_picture_task(void *context, int begin, int end) {
+static void source_texture_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     HeatPlan *plan = job->pass->plan;
     for (int i = begin; i < end; i++)
-        if (plan->alive[i]) plan->flux[i] += job->strength * job->source->picture[i];
+        if (plan->alive[i]) plan->flux[i] += job->strength * job->source->texture[i];
 }
 
-static void source_picture(HeatPass *pass, const Source *source, const SingeView *view) {
+static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
     SourceJob job = {.pass = pass, .source = source,
                      .strength = source->def.flux * source_strength(source, pass->state->time)};
-    if (source->picture && job.strength != 0)
-        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_picture_task, &job);
+    if (source->texture && job.strength != 0)
+        pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
 }
 
 static void source_callback(HeatPass *pass, const Source *source, const SingeView *view) {
@@ -202,23 +202,23 @@ static void source_callback(HeatPass *pass, const Source *source, const SingeVie
 typedef void SourceFn(HeatPass *pass, const Source *source, const SingeView *view);
 
 static SourceFn *const SOURCE_KINDS[] = {
-    [SINGE_SOURCE_BALL] = source_ball,   [SINGE_SOURCE_PICTURE] = source_picture, [SINGE_SOURCE_SPOT] = source_ball,
+    [SINGE_SOURCE_BALL] = source_ball,   [SINGE_SOURCE_TEXTURE] = source_texture, [SINGE_SOURCE_SPOT] = source_ball,
     [SINGE_SOURCE_CALLBACK] = source_callback,
 };
 
 /// The sheet's normal at a particle, of any length.
-static Vec source_normal(const HeatPass *pass, uint32_t i) {
+static Float3 source_normal(const HeatPass *pass, uint32_t i) {
     const Shell *shell = pass->shell;
     const float(*x)[4] = (const float(*)[4])pass->state->dynamics.position;
-    Vec sum = {0, 0, 0};
+    Float3 sum = {0, 0, 0};
     bool corner = shell_is_corner(shell, i);
     uint32_t first = corner ? shell->fan_first[i] : 0, last = corner ? shell->fan_first[i + 1] : 1;
     for (uint32_t k = first; k < last; k++) {
         uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
         if (!(pass->state->ablate.cell_flags[cell] & SINGE_ALIVE)) continue;
         const uint32_t *at = shell->cells[cell];
-        Vec a = vec_sub(vec_load(x[at[2]]), vec_load(x[at[0]])), b = vec_sub(vec_load(x[at[3]]), vec_load(x[at[1]]));
-        sum = vec_add(sum, vec_cross(a, b));
+        Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]])), b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
+        sum = float3_add(sum, float3_cross(a, b));
     }
     return sum;
 }
@@ -232,14 +232,14 @@ static void source_contact_task(void *context, int begin, int end) {
     const Field thickness = job->pass->shell->matter.thickness;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if (!plan->alive[i]) continue;
-        Vec normal, local = pose_unapply(&job->pose, vec_load(job->pass->state->dynamics.position[i]));
+        Float3 normal, local = pose_unapply(&job->pose, float3_load(job->pass->state->dynamics.position[i]));
         float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
         float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
         if (!(distance <= behind)) continue;
         if (def->sides != SINGE_SIDES_BOTH || distance > def->contact_distance) {
             float outward = shell_is_corner(job->pass->shell, i) ? -1 : 1;
-            Vec sheet = source_normal(job->pass, i), away = quat_rotate(job->pose.rotation, normal);
-            bool faces = outward * vec_dot(sheet, away) <= SOURCE_LEVEL * vec_length(sheet);
+            Float3 sheet = source_normal(job->pass, i), away = quat_rotate(job->pose.rotation, normal);
+            bool faces = outward * float3_dot(sheet, away) <= SOURCE_LEVEL * float3_length(sheet);
             if (def->sides != SINGE_SIDES_BOTH ? !faces : faces) continue;
         }
         source_add(plan, i, def->conductance, def->temperature);
@@ -271,8 +271,8 @@ static void source_gas_task(void *context, int begin, int end) {
             // what they give, where it is colder than the air
             float left = fmaxf(mass[i], field_at(matter->loss_mass_floor, (uint32_t)i));
             float real = convection / (left * plan->thickening[matter->sheet[i]] * slower);
-            float most = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
-            plan->flux[i] += T > ambient ? fminf(back, most) : fmaxf(back, real * (T - ambient));
+            float max = (hot - T) * (matter->capacity[i] / matter->area[i]) / job->pass->dt + real * (hot - ambient);
+            plan->flux[i] += T > ambient ? fminf(back, max) : fmaxf(back, real * (T - ambient));
         }
 }
 

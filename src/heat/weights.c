@@ -39,14 +39,14 @@
 enum { SIDES = 4, SPRINGS = 6, ITERATIONS = 50, STEEPEST = 5 };
 
 /// The cotangent of the angle at a, or 0 where there is no angle.
-static double weights_cot(Vec a, Vec b, Vec c) {
-    Vec u = vec_sub(b, a), v = vec_sub(c, a);
-    double area = vec_length(vec_cross(u, v));
-    return area > 0 ? vec_dot(u, v) / area : 0;
+static double weights_cot(Float3 a, Float3 b, Float3 c) {
+    Float3 u = float3_sub(b, a), v = float3_sub(c, a);
+    double area = float3_length(float3_cross(u, v));
+    return area > 0 ? float3_dot(u, v) / area : 0;
 }
 
 /// Linear elements on triangles (a, b, c) and (a, c, d), a = split; sides are numbered by their first corner.
-static void weights_linear(const Vec x[4], int split, double share, double w[SPRINGS]) {
+static void weights_linear(const Float3 x[4], int split, double share, double w[SPRINGS]) {
     int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
     double half = share / 2;
     w[a] += half * weights_cot(x[c], x[a], x[b]);
@@ -57,20 +57,20 @@ static void weights_linear(const Vec x[4], int split, double share, double w[SPR
 }
 
 /// Whether a split leaves both triangles an area, and turns none over (arrow-shaped cells, three corners in line).
-static void weights_good(const Vec x[4], bool good[2]) {
-    Vec normal = vec_unit(vec_cross(vec_sub(x[2], x[0]), vec_sub(x[3], x[1])));
-    double least[2], total = 0;
+static void weights_good(const Float3 x[4], bool good[2]) {
+    Float3 normal = float3_unit(float3_cross(float3_sub(x[2], x[0]), float3_sub(x[3], x[1])));
+    double min[2], total = 0;
     for (int split = 0; split < 2; split++) {
         int a = split, b = split + 1, c = split + 2, d = (split + 3) % 4;
-        double one = vec_dot(vec_cross(vec_sub(x[b], x[a]), vec_sub(x[c], x[a])), normal);
-        double two = vec_dot(vec_cross(vec_sub(x[c], x[a]), vec_sub(x[d], x[a])), normal);
-        least[split] = fmin(one, two);
+        double one = float3_dot(float3_cross(float3_sub(x[b], x[a]), float3_sub(x[c], x[a])), normal);
+        double two = float3_dot(float3_cross(float3_sub(x[c], x[a]), float3_sub(x[d], x[a])), normal);
+        min[split] = fmin(one, two);
         total = fmax(total, one + two);
     }
-    for (int split = 0; split < 2; split++) good[split] = least[split] > 1e-3 * total;
+    for (int split = 0; split < 2; split++) good[split] = min[split] > 1e-3 * total;
 }
 
-bool heat_cell_linear(const Vec x[4], double w[6]) {
+bool heat_cell_linear(const Float3 x[4], double w[6]) {
     bool good[2];
     double each[2][SPRINGS] = {{0}, {0}}, largest = 0;
     for (int k = 0; k < SPRINGS; k++) w[k] = 0;
@@ -99,10 +99,10 @@ typedef struct WeightSpring {
 static double weights_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// The cell's springs and twice its area, in its plane.
-static double weights_plane(const Vec x[4], WeightSpring springs[SPRINGS]) {
+static double weights_plane(const Float3 x[4], WeightSpring springs[SPRINGS]) {
     double p[SPRINGS][3], normal[3], across[3];
     for (int k = 0; k < SPRINGS; k++) {
-        Vec a = x[k % 4], b = k < SIDES ? x[(k + 1) % 4] : x[k - SIDES + 2];
+        Float3 a = x[k % 4], b = k < SIDES ? x[(k + 1) % 4] : x[k - SIDES + 2];
         p[k][0] = (double)b.x - (double)a.x, p[k][1] = (double)b.y - (double)a.y, p[k][2] = (double)b.z - (double)a.z;
     }
     const double *d = p[SIDES], *e = p[SIDES + 1];
@@ -157,7 +157,7 @@ static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) 
 }
 
 /// c2 of (1), or what comes next to it.
-static void weights_positive(const Vec x[4], double w[SPRINGS]) {
+static void weights_positive(const Float3 x[4], double w[SPRINGS]) {
     WeightSpring springs[SPRINGS] = {{0}};
     double k[SPRINGS], twice = weights_plane(x, springs);
     for (int e = 0; e < SPRINGS; e++) w[e] = 0;
@@ -167,13 +167,13 @@ static void weights_positive(const Vec x[4], double w[SPRINGS]) {
         if (springs[e].square > 0) w[e] = twice * k[e] / (even * springs[e].square);
 }
 
-void heat_cell_weights(const Vec x[4], const double across[4], double w[6]) {
+void heat_cell_weights(const Float3 x[4], const double across[4], double w[6]) {
     double positive[SPRINGS], mix = 0;
     bool linear = heat_cell_linear(x, w);
     weights_positive(x, positive);
     for (int k = 0; k < SPRINGS && linear; k++) {
-        double least = k < SIDES ? fmin(-across[k], 0) : 0;
-        if (w[k] < least) mix = fmax(mix, (least - w[k]) / (positive[k] - w[k]));
+        double min = k < SIDES ? fmin(-across[k], 0) : 0;
+        if (w[k] < min) mix = fmax(mix, (min - w[k]) / (positive[k] - w[k]));
     }
     mix = linear ? fmin(mix, 1) : 1;
     for (int k = 0; k < SPRINGS; k++) {

@@ -30,19 +30,19 @@ static size_t ellpack_width(const SpringGroup *group, uint32_t slice) {
 }
 
 static void ellpack_list_row(SpringGroup *group, uint32_t row) {
-    size_t slice = row / NETWORK_LANES, place = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES;
-    size_t end_place = NETWORK_LANES * group->slice_first[slice + 1];
+    size_t slice = row / NETWORK_LANES, position = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES;
+    size_t end_position = NETWORK_LANES * group->slice_first[slice + 1];
     for (uint32_t end = 0; end < 2 && row < group->count; end++) {
         uint32_t particle = group->ends[row][end];
         for (uint32_t i = group->first[particle]; i < group->first[particle + 1]; i++) {
             uint32_t other = group->incident[i] / 2, other_end = group->incident[i] % 2;
             if (other == row) continue;
-            group->column[place] = other;
-            group->link[place] = (uint8_t)(end | (end == other_end ? 0 : LINK_MINUS));
-            place += NETWORK_LANES;
+            group->column[position] = other;
+            group->link[position] = (uint8_t)(end | (end == other_end ? 0 : LINK_MINUS));
+            position += NETWORK_LANES;
         }
     }
-    for (; place < end_place; place += NETWORK_LANES) group->column[place] = row, group->link[place] = LINK_EMPTY;
+    for (; position < end_position; position += NETWORK_LANES) group->column[position] = row, group->link[position] = LINK_EMPTY;
 }
 
 static uint32_t ellpack_run(const uint32_t *column) {

@@ -50,14 +50,14 @@ static void hooke_move(void *task, int begin, int end) {
     const Hooke *job = task;
     const SpringGroup *group = job->group;
     for (int i = begin; i < end; i++) {
-        double force[3] = {0, 0, 0}, way = job->h * job->h * job->network->inverse_mass[i];
-        if (way == 0) continue;
+        double force[3] = {0, 0, 0}, displacement = job->h * job->h * job->network->inverse_mass[i];
+        if (displacement == 0) continue;
         for (uint32_t s = group->first[i]; s < group->first[i + 1]; s++) {
             const double *f = job->network->gradient[group->incident[s] / 2];
             double sign = group->incident[s] % 2 ? 1 : -1;
             for (int c = 0; c < 3; c++) force[c] += sign * f[c];
         }
-        for (int c = 0; c < 3; c++) job->network->position[i][c] += way * force[c];
+        for (int c = 0; c < 3; c++) job->network->position[i][c] += displacement * force[c];
     }
 }
 

@@ -30,14 +30,14 @@ static bool group_create(Memory *memory, SpringGroup *group, const NetworkSpring
 static bool network_scratch(Memory *memory, Network *network) {
     for (uint32_t g = 0; g < network->group_count; g++) {
         const SpringGroup *group = &network->groups[g];
-        if (network->row_most < group->padded) network->row_most = group->padded;
-        if (network->matrix && network->entry_most < ellpack_entries(group))
-            network->entry_most = ellpack_entries(group);
+        if (network->row_max < group->padded) network->row_max = group->padded;
+        if (network->matrix && network->entry_max < ellpack_entries(group))
+            network->entry_max = ellpack_entries(group);
     }
-    uint32_t rows = network->row_most;
+    uint32_t rows = network->row_max;
     if (!NEW(memory, network->gradient, rows)) return false;
     if (!network->matrix) return true;
-    return NEW(memory, network->value, network->entry_most) && NEW(memory, network->scale, rows) &&
+    return NEW(memory, network->value, network->entry_max) && NEW(memory, network->scale, rows) &&
            NEW(memory, network->solution, rows) && NEW(memory, network->residual, rows) &&
            NEW(memory, network->direction, rows) && NEW(memory, network->product, rows) &&
            NEW(memory, network->partial, pool_blocks((int)rows));
@@ -68,13 +68,13 @@ void network_free(Memory *memory, Network *network) {
         FREE(memory, group->first, (size_t)network->particle_count + 1);
         FREE(memory, group->incident, 2 * (size_t)group->count);
     }
-    uint32_t rows = network->row_most;
+    uint32_t rows = network->row_max;
     FREE(memory, network->position, network->particle_count);
     FREE(memory, network->inverse_mass, network->particle_count);
     FREE(memory, network->held, network->particle_count);
     FREE(memory, network->groups, network->group_count);
     FREE(memory, network->gradient, rows);
-    FREE(memory, network->value, network->entry_most);
+    FREE(memory, network->value, network->entry_max);
     FREE(memory, network->scale, rows);
     FREE(memory, network->solution, rows);
     FREE(memory, network->residual, rows);

@@ -56,8 +56,8 @@ typedef struct Network {
     double *scale;          ///< 1/sqrt(diagonal), 0 for what is not in the system
     double *solution, *residual, *direction, *product; ///< of the conjugate gradients
     double *partial;
-    uint32_t row_most;
-    size_t entry_most;
+    uint32_t row_max;
+    size_t entry_max;
 } Network;
 
 typedef struct NetworkSprings {

@@ -6,7 +6,7 @@
 #include "shell/shell.h"
 
 /// Whether segment p-q passes through triangle a, b, c. The fourth numbers must be 0.
-bool cross_pierces(Quad p, Quad q, Quad a, Quad b, Quad c);
+bool cross_pierces(Float4 p, Float4 q, Float4 a, Float4 b, Float4 c);
 
 /// Whether the triangles of two cells around their virtual centres pass through each other, other than at nodes that
 /// they share. `x` is [vertices] m.

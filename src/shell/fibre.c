@@ -12,12 +12,12 @@
 #include <math.h>
 
 typedef struct FibreFrame {
-    Vec e1, e2;
+    Float3 e1, e2;
     float cosine, sine; ///< of 2 phi
 } FibreFrame;
 
 /// The direction in which u grows where v does not; the first side where there is none.
-static Vec fibre_along_u(const Shell *shell, uint32_t cell, Vec a, Vec b) {
+static Float3 fibre_along_u(const Shell *shell, uint32_t cell, Float3 a, Float3 b) {
     const uint32_t *corner = shell->cells[cell];
     float da[2], db[2];
     for (int k = 0; k < 2; k++) {
@@ -25,28 +25,28 @@ static Vec fibre_along_u(const Shell *shell, uint32_t cell, Vec a, Vec b) {
         db[k] = shell_corner_uv(shell, cell, 3)[k] - shell_corner_uv(shell, cell, 1)[k];
     }
     float turn = da[0] * db[1] - db[0] * da[1];
-    if (turn == 0) return vec_sub(vec_load(shell->rest_position[corner[1]]), vec_load(shell->rest_position[corner[0]]));
-    Vec along = vec_sub(vec_scale(a, db[1]), vec_scale(b, da[1]));
-    return turn > 0 ? along : vec_scale(along, -1);
+    if (turn == 0) return float3_sub(float3_load(shell->rest_position[corner[1]]), float3_load(shell->rest_position[corner[0]]));
+    Float3 along = float3_sub(float3_scale(a, db[1]), float3_scale(b, da[1]));
+    return turn > 0 ? along : float3_scale(along, -1);
 }
 
 static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     const uint32_t *corner = shell->cells[cell];
-    Vec p[4];
-    for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
-    Vec a = vec_sub(p[2], p[0]), b = vec_sub(p[3], p[1]), normal = vec_unit(vec_cross(a, b));
-    Vec along = fibre_along_u(shell, cell, a, b);
-    Vec e1 = vec_unit(vec_mad(along, normal, -vec_dot(along, normal)));
+    Float3 p[4];
+    for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
+    Float3 a = float3_sub(p[2], p[0]), b = float3_sub(p[3], p[1]), normal = float3_unit(float3_cross(a, b));
+    Float3 along = fibre_along_u(shell, cell, a, b);
+    Float3 e1 = float3_unit(float3_mad(along, normal, -float3_dot(along, normal)));
     float angle = field_at(shell->matter.fibre_angle, shell_centre(shell, cell));
-    return (FibreFrame){e1, vec_cross(normal, e1), cosf(2 * angle), sinf(2 * angle)};
+    return (FibreFrame){e1, float3_cross(normal, e1), cosf(2 * angle), sinf(2 * angle)};
 }
 
 /// Adds `share` of a cell's view of a spring.
 static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour, uint32_t spring, float share) {
     SpringSet *set = &shell->springs[colour];
     const uint32_t *ends = set->ends[spring];
-    Vec d = vec_sub(vec_load(shell->rest_position[ends[1]]), vec_load(shell->rest_position[ends[0]]));
-    float x = vec_dot(d, frame->e1), y = vec_dot(d, frame->e2), square = vec_dot(d, d);
+    Float3 d = float3_sub(float3_load(shell->rest_position[ends[1]]), float3_load(shell->rest_position[ends[0]]));
+    float x = float3_dot(d, frame->e1), y = float3_dot(d, frame->e2), square = float3_dot(d, d);
     set->grain[spring] += share * ((x * x - y * y) * frame->cosine + 2 * x * y * frame->sine) / square;
 }
 

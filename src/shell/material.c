@@ -19,7 +19,7 @@ typedef struct ParamRule {
     const char *name;
     size_t offset;
     int param;
-    int places;
+    int positions;
     float low, high;
     bool low_open, high_open;
     const char *range;
@@ -105,9 +105,9 @@ SingeResult material_check_scalars(const SingeMaterialDef *material, const char 
     return SINGE_OK;
 }
 
-float shell_sample_picture(const SingePicture *picture, float u, float v) {
-    double limit[2] = {picture->width - 1.0, picture->height - 1.0};
-    double at[2] = {(double)u * picture->width - 0.5, (1 - (double)v) * picture->height - 0.5}, part[2];
+float shell_sample_texture(const SingeTexture *texture, float u, float v) {
+    double limit[2] = {texture->width - 1.0, texture->height - 1.0};
+    double at[2] = {(double)u * texture->width - 0.5, (1 - (double)v) * texture->height - 0.5}, part[2];
     size_t low[2], high[2];
     for (int k = 0; k < 2; k++) {
         at[k] = !(at[k] > 0) ? 0 : at[k] < limit[k] ? at[k] : limit[k];
@@ -115,8 +115,8 @@ float shell_sample_picture(const SingePicture *picture, float u, float v) {
         high[k] = at[k] < limit[k] ? low[k] + 1 : low[k];
         part[k] = at[k] - (double)low[k];
     }
-    const float *top = picture->values + low[1] * (size_t)picture->width;
-    const float *bottom = picture->values + high[1] * (size_t)picture->width;
+    const float *top = texture->values + low[1] * (size_t)texture->width;
+    const float *bottom = texture->values + high[1] * (size_t)texture->width;
     double upper = (1 - part[0]) * (double)top[low[0]] + part[0] * (double)top[high[0]];
     double lower = (1 - part[0]) * (double)bottom[low[0]] + part[0] * (double)bottom[high[0]];
     return (float)((1 - part[1]) * upper + part[1] * lower);
@@ -152,9 +152,9 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
     if (!isfinite(param->value) || !isfinite(param->to)) // no line leads there
         return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
     switch ((int)param->field) {
-    case SINGE_FIELD_PICTURE:
+    case SINGE_FIELD_TEXTURE:
         if (!def->uv) return field_fail(field->source, rule, "is a picture but the sheet has no uv", error);
-        if (param->picture.width < 1 || param->picture.height < 1 || !param->picture.values)
+        if (param->texture.width < 1 || param->texture.height < 1 || !param->texture.values)
             return field_fail(field->source, rule, "is an empty picture", error);
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
@@ -172,25 +172,25 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
 static float field_value(const ParamField *field, const uint32_t *vertices, int count, uint32_t cell) {
     const SingeParam *param = field->param;
     if (param->field == SINGE_FIELD_NONE) return param->value;
-    double uv[2] = {0}, place[3] = {0}, f = 0;
+    double uv[2] = {0}, position[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
         for (int k = 0; k < 2; k++)
             uv[k] += (double)(count == 1 ? field->source->uv[v] : sheet_corner_uv(field->source, cell, i))[k] / count;
-        for (int k = 0; k < 3; k++) place[k] += (double)field->source->position[v][k] / count;
+        for (int k = 0; k < 3; k++) position[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }
-    if (param->field == SINGE_FIELD_PICTURE)
-        f = (double)shell_sample_picture(&param->picture, (float)uv[0], (float)uv[1]);
+    if (param->field == SINGE_FIELD_TEXTURE)
+        f = (double)shell_sample_texture(&param->texture, (float)uv[0], (float)uv[1]);
     if (param->field == SINGE_FIELD_NOISE)
-        f = (double)random_fractal(&param->noise, (float)place[0], (float)place[1], (float)place[2]);
+        f = (double)random_fractal(&param->noise, (float)position[0], (float)position[1], (float)position[2]);
     return (float)((1 - f) * (double)param->value + f * (double)param->to);
 }
 
 /// The particles of a sheet that a rule is about.
 static void rule_range(const ParamRule *rule, const Sheet *sheet, uint32_t *begin, uint32_t *end) {
-    *begin = rule->places & AT_VERTICES ? 0 : sheet->vertex_count;
-    *end = rule->places & AT_CENTRES ? sheet->vertex_count + sheet->cell_count : sheet->vertex_count;
+    *begin = rule->positions & AT_VERTICES ? 0 : sheet->vertex_count;
+    *end = rule->positions & AT_CENTRES ? sheet->vertex_count + sheet->cell_count : sheet->vertex_count;
 }
 
 static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32_t i, float value, SingeError *error) {
@@ -278,7 +278,7 @@ SingeParam *material_param(SingeMaterialDef *material, int index) {
 void material_forget_fields(SingeMaterialDef *material) {
     SingeParam *param;
     for (int r = 0; (param = material_param(material, r)); r++) {
-        param->picture = (SingePicture){0};
+        param->texture = (SingeTexture){0};
         param->attribute = NULL;
     }
 }

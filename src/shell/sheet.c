@@ -9,11 +9,11 @@
 /// A cell is degenerate when a side or its area is this small beside its longest side (squared).
 static const double thin = 1e-6;
 /// Coordinates (m) up to this size keep squared lengths within float.
-static const float place_max = 1e15f;
+static const float position_max = 1e15f;
 /// Areas, masses and heat capacities within this range (and its inverse) stay normal floats.
 static const double measure_max = 1e30;
 
-static size_t least(size_t a, size_t b) { return a < b ? a : b; }
+static size_t min(size_t a, size_t b) { return a < b ? a : b; }
 
 /// Copies a Def of any version over the defaults. The material lies inside and has grown by itself, so
 /// the fields after it are found by the size that the caller's header gave it.
@@ -23,13 +23,13 @@ static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     size_t size = def->struct_size, inner;
     *out = singe_default_sheet();
     if (size < sizeof size) return false;
-    memcpy(out, bytes, least(size, head));
+    memcpy(out, bytes, min(size, head));
     if (size > head) {
         if (size - head < sizeof inner) return false;
         memcpy(&inner, bytes + head, sizeof inner);
         if (inner < sizeof inner || inner > size - head) return false;
-        memcpy(&out->material, bytes + head, least(inner, sizeof out->material));
-        memcpy((char *)out + tail, bytes + head + inner, least(size - head - inner, sizeof *out - tail));
+        memcpy(&out->material, bytes + head, min(inner, sizeof out->material));
+        memcpy((char *)out + tail, bytes + head + inner, min(size - head - inner, sizeof *out - tail));
     }
     out->struct_size = sizeof *out;
     out->material.struct_size = sizeof out->material;
@@ -83,7 +83,7 @@ static SingeResult element_fail(const char *name, const char *kind, uint32_t ele
 static SingeResult check_vertices(const SingeSheetDef *def, const char *name, SingeError *error) {
     for (uint32_t v = 0; v < def->vertex_count; v++) {
         for (size_t k = 0; k < 3; k++)
-            if (!(fabsf(def->positions[3 * (size_t)v + k]) <= place_max))
+            if (!(fabsf(def->positions[3 * (size_t)v + k]) <= position_max))
                 return element_fail(name, "vertex", v, "has a position that is not finite or beyond 1e15 m", error);
         for (size_t k = 0; k < 2 && def->uv; k++)
             if (!isfinite(def->uv[2 * (size_t)v + k]))

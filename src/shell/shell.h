@@ -171,7 +171,7 @@ void sheet_source_free(Memory *memory, SheetSource *source);
 SingeResult sheet_source_check(const SheetSource *source, SingeError *error);
 
 /// The picture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
-float shell_sample_picture(const SingePicture *picture, float u, float v);
+float shell_sample_texture(const SingeTexture *texture, float u, float v);
 
 /// Builds the shell of all sheets (bcs.c, strand.c). Errors: SINGE_ERROR_MESH for a non-manifold or
 /// inconsistently turned edge or a vertex whose cells are not one fan, naming the sheet and element;
@@ -317,10 +317,10 @@ static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i)
 /// Char over what pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 where there is no char: `yield`
 /// is not above mass_min (burn/glow.c).
 static inline float shell_char(float mass, float fuel, float mass_min, float yield) {
-    float span = yield - mass_min, most = 1 - fuel;
+    float span = yield - mass_min, max = 1 - fuel;
     if (!(span > 0)) return 0;
-    float share = (mass - fuel - mass_min * most) / span;
-    return share < 0 ? 0 : share > most ? most : share;
+    float share = (mass - fuel - mass_min * max) / span;
+    return share < 0 ? 0 : share > max ? max : share;
 }
 
 /// How many times slower what is left as char burns and cools than the flame's front does: 1 while there is fuel, and 1

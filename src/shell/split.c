@@ -63,12 +63,12 @@ static int count_torn(const Fan *fan, const ShellSplit *split) {
 
 bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *split) {
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[split->vertex]];
-    uint32_t all = fan->count > 0 ? UINT32_MAX >> (32 - fan->count) : 0, most = SPLIT_MOVED * shell->spare_count;
+    uint32_t all = fan->count > 0 ? UINT32_MAX >> (32 - fan->count) : 0, max = SPLIT_MOVED * shell->spare_count;
     uint32_t moves = (uint32_t)__builtin_popcount(split->cells) + 3; // of any colour
     if (split->cells == 0 || (split->cells & ~all) || split->cells == all) return false;
     if (sheet->spare_used == sheet->spare_count || count_torn(fan, split) > SPLIT_EDGES) return false;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
-        if (shell->moved[colour] + moves > most) return false;
+        if (shell->moved[colour] + moves > max) return false;
     return true;
 }
 

@@ -15,15 +15,15 @@ static void *take(char *base, size_t *used, size_t count, size_t element_size) {
 #define TAKE(pointer, count) ((pointer) = take(base, &used, (count), sizeof *(pointer)))
 
 uint32_t shell_nowhere_count(const Shell *shell) {
-    uint32_t most = 1;
+    uint32_t max = 1;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *set = &shell->springs[colour];
         for (uint32_t f = 0; f < set->family_count; f++) {
             uint32_t strands = set->family_first[f + 1] - set->family_first[f];
-            if (most < strands) most = strands;
+            if (max < strands) max = strands;
         }
     }
-    return most;
+    return max;
 }
 
 /// Points the arrays into the block at `base` and returns the block's size; *basic is that of all but the lengths.

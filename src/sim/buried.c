@@ -7,7 +7,7 @@ enum { BURIED_SAMPLES = 4096 }; // vertices that are looked at, evenly spread
 typedef struct Buried {
     uint32_t inside, looked_at;
     float deepest; ///< m
-    Vec place;     ///< of the deepest
+    Float3 position;     ///< of the deepest
 } Buried;
 
 static Buried buried_in(const SingeSim *sim, const Collider *collider) {
@@ -17,11 +17,11 @@ static Buried buried_in(const SingeSim *sim, const Collider *collider) {
     Buried buried = {0};
     for (uint32_t v = 0; v < count; v += stride) {
         if (shell_is_spare(&sim->shell, v)) continue;
-        Vec normal, place = vec_load(sim->state.dynamics.position[v]);
-        float depth = offset - collider_distance(collider, pose_unapply(&pose, place), offset + 1e-6f, &normal);
+        Float3 normal, position = float3_load(sim->state.dynamics.position[v]);
+        float depth = offset - collider_distance(collider, pose_unapply(&pose, position), offset + 1e-6f, &normal);
         buried.looked_at++;
         buried.inside += depth > 0;
-        if (depth > buried.deepest) buried.deepest = depth, buried.place = place;
+        if (depth > buried.deepest) buried.deepest = depth, buried.position = position;
     }
     return buried;
 }
@@ -33,6 +33,6 @@ void sim_find_buried(const SingeSim *sim) {
         if (sim->colliders.items[i].generation == 0) continue;
         Buried buried = buried_in(sim, &sim->colliders.items[i]);
         if (buried.deepest > cell)
-            sim_log_buried(sim, i, (double)buried.inside / buried.looked_at, buried.deepest, buried.place);
+            sim_log_buried(sim, i, (double)buried.inside / buried.looked_at, buried.deepest, buried.position);
     }
 }

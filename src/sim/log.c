@@ -15,7 +15,7 @@ static void sim_log(const SingeSim *sim, SingeLogLevel level, const char *format
 }
 
 /// A sheet that falls far within a substep, against its cells, is stretched visibly where it is held.
-static const float fall_most = 0.02f;
+static const float fall_max = 0.02f;
 
 static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
     const SingeSimDef *def = &sim->def;
@@ -27,8 +27,8 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
         sim_log(sim, SINGE_LOG_INFO,
                 "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", index,
                 (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
-    float gravity = vec_length(vec_load(def->gravity));
-    if (gravity * h * h > fall_most * sheet->cell_size)
+    float gravity = float3_length(float3_load(def->gravity));
+    if (gravity * h * h > fall_max * sheet->cell_size)
         sim_log(sim, SINGE_LOG_WARNING,
                 "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: it will stretch; more substeps or a "
                 "smaller time step help",
@@ -61,11 +61,11 @@ static void sim_log_solver(const SingeSim *sim) {
 }
 
 void sim_log_commit(const SingeSim *sim) {
-    SingeCensus census = singe_sim_census(sim);
+    SingeCounts counts = singe_sim_counts(sim);
     uint32_t springs = 0, strands = 0;
-    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += census.springs[c], strands += census.strands[c];
-    sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", census.particles, springs, strands,
-            1e-6 * (double)census.memory);
+    for (int c = 0; c < SINGE_COLOUR_COUNT; c++) springs += counts.springs[c], strands += counts.strands[c];
+    sim_log(sim, SINGE_LOG_INFO, "%u particles, %u springs in %u strands, %.3g MB", counts.particles, springs, strands,
+            1e-6 * (double)counts.memory);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) sim_log_sheet(sim, s);
     sim_log_solver(sim);
     if (sim->def.solver.tearing && !sim->tear)
@@ -87,23 +87,23 @@ void sim_log_unconverged(SingeSim *sim) {
             "or pace, or a larger tolerance, helps (said once)");
 }
 
-void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
-    if (touches->tangled && !sim->tangle_warned && sim->timers.steps == 0) {
-        sim->tangle_warned = true;
-        const float *at = sim->shell.rest_position[sim->shell.cells[touches->tangled_first][0]];
+void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
+    if (contacts->intersecting && !sim->intersecting_warned && sim->timers.steps == 0) {
+        sim->intersecting_warned = true;
+        const float *at = sim->shell.rest_position[sim->shell.cells[contacts->intersecting_first][0]];
         sim_log(sim, SINGE_LOG_WARNING,
                 "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts, one "
                 "near (%.4g, %.4g, %.4g) m; they are left alone until they have parted",
-                touches->tangled, (double)at[0], (double)at[1], (double)at[2]);
+                contacts->intersecting, (double)at[0], (double)at[1], (double)at[2]);
     }
-    if (touches->unresolved && !sim->crossing_warned) {
+    if (contacts->unresolved && !sim->crossing_warned) {
         sim->crossing_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
                 "contact: at %.4g s cells could not be kept apart: what holds them pulls them through each other, or "
                 "they began on top of each other (said once)",
                 sim->state.time);
     }
-    if (touches->dropped && !sim->crowd_warned) {
+    if (contacts->dropped && !sim->crowd_warned) {
         sim->crowd_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
                 "contact: at %.4g s sheets lie too thick on each other for the lists; some may cross (said once)",
@@ -111,11 +111,11 @@ void sim_log_touches(SingeSim *sim, const TouchCounters *touches) {
     }
 }
 
-void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place) {
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position) {
     sim_log(sim, SINGE_LOG_WARNING,
             "collider %u: %.3g %% of the sheets begin inside it, up to %.3g m deep, at (%.4g, %.4g, %.4g) m: it throws "
             "them out in the first step, which stretches them",
-            collider, 100 * share, (double)depth, (double)place.x, (double)place.y, (double)place.z);
+            collider, 100 * share, (double)depth, (double)position.x, (double)position.y, (double)position.z);
 }
 
 void sim_log_turned(const SingeSim *sim, uint32_t collider) {

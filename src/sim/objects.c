@@ -130,17 +130,17 @@ void sim_free_pin(SingeSim *sim, Pin *pin) {
 }
 
 static float pin_distance2(const Shell *shell, uint32_t particle, const float *point) {
-    Vec d = vec_sub(vec_load(shell->rest_position[particle]), vec_load(point));
-    return vec_dot(d, d);
+    Float3 d = float3_sub(float3_load(shell->rest_position[particle]), float3_load(point));
+    return float3_dot(d, d);
 }
 
 /// Nearest vertex of the sheet to a point; the first of equals. Vertices without cells are not looked at.
 static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float *point) {
     uint32_t best = sheet->vertex_first;
-    float least = INFINITY;
+    float min = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
         float d = pin_distance2(shell, v, point);
-        if (d < least && shell->matter.area[v] > 0) least = d, best = v;
+        if (d < min && shell->matter.area[v] > 0) min = d, best = v;
     }
     return best;
 }
@@ -160,7 +160,7 @@ static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t
 }
 
 /// Points (m) up to this size have finite squared distances.
-static const float pin_place_max = 1e9f;
+static const float pin_position_max = 1e9f;
 
 static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
     if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count)
@@ -173,7 +173,7 @@ static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
     if (def->point_count && !def->points) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "points is NULL");
     if (def->vertex_count && !def->vertices) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "vertices is NULL");
     for (size_t k = 0; k < 3 * (size_t)def->point_count; k++)
-        if (!(fabsf(def->points[k]) <= pin_place_max))
+        if (!(fabsf(def->points[k]) <= pin_position_max))
             return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3),
                              "point %u is not finite or beyond 1e9 m", (uint32_t)(k / 3));
     for (uint32_t k = 0; k < def->vertex_count; k++)
@@ -210,7 +210,7 @@ static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
         for (uint32_t i = 0; i < shell->particle_count; i++) {
             if (!listed[i]) continue;
             pin->particles[k] = i;
-            vec_store(pin->anchors[k++], pose_unapply(&pose, vec_load(sim->state.dynamics.position[i])));
+            float3_store(pin->anchors[k++], pose_unapply(&pose, float3_load(sim->state.dynamics.position[i])));
         }
     }
     FREE(memory, nearest, def->point_count);
@@ -263,7 +263,7 @@ SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t count, con
     TRY(path_set(&pin->path, &sim->memory, count, path, "pin", &sim->error));
     Pose after = path_pose(&pin->path, sim->state.time);
     for (uint32_t k = 0; k < pin->count; k++)
-        vec_store(pin->anchors[k], pose_unapply(&after, pose_apply(&before, vec_load(pin->anchors[k]))));
+        float3_store(pin->anchors[k], pose_unapply(&after, pose_apply(&before, float3_load(pin->anchors[k]))));
     return SINGE_OK;
 }
 

@@ -53,7 +53,7 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     if (def->tasks.enqueue && !def->tasks.finish) what = "tasks.enqueue needs tasks.finish";
     if (what) return error_set(error, SINGE_ERROR_ARGUMENT, "simulation", -1, "%s", what);
     TRY(gas_check(&def->gas, error));
-    TRY(touch_check(&def->contact, error));
+    TRY(collision_check(&def->contact, error));
     return wind_check(&def->wind, error);
 }
 
@@ -209,7 +209,7 @@ SingeResult sim_build(SingeSim *sim) {
     HeatSettings heat = {.ambient_temperature = def->ambient_temperature,
                          .tolerance = def->heat_tolerance,
                          .pace = def->pace,
-                         .scratch_least = events * sizeof *sim->events.items};
+                         .scratch_min = events * sizeof *sim->events.items};
     GasSettings gas = {.def = def->gas,
                        .gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
                        .ambient_temperature = def->ambient_temperature,

@@ -35,7 +35,7 @@ struct SingeSim {
     void *backup;      ///< the state's basic part before the step
     EventList events;
     SingeTimers timers;
-    bool tangle_warned, crossing_warned, crowd_warned; ///< of contact, once each
+    bool intersecting_warned, crossing_warned, crowd_warned; ///< of contact, once each
     bool heat_warned;  ///< that the diffusion ran out of iterations
     bool tear_warned;  ///< that a sheet ran out of spare vertices
 
@@ -72,12 +72,12 @@ void sim_log_turned(const SingeSim *sim, uint32_t collider);
 void sim_log_short_of_spares(SingeSim *sim);
 
 /// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
-void sim_log_touches(SingeSim *sim, const TouchCounters *touches);
+void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts);
 
 /// Tells it of colliders that sheets begin deep inside of.
 void sim_find_buried(const SingeSim *sim);
 /// Tells it of one, `depth` m deep at `place`.
-void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Vec place);
+void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position);
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);

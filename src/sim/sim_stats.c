@@ -51,9 +51,9 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
         if (ablate_level(&sim->shell, &sim->state, blue->ends[k][0]) < 0 &&
             ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
             continue;
-        Vec d = vec_sub(vec_load(sim->state.dynamics.position[blue->ends[k][1]]),
-                        vec_load(sim->state.dynamics.position[blue->ends[k][0]]));
-        float strain = fabsf(vec_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
+        Float3 d = float3_sub(float3_load(sim->state.dynamics.position[blue->ends[k][1]]),
+                        float3_load(sim->state.dynamics.position[blue->ends[k][0]]));
+        float strain = fabsf(float3_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
         sum += (double)strain;
         if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
         sim->sample[n++] = strain;
@@ -65,12 +65,12 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
 
 /// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its middle.
 static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
-    Vec p[4];
-    for (int i = 0; i < 4; i++) p[i] = vec_load(sim->shell.rest_position[corner[i]]);
-    Vec a = vec_scale(vec_sub(vec_add(p[1], p[2]), vec_add(p[0], p[3])), 0.5f);
-    Vec b = vec_scale(vec_sub(vec_add(p[2], p[3]), vec_add(p[0], p[1])), 0.5f);
+    Float3 p[4];
+    for (int i = 0; i < 4; i++) p[i] = float3_load(sim->shell.rest_position[corner[i]]);
+    Float3 a = float3_scale(float3_sub(float3_add(p[1], p[2]), float3_add(p[0], p[3])), 0.5f);
+    Float3 b = float3_scale(float3_sub(float3_add(p[2], p[3]), float3_add(p[0], p[1])), 0.5f);
     float ta = 0.5f * (time[1] + time[2] - time[0] - time[3]), tb = 0.5f * (time[2] + time[3] - time[0] - time[1]);
-    float aa = vec_dot(a, a), ab = vec_dot(a, b), bb = vec_dot(b, b), area2 = aa * bb - ab * ab;
+    float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), area2 = aa * bb - ab * ab;
     return area2 > 0 ? (bb * ta * ta - 2 * ab * ta * tb + aa * tb * tb) / area2 : 0;
 }
 
@@ -95,11 +95,11 @@ static uint32_t stats_inverted(const SingeSim *sim) {
     for (uint32_t c = 0; c < sim->shell.cell_count; c++) {
         if (!(sim->state.ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         const uint32_t *corner = sim->shell.cells[c];
-        Vec p[4], mean = {0, 0, 0};
-        for (int i = 0; i < 4; i++) p[i] = vec_load(x[corner[i]]), mean = vec_mad(mean, p[i], 0.25f);
-        Vec normal = vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1]));
-        float above = vec_dot(normal, vec_sub(vec_load(x[shell_centre(&sim->shell, c)]), mean));
-        inverted += !(above > 0) && !(vec_dot(normal, normal) == 0);
+        Float3 p[4], mean = {0, 0, 0};
+        for (int i = 0; i < 4; i++) p[i] = float3_load(x[corner[i]]), mean = float3_mad(mean, p[i], 0.25f);
+        Float3 normal = float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1]));
+        float above = float3_dot(normal, float3_sub(float3_load(x[shell_centre(&sim->shell, c)]), mean));
+        inverted += !(above > 0) && !(float3_dot(normal, normal) == 0);
     }
     return inverted;
 }
@@ -115,8 +115,8 @@ static void stats_particles(const SingeSim *sim, SingeStats *stats) {
         stats->mass += (double)matter->mass[i] * (double)state->burn.mass[i];
         stats->temperature_max = fmaxf(stats->temperature_max, state->heat.temperature[i]);
         if (state->burn.time_ignited[i] >= 0 || state->dynamics.pinned[i]) continue;
-        Vec v = vec_load(state->dynamics.velocity[i]);
-        square += (double)vec_dot(v, v);
+        Float3 v = float3_load(state->dynamics.velocity[i]);
+        square += (double)float3_dot(v, v);
         moving++;
     }
     stats->speed_rms_unburnt = moving > 0 ? sqrt(square / moving) : 0;
@@ -135,10 +135,10 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->heat_of_combustion = state->heat.heat_of_combustion;
     stats->heat_lost = state->heat.heat_lost + state->ablate.heat_removed;
     stats->heat_stored = sim_enthalpy(sim) - sim->heat_start;
-    double most = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
+    double max = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
                        fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
     double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
-    stats->ledger_error = most > 0 ? fabs(error) / most : 0;
+    stats->ledger_error = max > 0 ? fabs(error) / max : 0;
     stats->ledgers_close =
         stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
@@ -155,7 +155,7 @@ SingeStats singe_sim_stats(const SingeSim *sim) {
     stats_ledgers(sim, &stats);
     stats_strain(sim, &stats);
     stats.inverted_cells = stats_inverted(sim);
-    stats.tangled_cells = dynamics_plan_touches(sim->dynamics).tangled;
+    stats.intersecting_cells = dynamics_plan_contacts(sim->dynamics).intersecting;
     stats.tears = sim->state.tear.split_count;
     stats.front_speed = stats_front_speed(sim);
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);

@@ -1,4 +1,4 @@
-// Read-only views, events, timers, census and the drawn surface.
+// Read-only views, events, timers, counts and the drawn surface.
 #include "sim/sim_internal.h"
 
 SingeView singe_sim_view(const SingeSim *sim) {
@@ -51,26 +51,26 @@ SingeGas singe_sim_gas(const SingeSim *sim) {
 
 SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }
 
-SingeCensus singe_sim_census(const SingeSim *sim) {
+SingeCounts singe_sim_counts(const SingeSim *sim) {
     const Shell *shell = &sim->shell;
-    SingeCensus census = {.cells = shell->cell_count, .memory = sim->memory.held};
+    SingeCounts counts = {.cells = shell->cell_count, .memory = sim->memory.held};
     double springs = 0, strands = 0, size = 0;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
-        census.springs[colour] = shell_strand_springs(shell, colour);
-        census.strands[colour] = shell->springs[colour].strand_count;
-        census.families[colour] = shell->springs[colour].family_count;
-        springs += census.springs[colour];
+        counts.springs[colour] = shell_strand_springs(shell, colour);
+        counts.strands[colour] = shell->springs[colour].strand_count;
+        counts.families[colour] = shell->springs[colour].family_count;
+        springs += counts.springs[colour];
         strands += shell->springs[colour].strand_count;
     }
-    census.mean_strand_length = strands > 0 ? springs / strands : 0;
+    counts.mean_strand_length = strands > 0 ? springs / strands : 0;
     for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
-    census.cell_size = (float)size;
-    for (uint32_t i = 0; i < shell->particle_count; i++) census.particles += shell->matter.area[i] > 0;
-    return census;
+    counts.cell_size = (float)size;
+    for (uint32_t i = 0; i < shell->particle_count; i++) counts.particles += shell->matter.area[i] > 0;
+    return counts;
 }
 
 /// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
-static float leaves_most(const SingeSim *sim) {
+static float bulge_max(const SingeSim *sim) {
     float cell = INFINITY;
     if (!sim->def.contact.enabled) return 0;
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++) cell = fminf(cell, sim->shell.sheets[s].cell_size);
@@ -81,12 +81,12 @@ SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,
-                            leaves_most(sim)};
+                            bulge_max(sim)};
     if (!(detail.size > 0)) return ablate_surface(sim->ablate, &sim->shell, &sim->state, surface, &sim->error);
     float *room;
     if (!NEW(&sim->memory, room, sim->shell.vertex_count))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface");
-    dynamics_plan_room(sim->dynamics, &sim->shell, &sim->state, room);
+    dynamics_plan_clearance(sim->dynamics, &sim->shell, &sim->state, room);
     detail.room = room;
     SingeResult result = ablate_surface_fine(sim->ablate, &sim->shell, &sim->state, &detail, &sim->memory, sim->pool,
                                              surface, &sim->error);

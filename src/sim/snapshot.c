@@ -89,8 +89,8 @@ static bool snapshot_sheets(Stream *stream, SingeSim *sim) {
     uint32_t count = sim->sheet_count;
     STREAM(stream, count);
     if (stream->mode == STREAM_READ) {
-        size_t most = snapshot_left(stream) / sizeof sim->sheets->sheet.name;
-        stream->failed |= count == 0 || count > UINT16_MAX || count > most;
+        size_t max = snapshot_left(stream) / sizeof sim->sheets->sheet.name;
+        stream->failed |= count == 0 || count > UINT16_MAX || count > max;
         if (stream->failed || !NEW(&sim->memory, sim->sheets, count)) return false;
         sim->sheet_count = sim->sheet_capacity = count;
     }
@@ -117,17 +117,17 @@ static bool snapshot_list(Stream *stream, Memory *memory, uint32_t *count, uint3
 }
 
 static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
-    uint8_t has_picture = source->picture != NULL;
+    uint8_t has_texture = source->texture != NULL;
     STREAM(stream, source->generation);
     if (source->generation == 0) return !stream->failed; // a free slot holds nothing
     snapshot_source_def(stream, &source->def);
-    STREAM(stream, has_picture);
+    STREAM(stream, has_texture);
     STREAM(stream, source->strength_count);
     return snapshot_path(stream, &sim->memory, &source->path) &&
            snapshot_array(stream, &sim->memory, &source->strength, source->strength_count, sizeof *source->strength) &&
-           (!has_picture ||
-            snapshot_array(stream, &sim->memory, &source->picture, sim->shell.particle_count,
-                           sizeof *source->picture)) &&
+           (!has_texture ||
+            snapshot_array(stream, &sim->memory, &source->texture, sim->shell.particle_count,
+                           sizeof *source->texture)) &&
            snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
 }
 

@@ -5,21 +5,21 @@
 // ---- objects
 
 bool snapshot_generations_fit(const SingeSim *sim) {
-    uint32_t most = 0;
+    uint32_t max = 0;
     for (uint32_t i = 0; i < sim->sources.count; i++)
-        if (most < sim->sources.items[i].generation) most = sim->sources.items[i].generation;
+        if (max < sim->sources.items[i].generation) max = sim->sources.items[i].generation;
     for (uint32_t i = 0; i < sim->colliders.count; i++)
-        if (most < sim->colliders.items[i].generation) most = sim->colliders.items[i].generation;
+        if (max < sim->colliders.items[i].generation) max = sim->colliders.items[i].generation;
     for (uint32_t i = 0; i < sim->pins.count; i++)
-        if (most < sim->pins.items[i].generation) most = sim->pins.items[i].generation;
-    return most < sim->next_generation;
+        if (max < sim->pins.items[i].generation) max = sim->pins.items[i].generation;
+    return max < sim->next_generation;
 }
 
-static bool place_fits(const float *x) { return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]); }
+static bool position_fits(const float *x) { return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]); }
 
 bool snapshot_pin_fits(const Shell *shell, const Pin *pin) {
     for (uint32_t k = 0; k < pin->count; k++) {
-        if (pin->particles[k] >= shell->particle_count || !place_fits(pin->anchors[k])) return false;
+        if (pin->particles[k] >= shell->particle_count || !position_fits(pin->anchors[k])) return false;
         if (k > 0 && pin->particles[k] <= pin->particles[k - 1]) return false;
     }
     return true;
@@ -52,7 +52,7 @@ static bool dynamics_fits(const SingeSim *sim) {
     const DynamicsState *dynamics = &sim->state.dynamics;
     for (uint32_t i = 0; i < shell->particle_count; i++) {
         const float *x = dynamics->position[i], *v = dynamics->velocity[i];
-        if (!place_fits(x) || !place_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;
+        if (!position_fits(x) || !position_fits(v) || !(x[3] >= 0 && isfinite(x[3])) || !isfinite(v[3])) return false;
     }
     for (uint32_t s = 0; dynamics->bend && s < shell->springs[SINGE_GREEN].count; s++)
         if (!isfinite(dynamics->bend[s]) || !isfinite(dynamics->crease[s])) return false;

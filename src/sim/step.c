@@ -12,17 +12,17 @@ static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
     *start = now;
 }
 
-static void step_note_touches(SingeSim *sim) {
-    TouchCounters touches = dynamics_plan_touches(sim->dynamics);
+static void step_note_contacts(SingeSim *sim) {
+    CollisionCounters found = dynamics_plan_contacts(sim->dynamics);
     SingeTimers *timers = &sim->timers;
-    timers->contact_seconds = touches.seconds;
-    timers->contact_searches = touches.searches;
-    timers->contact_pairs = touches.pairs;
-    timers->contact_pushes = touches.pushes;
-    timers->contact_stops = touches.stops;
-    timers->contact_unresolved = touches.unresolved;
-    timers->contact_dropped = touches.dropped;
-    sim_log_touches(sim, &touches);
+    timers->contact_seconds = found.seconds;
+    timers->contact_searches = found.searches;
+    timers->contact_pairs = found.pairs;
+    timers->contact_repulsions = found.repulsions;
+    timers->contact_stops = found.stops;
+    timers->contact_unresolved = found.unresolved;
+    timers->contact_dropped = found.dropped;
+    sim_log_contacts(sim, &found);
 }
 
 /// What is kept for a vertex beside the State, for its new half.
@@ -30,8 +30,8 @@ static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
     dynamics_plan_torn(sim->dynamics, &sim->shell, &sim->state, vertex, spare);
     if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
     for (uint32_t i = 0; i < sim->sources.count; i++)
-        if (sim->sources.items[i].picture)
-            sim->sources.items[i].picture[spare] = sim->sources.items[i].picture[vertex];
+        if (sim->sources.items[i].texture)
+            sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
 }
 
 /// Tears, and what follows from them.
@@ -100,7 +100,7 @@ static SingeResult step_stages(SingeSim *sim) {
     sim->timers.projection_iterations += counters.iterations;
     sim->timers.projection_flops += counters.flops;
     sim->timers.projection_bytes += counters.bytes;
-    step_note_touches(sim);
+    step_note_contacts(sim);
     return SINGE_OK;
 }
 

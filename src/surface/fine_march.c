@@ -28,19 +28,19 @@ typedef struct Marching {
 /// A triangle to clip. cut[i] belongs to the edge from corner i to the next one.
 typedef struct Piece {
     uint32_t point[3];
-    FinePlace place[3];
+    FineLocation location[3];
     uint32_t *cut[3];
 } Piece;
 
-static uint32_t add_vertex(Fine *fine, FinePlace place, float mass, uint32_t source) {
-    fine->vertices[fine->vertex_count] = (FineVertex){place, mass, source};
+static uint32_t add_vertex(Fine *fine, FineLocation location, float mass, uint32_t source) {
+    fine->vertices[fine->vertex_count] = (FineVertex){location, mass, source};
     return ++fine->vertex_count;
 }
 
 static uint32_t point_vertex(Fine *fine, const Piece *piece, int corner) {
     uint32_t point = piece->point[corner];
     if (!fine->drawn[point])
-        fine->drawn[point] = add_vertex(fine, piece->place[corner], fine->values[point].mass,
+        fine->drawn[point] = add_vertex(fine, piece->location[corner], fine->values[point].mass,
                                         point < fine->shell->vertex_count ? point : SHELL_NONE);
     return fine->drawn[point];
 }
@@ -53,9 +53,9 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
     float t = surface_cut(in->level, out->level, NEAREST);
     if (!(t > 0)) return point_vertex(fine, piece, inside);
     if (*piece->cut[edge]) return *piece->cut[edge];
-    FinePlace place = piece->place[inside];
-    for (int i = 0; i < 3; i++) place.weight[i] += t * (piece->place[outside].weight[i] - place.weight[i]);
-    return *piece->cut[edge] = add_vertex(fine, place, in->mass + t * (out->mass - in->mass), SHELL_NONE);
+    FineLocation location = piece->location[inside];
+    for (int i = 0; i < 3; i++) location.weight[i] += t * (piece->location[outside].weight[i] - location.weight[i]);
+    return *piece->cut[edge] = add_vertex(fine, location, in->mass + t * (out->mass - in->mass), SHELL_NONE);
 }
 
 static void draw(Fine *fine, const Piece *piece) {
@@ -104,10 +104,10 @@ static uint32_t *side_cut(const Fine *fine, uint32_t cell, int side, int parts, 
 
 /// Products of a cell's triangle's sides from its virtual centre.
 static void metric(const uint32_t at[4], int side, const float (*field)[4], float product[3]) {
-    Vec centre = {0, 0, 0};
-    for (int i = 0; i < 4; i++) centre = vec_mad(centre, vec_load(field[at[i]]), 0.25f);
-    Vec a = vec_sub(vec_load(field[at[side]]), centre), b = vec_sub(vec_load(field[at[(side + 1) & 3]]), centre);
-    product[0] = vec_dot(a, a), product[1] = vec_dot(a, b), product[2] = vec_dot(b, b);
+    Float3 centre = {0, 0, 0};
+    for (int i = 0; i < 4; i++) centre = float3_mad(centre, float3_load(field[at[i]]), 0.25f);
+    Float3 a = float3_sub(float3_load(field[at[side]]), centre), b = float3_sub(float3_load(field[at[(side + 1) & 3]]), centre);
+    product[0] = float3_dot(a, a), product[1] = float3_dot(a, b), product[2] = float3_dot(b, b);
 }
 
 static bool has_lost_a_spring(const Fine *fine, uint32_t cell) {
@@ -139,11 +139,11 @@ typedef struct Row {
 } Row;
 
 /// Point i of the row's lower or upper line.
-static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint32_t *point, FinePlace *place) {
+static void row_point(const Fine *fine, const Row *row, bool upper, int i, uint32_t *point, FineLocation *location) {
     int j = row->j + upper, parts = row->j == 0 && !upper ? row->lower : row->splits;
     *point = j == 0 ? fine_side_point(fine, row->cell, row->side, parts, i)
                     : fine_point(fine, row->cell, row->side, row->splits, i, j);
-    *place = fine_point_place(row->cell, row->side, parts, i, j);
+    *location = fine_point_location(row->cell, row->side, parts, i, j);
 }
 
 /// Where a line's point i is along the row, 0 to 1.
@@ -167,9 +167,9 @@ static void march_row(Marching *march, const Row *row) {
     for (int step = 0; step < steps; step++) {
         Piece piece;
         bool on_lower = stands(row, low, high);
-        row_point(fine, row, false, low, &piece.point[0], &piece.place[0]);
-        row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.place[1]);
-        row_point(fine, row, true, high, &piece.point[2], &piece.place[2]);
+        row_point(fine, row, false, low, &piece.point[0], &piece.location[0]);
+        row_point(fine, row, !on_lower, on_lower ? low + 1 : high + 1, &piece.point[1], &piece.location[1]);
+        row_point(fine, row, true, high, &piece.point[2], &piece.location[2]);
         uint32_t *back = step == 0 ? row->first : &rung[step], *on = step + 1 == steps ? row->last : &rung[step + 1];
         piece.cut[0] = on_lower ? row->lower_cut[low] : on, piece.cut[1] = on_lower ? on : row->upper_cut[high];
         piece.cut[2] = back;
@@ -239,9 +239,9 @@ SingeResult fine_march(Fine *fine, SingeError *error) {
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     march_cells(&march);
     TRY(surface_reserve_triangles(fine->surface, march.triangles, error));
-    uint64_t most = points_inside(fine) + 2 * march.crossed; // a triangle has two cuts, and most share them
-    if (most > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
-    fine->vertex_capacity = (uint32_t)most;
+    uint64_t max = points_inside(fine) + 2 * march.crossed; // a triangle has two cuts, and most share them
+    if (max > INT32_MAX) return error_set(error, SINGE_ERROR_LIMIT, "surface", -1, "too many vertices");
+    fine->vertex_capacity = (uint32_t)max;
     if (!NEW(fine->memory, fine->vertices, fine->vertex_capacity))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     march.drawing = true;

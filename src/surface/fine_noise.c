@@ -30,34 +30,34 @@ int fine_octaves(float spacing) {
 
 static const float two_pi = 6.2831853f;
 
-Vec fine_rest(const Shell *shell, FinePlace place) {
-    const uint32_t *at = shell->cells[place.cell];
-    float quarter = 0.25f * place.weight[2];
-    Vec sum = {0, 0, 0};
+Float3 fine_rest(const Shell *shell, FineLocation location) {
+    const uint32_t *at = shell->cells[location.cell];
+    float quarter = 0.25f * location.weight[2];
+    Float3 sum = {0, 0, 0};
     for (int i = 0; i < 4; i++) {
         float weight = quarter;
-        if (i == place.side) weight += place.weight[0];
-        if (i == ((place.side + 1) & 3)) weight += place.weight[1];
-        sum = vec_mad(sum, vec_load(shell->rest_position[at[i]]), weight);
+        if (i == location.side) weight += location.weight[0];
+        if (i == ((location.side + 1) & 3)) weight += location.weight[1];
+        sum = float3_mad(sum, float3_load(shell->rest_position[at[i]]), weight);
     }
     return sum;
 }
 
-Vec fine_askew(Vec p) {
-    return vec(0.7447f * p.x - 0.5389f * p.y + 0.3937f * p.z, 0.6325f * p.x + 0.7574f * p.y - 0.1598f * p.z,
+Float3 fine_askew(Float3 p) {
+    return float3(0.7447f * p.x - 0.5389f * p.y + 0.3937f * p.z, 0.6325f * p.x + 0.7574f * p.y - 0.1598f * p.z,
                -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
 /// The noise at a place: how far it eats, m, and the direction, as an angle.
-static float eaten(const Fine *fine, FinePlace place, const FineSheet *sheet, float *angle) {
-    Vec p = vec_scale(fine_askew(fine_rest(fine->shell, place)), 1 / NOISE_SIZE);
+static float eaten(const Fine *fine, FineLocation location, const FineSheet *sheet, float *angle) {
+    Float3 p = float3_scale(fine_askew(fine_rest(fine->shell, location)), 1 / NOISE_SIZE);
     float sum = 0, strength = NOISE_GAIN;
     for (int octave = 0; octave < sheet->octaves; octave++) {
         float noise = random_noise(p.x, p.y, p.z, sheet->seed + (uint32_t)octave);
         if (octave <= 1) *angle = 3 * two_pi * noise;
         sum += strength * (noise - 0.5f);
         strength *= NOISE_STRENGTH;
-        p = vec_add(vec_scale(p, 2), vec(17.31f, 5.77f, 11.83f));
+        p = float3_add(float3_scale(p, 2), float3(17.31f, 5.77f, 11.83f));
     }
     float depth = fabsf(NOISE_MEAN + sum); // folded back where it leaves 0 to 1, so that no edge is smooth
     if (depth > 1) depth = fmaxf(2 - depth, 0);
@@ -70,30 +70,30 @@ static float half_at_most(float length, float axis) {
 }
 
 /// S at a place.
-static float smooth_level(const Fine *fine, FinePlace place) {
-    float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], place);
-    if (fine->flags[place.cell] & FINE_WHOLE) return level;
-    return fminf(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], place)));
+static float smooth_level(const Fine *fine, FineLocation location) {
+    float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], location);
+    if (fine->flags[location.cell] & FINE_WHOLE) return level;
+    return fminf(level, fine_whole_level(fine_spline_at(fine->shell, &fine->splines[SPLINE_WHOLE], location)));
 }
 
-FineValue fine_value(const Fine *fine, FinePlace place) {
+FineValue fine_value(const Fine *fine, FineLocation location) {
     const Shell *shell = fine->shell;
-    uint32_t sheet = shell->matter.sheet[shell_centre(shell, place.cell)];
-    FinePlace least_place = place;
-    float least = smooth_level(fine, place), angle = 0, x, y;
+    uint32_t sheet = shell->matter.sheet[shell_centre(shell, location.cell)];
+    FineLocation min_location = location;
+    float min = smooth_level(fine, location), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
-        float depth = eaten(fine, place, &fine->sheets[sheet], &angle);
-        x = half_at_most(depth, fine->axes[place.cell][0]), y = half_at_most(depth, fine->axes[place.cell][1]);
+        float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
+        x = half_at_most(depth, fine->axes[location.cell][0]), y = half_at_most(depth, fine->axes[location.cell][1]);
         float c = cosf(angle), s = sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
         const float direction[3][2] = {{c, s}, {-0.5f * c - across * s, across * c - 0.5f * s},
                                        {-0.5f * c + across * s, -across * c - 0.5f * s}};
         for (int i = 0; i < 3; i++) {
-            FinePlace there = fine_walk(shell, place, x * direction[i][0], y * direction[i][1]);
+            FineLocation there = fine_walk(shell, location, x * direction[i][0], y * direction[i][1]);
             float value = smooth_level(fine, there);
-            if (value < least) least = value, least_place = there;
+            if (value < min) min = value, min_location = there;
         }
     }
-    if (fine->flags[place.cell] & FINE_LIP) least = fminf(least, fine_lip_level(fine, place));
-    return (FineValue){least, fine_spline_at(shell, &fine->splines[SPLINE_MASS], least_place)};
+    if (fine->flags[location.cell] & FINE_TEAR_EDGE) min = fminf(min, fine_tear_level(fine, location));
+    return (FineValue){min, fine_spline_at(shell, &fine->splines[SPLINE_MASS], min_location)};
 }

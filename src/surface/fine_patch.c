@@ -22,13 +22,13 @@ static bool is_sound(const Fine *fine, uint32_t cell) {
     return sound;
 }
 
-static Vec corner_of(const Fine *fine, uint32_t vertex) { return vec_load(fine->corner[vertex]); }
+static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(fine->corner[vertex]); }
 
 /// What the cells around a vertex say of it.
 typedef struct Ring {
     uint32_t cells, borders; ///< sound ones; their sides at the vertex that have none across
-    Vec along;               ///< sum of the neighbours along these
-    Vec inner;               ///< sum of the cells' inner points
+    Float3 along;               ///< sum of the neighbours along these
+    Float3 inner;               ///< sum of the cells' inner points
 } Ring;
 
 static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
@@ -37,7 +37,7 @@ static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring)
         uint32_t other = shell_neighbour(fine->shell, cell, turn ? (corner + 3) & 3 : corner);
         if (other != SHELL_NONE && fine->sound[other]) continue;
         ring->borders++;
-        ring->along = vec_add(ring->along, corner_of(fine, at[(corner + (turn ? 3 : 1)) & 3]));
+        ring->along = float3_add(ring->along, corner_of(fine, at[(corner + (turn ? 3 : 1)) & 3]));
     }
 }
 
@@ -50,7 +50,7 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
         ring.cells++;
-        ring.inner = vec_add(ring.inner, vec_load(fine->inner[cell][i]));
+        ring.inner = float3_add(ring.inner, float3_load(fine->inner[cell][i]));
         add_borders(fine, cell, i, &ring);
     }
     return ring;
@@ -71,61 +71,61 @@ static void count_cells(void *context, int begin, int end) {
     }
 }
 
-static void place_inner(void *context, int begin, int end) {
+static void location_inner(void *context, int begin, int end) {
     Fine *fine = context;
     for (int c = begin; c < end; c++) {
         const uint32_t *at = fine->shell->cells[c];
         for (int i = 0; i < 4; i++) {
             float n = fine->valence[at[i]];
-            Vec beside = vec_add(corner_of(fine, at[(i + 1) & 3]), corner_of(fine, at[(i + 3) & 3]));
-            Vec sum = vec_mad(vec_scale(corner_of(fine, at[i]), n), beside, 2);
-            sum = vec_add(sum, corner_of(fine, at[(i + 2) & 3]));
-            vec_store(fine->inner[c][i], vec_scale(sum, 1 / (n + 5)));
+            Float3 beside = float3_add(corner_of(fine, at[(i + 1) & 3]), corner_of(fine, at[(i + 3) & 3]));
+            Float3 sum = float3_mad(float3_scale(corner_of(fine, at[i]), n), beside, 2);
+            sum = float3_add(sum, corner_of(fine, at[(i + 2) & 3]));
+            float3_store(fine->inner[c][i], float3_scale(sum, 1 / (n + 5)));
         }
     }
 }
 
 /// The two points of side i of a cell, in the order of its corners.
-static void place_rail(const Fine *fine, uint32_t cell, int i, Vec point[2]) {
+static void location_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
     const Shell *shell = fine->shell;
     const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
     uint32_t other = shell_neighbour(shell, cell, i);
     bool both = other != SHELL_NONE && fine->sound[cell] && fine->sound[other];
     for (int k = 0; k < 2; k++) {
-        point[k] = vec_scale(vec_mad(corner_of(fine, end[1 - k]), corner_of(fine, end[k]), 2), 1 / 3.0f);
+        point[k] = float3_scale(float3_mad(corner_of(fine, end[1 - k]), corner_of(fine, end[k]), 2), 1 / 3.0f);
         if (!both) continue;
         int j = 0;
         while (shell->cells[other][j] != end[k]) j++;
-        point[k] = vec_scale(vec_add(vec_load(fine->inner[cell][(i + k) & 3]), vec_load(fine->inner[other][j])), 0.5f);
+        point[k] = float3_scale(float3_add(float3_load(fine->inner[cell][(i + k) & 3]), float3_load(fine->inner[other][j])), 0.5f);
     }
 }
 
-static void place_rails(void *context, int begin, int end) {
+static void location_rails(void *context, int begin, int end) {
     Fine *fine = context;
     const Shell *shell = fine->shell;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++)
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell_neighbour(shell, c, i), blue = shell->cell_springs[c].blue[i];
             if (other != SHELL_NONE && other < c) continue;
-            Vec point[2];
-            place_rail(fine, c, i, point);
+            Float3 point[2];
+            location_rail(fine, c, i, point);
             bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[c][i];
-            for (int k = 0; k < 2; k++) vec_store(fine->rail[blue][forwards ? k : 1 - k], point[k]);
+            for (int k = 0; k < 2; k++) float3_store(fine->rail[blue][forwards ? k : 1 - k], point[k]);
         }
 }
 
 /// Where the patches meet at a vertex, and how they are moved there to stay within reach of it.
-static void place_limits(void *context, int begin, int end) {
+static void location_limits(void *context, int begin, int end) {
     Fine *fine = context;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         Ring ring = ring_of(fine, v);
-        Vec x = corner_of(fine, v), limit = x, normal = vec_load(fine->normal[v]);
-        if (ring.cells > 0 && ring.borders == 0) limit = vec_scale(ring.inner, 1 / (float)ring.cells);
-        if (ring.cells > 1 && ring.borders == 2) limit = vec_scale(vec_mad(ring.along, x, 4), 1 / 6.0f);
-        float most = fine->most[v] * fine->share[v], left = vec_dot(vec_sub(limit, x), normal);
-        Vec shift = vec_scale(normal, fmaxf(-most, fminf(left, most)) - left);
-        vec_store(fine->shift[v], shift);
-        vec_store(fine->limit[v], vec_add(limit, shift));
+        Float3 x = corner_of(fine, v), limit = x, normal = float3_load(fine->normal[v]);
+        if (ring.cells > 0 && ring.borders == 0) limit = float3_scale(ring.inner, 1 / (float)ring.cells);
+        if (ring.cells > 1 && ring.borders == 2) limit = float3_scale(float3_mad(ring.along, x, 4), 1 / 6.0f);
+        float max = fine->max[v] * fine->share[v], left = float3_dot(float3_sub(limit, x), normal);
+        Float3 shift = float3_scale(normal, fmaxf(-max, fminf(left, max)) - left);
+        float3_store(fine->shift[v], shift);
+        float3_store(fine->limit[v], float3_add(limit, shift));
     }
 }
 
@@ -134,16 +134,16 @@ void fine_find_sound(Fine *fine) { pool_for(fine->pool, (int)fine->shell->cell_c
 void fine_patches(Fine *fine) {
     const int cells = (int)fine->shell->cell_count, vertices = (int)fine->shell->vertex_count;
     pool_for(fine->pool, vertices, 1024, count_cells, fine);
-    pool_for(fine->pool, cells, 1024, place_inner, fine);
-    pool_for(fine->pool, cells, 1024, place_rails, fine);
-    pool_for(fine->pool, vertices, 1024, place_limits, fine);
+    pool_for(fine->pool, cells, 1024, location_inner, fine);
+    pool_for(fine->pool, cells, 1024, location_rails, fine);
+    pool_for(fine->pool, vertices, 1024, location_limits, fine);
 }
 
 // ---- a patch
 
 /// Where corner i is in the net, the points next to it along the side that begins there and along the one before, and
 /// the inner one.
-static const uint8_t net_places[4][4][2] = {
+static const uint8_t net_locations[4][4][2] = {
     {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, {{3, 0}, {3, 1}, {2, 0}, {2, 1}},
     {{3, 3}, {2, 3}, {3, 2}, {2, 2}}, {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
@@ -154,12 +154,12 @@ FinePatch fine_patch(const Fine *fine, uint32_t cell) {
     FinePatch patch;
     for (int i = 0; i < 4; i++) {
         uint32_t next = sides[i], last = sides[(i + 3) & 3];
-        Vec shift = vec_load(fine->shift[at[i]]);
-        const uint8_t (*place)[2] = net_places[i];
-        patch.net[place[0][0]][place[0][1]] = vec_load(fine->limit[at[i]]);
-        patch.net[place[1][0]][place[1][1]] = vec_add(shift, vec_load(fine->rail[next][ends[next][0] != at[i]]));
-        patch.net[place[2][0]][place[2][1]] = vec_add(shift, vec_load(fine->rail[last][ends[last][0] != at[i]]));
-        patch.net[place[3][0]][place[3][1]] = vec_add(shift, vec_load(fine->inner[cell][i]));
+        Float3 shift = float3_load(fine->shift[at[i]]);
+        const uint8_t (*location)[2] = net_locations[i];
+        patch.net[location[0][0]][location[0][1]] = float3_load(fine->limit[at[i]]);
+        patch.net[location[1][0]][location[1][1]] = float3_add(shift, float3_load(fine->rail[next][ends[next][0] != at[i]]));
+        patch.net[location[2][0]][location[2][1]] = float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
+        patch.net[location[3][0]][location[3][1]] = float3_add(shift, float3_load(fine->inner[cell][i]));
     }
     return patch;
 }
@@ -176,14 +176,14 @@ FinePoint fine_patch_at(const FinePatch *patch, float u, float v) {
     FinePoint point = {0};
     bernstein(u, bu, du), bernstein(v, bv, dv);
     for (int i = 0; i < 4; i++) {
-        Vec row = {0, 0, 0}, slope = {0, 0, 0};
+        Float3 row = {0, 0, 0}, slope = {0, 0, 0};
         for (int j = 0; j < 4; j++) {
-            row = vec_mad(row, patch->net[i][j], bv[j]);
-            slope = vec_mad(slope, patch->net[i][j], dv[j]);
+            row = float3_mad(row, patch->net[i][j], bv[j]);
+            slope = float3_mad(slope, patch->net[i][j], dv[j]);
         }
-        point.position = vec_mad(point.position, row, bu[i]);
-        point.along_u = vec_mad(point.along_u, row, du[i]);
-        point.along_v = vec_mad(point.along_v, slope, bu[i]);
+        point.position = float3_mad(point.position, row, bu[i]);
+        point.along_u = float3_mad(point.along_u, row, du[i]);
+        point.along_v = float3_mad(point.along_v, slope, bu[i]);
     }
     return point;
 }

@@ -23,10 +23,10 @@ static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
 /// Lengths of a cell's two axes at rest.
 static void measure_axes(const Shell *shell, uint32_t cell, float axes[2]) {
     const uint32_t *at = shell->cells[cell];
-    Vec corner[4];
-    for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
-    axes[0] = 0.5f * vec_length(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])));
-    axes[1] = 0.5f * vec_length(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])));
+    Float3 corner[4];
+    for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
+    axes[0] = 0.5f * float3_length(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])));
+    axes[1] = 0.5f * float3_length(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])));
 }
 
 /// Flags of the cells by the bounds of their splines, and their axes.
@@ -100,7 +100,7 @@ static SingeResult number(Fine *fine, SingeError *error) {
     memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(fine->flags[c] & FINE_NEAR)) continue;
-        bool near = fine->flags[c] & FINE_LIP || negative_around(fine, c);
+        bool near = fine->flags[c] & FINE_TEAR_EDGE || negative_around(fine, c);
         if (fine_splits(fine, c) > 1 && near) number_cell(fine, c, &point);
         else fine->flags[c] &= (uint8_t)~FINE_NEAR;
         if (point > INT32_MAX) break;
@@ -132,9 +132,9 @@ uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i
     return first + (uint32_t)(4 * line + side * (line * (splits - 2) / 2) + row + i - 1);
 }
 
-FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j) {
+FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int j) {
     float part = 1 / (float)splits;
-    return (FinePlace){cell, (uint8_t)side, {(float)(splits - i - j) * part, (float)i * part, (float)j * part}};
+    return (FineLocation){cell, (uint8_t)side, {(float)(splits - i - j) * part, (float)i * part, (float)j * part}};
 }
 
 // ---- evaluation
@@ -172,7 +172,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
         if (even_around(fine, v)) continue;
         uint8_t corner = 0;
         while (shell->cells[home][corner] != v) corner++;
-        fine->values[v] = fine_value(fine, (FinePlace){home, corner, {1, 0, 0}});
+        fine->values[v] = fine_value(fine, (FineLocation){home, corner, {1, 0, 0}});
         if (gone) fine->values[v] = held_back(fine->values[v], fine->raw_level[v]);
     }
 }
@@ -184,7 +184,7 @@ static void evaluate_centres(void *context, int begin, int end) {
         *value = (FineValue){-1, 0};
         if (!alive(fine, c)) continue;
         if (fine->flags[c] & FINE_EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
-        else *value = fine_value(fine, (FinePlace){c, 0, {0, 0, 1}});
+        else *value = fine_value(fine, (FineLocation){c, 0, {0, 0, 1}});
     }
 }
 
@@ -196,11 +196,11 @@ static void evaluate_sides(void *context, int begin, int end) {
         const uint32_t *at = fine->shell->cells[cell];
         bool gone = gone_beside(fine, cell, side);
         for (int i = 1; i < splits; i++) {
-            FinePlace place = fine_point_place(cell, side, splits, i, 0);
-            FineValue value = fine_value(fine, place);
+            FineLocation location = fine_point_location(cell, side, splits, i, 0);
+            FineValue value = fine_value(fine, location);
             if (gone)
-                value = held_back(value, place.weight[0] * fine->raw_level[at[side]] +
-                                             place.weight[1] * fine->raw_level[at[(side + 1) & 3]]);
+                value = held_back(value, location.weight[0] * fine->raw_level[at[side]] +
+                                             location.weight[1] * fine->raw_level[at[(side + 1) & 3]]);
             fine->values[fine_point(fine, cell, side, splits, i, 0)] = value;
         }
     }
@@ -228,7 +228,7 @@ static void evaluate_cells(void *context, int begin, int end) {
             for (int j = 1; j < splits; j++)
                 for (int i = 0; i + j < splits; i++) // the line i + j = k is the next triangle's i = 0
                     fine->values[fine_point(fine, cell, side, splits, i, j)] =
-                        fine_value(fine, fine_point_place(cell, side, splits, i, j));
+                        fine_value(fine, fine_point_location(cell, side, splits, i, j));
     }
 }
 
@@ -262,10 +262,10 @@ static void settle(Fine *fine) {
 }
 
 /// The value at a place of a cell that is not split: on the same side of the level as at `particle`.
-static FineValue bent_value(const Fine *fine, uint32_t particle, FinePlace place) {
+static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
     const FineValue *there = &fine->values[particle];
-    if (fine->flags[place.cell] & FINE_EVEN) return *there;
-    FineValue value = fine_value(fine, place);
+    if (fine->flags[location.cell] & FINE_EVEN) return *there;
+    FineValue value = fine_value(fine, location);
     value.level = there->level < 0 ? fminf(value.level, there->level) : fmaxf(value.level, 0);
     return value;
 }
@@ -286,11 +286,11 @@ static void evaluate_bent(void *context, int begin, int end) {
             int parts = fine_parts(fine, c, side);
             for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
                 fine->values[fine_side_point(fine, c, side, parts, i)] =
-                    bent_value(fine, fine->shell->cells[c][side], fine_point_place(c, side, parts, i, 0));
+                    bent_value(fine, fine->shell->cells[c][side], fine_point_location(c, side, parts, i, 0));
             for (int j = 1; j < splits; j++)
                 for (int i = 0; i + j < splits; i++)
                     fine->values[fine_point(fine, c, side, splits, i, j)] =
-                        bent_value(fine, shell_centre(fine->shell, c), fine_point_place(c, side, splits, i, j));
+                        bent_value(fine, shell_centre(fine->shell, c), fine_point_location(c, side, splits, i, j));
         }
     }
 }
@@ -298,7 +298,7 @@ static void evaluate_bent(void *context, int begin, int end) {
 SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
     bound_cells(fine);
-    fine_lips(fine);
+    fine_tear_edges(fine);
     TRY(number(fine, error));
     if (!NEW(fine->memory, fine->values, fine->point_count))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");

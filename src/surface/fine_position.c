@@ -22,23 +22,23 @@
 #include <string.h>
 
 /// How far a place leaves its triangle at most, of the shortest side at its corners; of how far another surface is.
-#define LEAVES_MOST 0.1f
+#define BULGE_MAX 0.1f
 #define ROOM_SHARE 0.4f
 /// How far the corners of lips at one place are drawn back, of the cell's side: less than contact keeps free.
-#define LIP 1e-3f
+#define TEAR_EDGE 1e-3f
 /// Lips this near are at one place; and apart, when their corners have their shares again.
-#define LIPS_CLOSED 1e-2f
-#define LIPS_OPEN 0.2f
+#define TEAR_EDGES_CLOSED 1e-2f
+#define TEAR_EDGES_OPEN 0.2f
 /// What is nearer to its flat triangle, of the shortest side, is drawn on it.
 #define FLAT 1e-5f
 /// The longest step along a patch, in sides: past its end it goes on as the cell's across, but for third derivatives.
-#define STEP_MOST 0.25f
+#define STEP_MAX 0.25f
 /// A cell is drawn in as many parts a side as its corners' normals turn by this chord, about 10 degrees.
 #define TURN_A_PART 0.3f
 
-static Vec centre_of(const uint32_t at[4], const float (*field)[4]) {
-    return vec_scale(vec_add(vec_add(vec_load(field[at[0]]), vec_load(field[at[1]])),
-                             vec_add(vec_load(field[at[2]]), vec_load(field[at[3]]))), 0.25f);
+static Float3 centre_of(const uint32_t at[4], const float (*field)[4]) {
+    return float3_scale(float3_add(float3_add(float3_load(field[at[0]]), float3_load(field[at[1]])),
+                             float3_add(float3_load(field[at[2]]), float3_load(field[at[3]]))), 0.25f);
 }
 
 static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
@@ -47,51 +47,51 @@ static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->abla
 static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
 
 /// Towards the middle of the cells that a vertex has.
-static Vec drawn_back(const Fine *fine, uint32_t vertex, float length) {
+static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
     const Shell *shell = fine->shell;
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
-    Vec place = vec_load(position[vertex]), sum = {0, 0, 0};
+    Float3 location = float3_load(position[vertex]), sum = {0, 0, 0};
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
-        sum = vec_add(sum, vec_sub(centre_of(shell->cells[shell->fan[k]], position), place));
-    return vec_mad(place, vec_unit(sum), length);
+        sum = float3_add(sum, float3_sub(centre_of(shell->cells[shell->fan[k]], position), location));
+    return float3_mad(location, float3_unit(sum), length);
 }
 
-static void lessen(float *value, float most) { *value = fminf(*value, most); }
+static void lessen(float *value, float max) { *value = fminf(*value, max); }
 
 /// Draws two vertices that were one back from each other, and returns the share that they may have.
-static float part_lips(Fine *fine, const uint32_t lip[2]) {
+static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
-    const float side = fine->shell->sheets[fine->shell->matter.sheet[lip[0]]].cell_size;
-    float apart = vec_length(vec_sub(vec_load(position[lip[0]]), vec_load(position[lip[1]])));
-    for (int i = 0; i < 2 && apart < LIPS_CLOSED * side; i++)
-        vec_store(fine->corner[lip[i]], drawn_back(fine, lip[i], LIP * side));
-    return fade(apart, LIPS_CLOSED * side, LIPS_OPEN * side);
+    const float side = fine->shell->sheets[fine->shell->matter.sheet[tear_edge[0]]].cell_size;
+    float apart = float3_length(float3_sub(float3_load(position[tear_edge[0]]), float3_load(position[tear_edge[1]])));
+    for (int i = 0; i < 2 && apart < TEAR_EDGES_CLOSED * side; i++)
+        float3_store(fine->corner[tear_edge[i]], drawn_back(fine, tear_edge[i], TEAR_EDGE * side));
+    return fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
 }
 
 /// A torn side, of which this is the one lip and that the other. Where it ends, its lips open no faster than at its
 /// other end.
 static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]) {
-    float share[2] = {1, 1}, least = 0;
+    float share[2] = {1, 1}, min = 0;
     for (int end = 0; end < 2; end++)
         if (one[end] != other[end]) {
-            share[end] = part_lips(fine, (const uint32_t[2]){one[end], other[end]});
-            least = fmaxf(least, share[end]);
+            share[end] = part_tear_edges(fine, (const uint32_t[2]){one[end], other[end]});
+            min = fmaxf(min, share[end]);
         }
     for (int end = 0; end < 2; end++) {
-        if (one[end] == other[end]) share[end] = least;
+        if (one[end] == other[end]) share[end] = min;
         lessen(&fine->share[one[end]], share[end]), lessen(&fine->share[other[end]], share[end]);
     }
 }
 
 /// Where corners are, what they have of their shares, and how far the surface may leave them.
-static void place_corners(Fine *fine) {
+static void location_corners(Fine *fine) {
     const Shell *shell = fine->shell;
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     const uint32_t spare = blue->count - shell->edge_spare_count;
     memcpy(fine->corner, fine->state->dynamics.position, shell->vertex_count * sizeof *fine->corner);
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         fine->share[v] = 1;
-        fine->most[v] = fine->room ? fminf(fine->leaves_most, ROOM_SHARE * fine->room[v]) : fine->leaves_most;
+        fine->max[v] = fine->room ? fminf(fine->bulge_max, ROOM_SHARE * fine->room[v]) : fine->bulge_max;
     }
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         part_side(fine, blue->ends[spare + k], blue->ends[shell->edge_origin[k]]);
@@ -104,24 +104,24 @@ static void gather_normals(Fine *fine) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
         const uint32_t *at = shell->cells[c];
-        Vec centre = centre_of(at, position);
+        Float3 centre = centre_of(at, position);
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[3] = {at[i], at[(i + 1) & 3], shell_centre(shell, c)};
-            Vec a = vec_sub(vec_load(position[corner[0]]), centre), b = vec_sub(vec_load(position[corner[1]]), centre);
-            Vec doubled = vec_cross(a, b);
+            Float3 a = float3_sub(float3_load(position[corner[0]]), centre), b = float3_sub(float3_load(position[corner[1]]), centre);
+            Float3 doubled = float3_cross(a, b);
             for (int k = 0; k < 3; k++)
-                vec_store(fine->normal[corner[k]], vec_add(vec_load(fine->normal[corner[k]]), doubled));
+                float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
         }
     }
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        vec_store(fine->normal[i], vec_unit(vec_load(fine->normal[i])));
+        float3_store(fine->normal[i], float3_unit(float3_load(fine->normal[i])));
 }
 
 /// The share that a triangle with this normal, 2 A n, and this square of its longest edge allows.
-static float allowed(Vec doubled, float longest, Vec normal) {
-    float area = vec_length(doubled);
+static float allowed(Float3 doubled, float longest, Float3 normal) {
+    float area = float3_length(doubled);
     if (!(area > 0)) return 0;
-    return fade(vec_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
+    return fade(float3_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
 /// Lessens the shares where triangles lean away from the normals or are thin, and how far places may go to a part of the
@@ -132,18 +132,18 @@ static void gather_shares(Fine *fine) {
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
         const uint32_t *at = shell->cells[c];
-        Vec centre = centre_of(at, position);
+        Float3 centre = centre_of(at, position);
         float whole = fine->sound[c]; // what the normal at the virtual centre allows
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[2] = {at[i], at[(i + 1) & 3]};
-            Vec a = vec_sub(vec_load(position[corner[0]]), centre), b = vec_sub(vec_load(position[corner[1]]), centre);
-            Vec doubled = vec_cross(a, b), side = vec_sub(b, a);
-            float longest = fmaxf(vec_dot(side, side), fmaxf(vec_dot(a, a), vec_dot(b, b)));
+            Float3 a = float3_sub(float3_load(position[corner[0]]), centre), b = float3_sub(float3_load(position[corner[1]]), centre);
+            Float3 doubled = float3_cross(a, b), side = float3_sub(b, a);
+            float longest = fmaxf(float3_dot(side, side), fmaxf(float3_dot(a, a), float3_dot(b, b)));
             for (int k = 0; k < 2; k++) {
-                lessen(&fine->share[corner[k]], allowed(doubled, longest, vec_load(fine->normal[corner[k]])));
-                lessen(&fine->most[corner[k]], LEAVES_MOST * vec_length(side));
+                lessen(&fine->share[corner[k]], allowed(doubled, longest, float3_load(fine->normal[corner[k]])));
+                lessen(&fine->max[corner[k]], BULGE_MAX * float3_length(side));
             }
-            lessen(&whole, allowed(doubled, longest, vec_load(fine->normal[shell_centre(shell, c)])));
+            lessen(&whole, allowed(doubled, longest, float3_load(fine->normal[shell_centre(shell, c)])));
         }
         for (int i = 0; i < 4; i++) lessen(&fine->share[at[i]], whole);
     }
@@ -154,16 +154,16 @@ static int parts_of(const Fine *fine, uint32_t cell) {
     const uint32_t *at = fine->shell->cells[cell];
     float turn = 0, freedom = 0;
     for (int i = 0; i < 4; i++) {
-        freedom = fmaxf(freedom, fine->share[at[i]] * fine->most[at[i]]);
+        freedom = fmaxf(freedom, fine->share[at[i]] * fine->max[at[i]]);
         for (int k = 0; k < i; k++)
-            turn = fmaxf(turn, vec_length(vec_sub(vec_load(fine->normal[at[i]]), vec_load(fine->normal[at[k]]))));
+            turn = fmaxf(turn, float3_length(float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]))));
     }
-    int parts = 1 + (int)(turn / TURN_A_PART), most = fine_splits(fine, cell);
-    return !(freedom > 0) ? 1 : parts < most ? parts : most;
+    int parts = 1 + (int)(turn / TURN_A_PART), max = fine_splits(fine, cell);
+    return !(freedom > 0) ? 1 : parts < max ? parts : max;
 }
 
-void fine_place(Fine *fine) {
-    place_corners(fine);
+void fine_position(Fine *fine) {
+    location_corners(fine);
     gather_normals(fine);
     fine_find_sound(fine);
     gather_shares(fine);
@@ -174,66 +174,66 @@ void fine_place(Fine *fine) {
 
 // ---- one place
 
-static Vec weigh(const Vec corner[3], const float weight[3]) {
-    return vec_mad(vec_mad(vec_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
+static Float3 weigh(const Float3 corner[3], const float weight[3]) {
+    return float3_mad(float3_mad(float3_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
 }
 
 /// The step along the patch from (u, v) to the point whose normal leads to `target`, or nearly.
-static void step_beneath(const FinePoint *point, Vec target, float *du, float *dv) {
-    Vec left = vec_sub(target, point->position);
-    float uu = vec_dot(point->along_u, point->along_u), vv = vec_dot(point->along_v, point->along_v);
-    float uv = vec_dot(point->along_u, point->along_v), det = uu * vv - uv * uv;
-    float to_u = vec_dot(left, point->along_u), to_v = vec_dot(left, point->along_v);
-    *du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MOST;
+static void step_beneath(const FinePoint *point, Float3 target, float *du, float *dv) {
+    Float3 left = float3_sub(target, point->position);
+    float uu = float3_dot(point->along_u, point->along_u), vv = float3_dot(point->along_v, point->along_v);
+    float uv = float3_dot(point->along_u, point->along_v), det = uu * vv - uv * uv;
+    float to_u = float3_dot(left, point->along_u), to_v = float3_dot(left, point->along_v);
+    *du = det > 0 ? (to_u * vv - to_v * uv) / det : 2 * STEP_MAX;
     *dv = det > 0 ? (to_v * uu - to_u * uv) / det : 0;
 }
 
-static Vec across(const FinePoint *point) { return vec_unit(vec_cross(point->along_u, point->along_v)); }
+static Float3 across(const FinePoint *point) { return float3_unit(float3_cross(point->along_u, point->along_v)); }
 
 /// Normal of the patch where that step ends.
-static Vec normal_beneath(const FinePatch *patch, float u, float v, float du, float dv) {
-    FinePoint point = fine_patch_at(patch, u + fmaxf(-STEP_MOST, fminf(du, STEP_MOST)),
-                                    v + fmaxf(-STEP_MOST, fminf(dv, STEP_MOST)));
+static Float3 normal_beneath(const FinePatch *patch, float u, float v, float du, float dv) {
+    FinePoint point = fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)),
+                                    v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
     return across(&point);
 }
 
 /// A number of the vertices at a place: straight between the corners, and the mean of all four at the centre.
-static float blend_corners(const uint32_t at[4], const FinePlace *place, const float *value) {
+static float blend_corners(const uint32_t at[4], const FineLocation *location, const float *value) {
     float centre = 0.25f * ((value[at[0]] + value[at[1]]) + (value[at[2]] + value[at[3]]));
-    return place->weight[0] * value[at[place->side]] + place->weight[1] * value[at[(place->side + 1) & 3]] +
-           place->weight[2] * centre;
+    return location->weight[0] * value[at[location->side]] + location->weight[1] * value[at[(location->side + 1) & 3]] +
+           location->weight[2] * centre;
 }
 
-static Vec unit_or_up(Vec normal) {
-    Vec unit = vec_unit(normal);
-    return vec_dot(unit, unit) > 0.5f ? unit : vec(0, 0, 1);
+static Float3 unit_or_up(Float3 normal) {
+    Float3 unit = float3_unit(normal);
+    return float3_dot(unit, unit) > 0.5f ? unit : float3(0, 0, 1);
 }
 
-void fine_place_at(const Fine *fine, const FinePatch *patch, const FinePlace *place, float position[3],
+void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                    float normal[3]) {
-    const uint32_t *at = fine->shell->cells[place->cell];
+    const uint32_t *at = fine->shell->cells[location->cell];
     const float (*corners)[4] = (const float (*)[4])fine->corner;
-    const uint32_t particle[3] = {at[place->side], at[(place->side + 1) & 3], shell_centre(fine->shell, place->cell)};
-    const Vec corner[3] = {vec_load(corners[particle[0]]), vec_load(corners[particle[1]]), centre_of(at, corners)};
-    Vec normals[3], flat = weigh(corner, place->weight);
-    for (int i = 0; i < 3; i++) normals[i] = vec_load(fine->normal[particle[i]]);
-    Vec lean = vec_unit(weigh(normals, place->weight));
-    float share = blend_corners(at, place, fine->share), most = blend_corners(at, place, fine->most), x, y;
-    vec_store(position, flat), vec_store(normal, unit_or_up(lean));
-    if (!(share * most > 0)) return;
-    fine_coordinates(*place, &x, &y);
+    const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3], shell_centre(fine->shell, location->cell)};
+    const Float3 corner[3] = {float3_load(corners[particle[0]]), float3_load(corners[particle[1]]), centre_of(at, corners)};
+    Float3 normals[3], flat = weigh(corner, location->weight);
+    for (int i = 0; i < 3; i++) normals[i] = float3_load(fine->normal[particle[i]]);
+    Float3 lean = float3_unit(weigh(normals, location->weight));
+    float share = blend_corners(at, location, fine->share), max = blend_corners(at, location, fine->max), x, y;
+    float3_store(position, flat), float3_store(normal, unit_or_up(lean));
+    if (!(share * max > 0)) return;
+    fine_coordinates(*location, &x, &y);
     const float u = x + 0.5f, v = y + 0.5f;
     float du, dv;
     FinePoint point = fine_patch_at(patch, u, v);
-    const float regular = blend_corners(at, place, fine->regular);
-    Vec beneath = vec_mad(vec_scale(lean, 1 - regular * regular), across(&point), regular * regular);
-    share *= fade(vec_dot(beneath, lean), 0.6f, 0.85f);
+    const float regular = blend_corners(at, location, fine->regular);
+    Float3 beneath = float3_mad(float3_scale(lean, 1 - regular * regular), across(&point), regular * regular);
+    share *= fade(float3_dot(beneath, lean), 0.6f, 0.85f);
     if (!(share > 0)) return;
-    float height = share * vec_dot(vec_sub(point.position, flat), beneath) / vec_dot(beneath, lean);
-    if (fabsf(height) > most) share *= most / fabsf(height), height = copysignf(most, height);
-    if (fabsf(height) > FLAT * vec_length(vec_sub(corner[1], corner[0])))
-        vec_store(position, vec_mad(flat, lean, height));
+    float height = share * float3_dot(float3_sub(point.position, flat), beneath) / float3_dot(beneath, lean);
+    if (fabsf(height) > max) share *= max / fabsf(height), height = copysignf(max, height);
+    if (fabsf(height) > FLAT * float3_length(float3_sub(corner[1], corner[0])))
+        float3_store(position, float3_mad(flat, lean, height));
     step_beneath(&point, flat, &du, &dv);
-    share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MOST, STEP_MOST);
-    vec_store(normal, unit_or_up(vec_mad(vec_scale(lean, 1 - share), normal_beneath(patch, u, v, du, dv), share)));
+    share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
+    float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), normal_beneath(patch, u, v, du, dv), share)));
 }

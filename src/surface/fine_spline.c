@@ -75,21 +75,21 @@ void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell,
     }
 }
 
-float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place) {
-    const uint32_t *at = shell->cells[place.cell], *sides = shell->cell_springs[place.cell].blue;
-    int a = place.side, b = (a + 1) & 3, opposite = (a + 2) & 3, before = (a + 3) & 3;
+float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location) {
+    const uint32_t *at = shell->cells[location.cell], *sides = shell->cell_springs[location.cell].blue;
+    int a = location.side, b = (a + 1) & 3, opposite = (a + 2) & 3, before = (a + 3) & 3;
     float ab = spline->edge[sides[a]], bb = spline->edge[sides[b]], aa = spline->edge[sides[before]];
     float centre = 0.25f * ((ab + bb) + (aa + spline->edge[sides[opposite]]));
-    float x = place.weight[0], y = place.weight[1], z = place.weight[2];
+    float x = location.weight[0], y = location.weight[1], z = location.weight[2];
     return spline->corner[at[a]] * x * x + spline->corner[at[b]] * y * y + centre * z * z + 2 * ab * x * y +
            (aa + ab) * x * z + (ab + bb) * y * z;
 }
 
 // `out` is the distance from the centre towards a side, `along` runs from its first corner to its second.
 
-void fine_coordinates(FinePlace place, float *x, float *y) {
-    float out = 0.5f * (place.weight[0] + place.weight[1]), along = 0.5f * (place.weight[1] - place.weight[0]);
-    switch (place.side) {
+void fine_coordinates(FineLocation location, float *x, float *y) {
+    float out = 0.5f * (location.weight[0] + location.weight[1]), along = 0.5f * (location.weight[1] - location.weight[0]);
+    switch (location.side) {
     case 0: *x = along, *y = -out; break;
     case 1: *x = out, *y = along; break;
     case 2: *x = -along, *y = out; break;
@@ -97,18 +97,18 @@ void fine_coordinates(FinePlace place, float *x, float *y) {
     }
 }
 
-static FinePlace from_coordinates(uint32_t cell, float x, float y) {
-    FinePlace place = {.cell = cell};
+static FineLocation from_coordinates(uint32_t cell, float x, float y) {
+    FineLocation location = {.cell = cell};
     float out, along;
     if (fabsf(x) > fabsf(y)) {
-        place.side = x > 0 ? 1 : 3;
+        location.side = x > 0 ? 1 : 3;
         out = fabsf(x), along = x > 0 ? y : -y;
     } else {
-        place.side = y > 0 ? 2 : 0;
+        location.side = y > 0 ? 2 : 0;
         out = fabsf(y), along = y > 0 ? -x : x;
     }
-    place.weight[0] = out - along, place.weight[1] = out + along, place.weight[2] = 1 - 2 * out;
-    return place;
+    location.weight[0] = out - along, location.weight[1] = out + along, location.weight[2] = 1 - 2 * out;
+    return location;
 }
 
 /// The side by which a cell's neighbour borders on spring `blue`.
@@ -118,10 +118,10 @@ static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
     return side;
 }
 
-FinePlace fine_walk(const Shell *shell, FinePlace place, float dx, float dy) {
-    uint32_t cell = place.cell;
+FineLocation fine_walk(const Shell *shell, FineLocation location, float dx, float dy) {
+    uint32_t cell = location.cell;
     float x, y;
-    fine_coordinates(place, &x, &y);
+    fine_coordinates(location, &x, &y);
     x += dx, y += dy;
     for (int crossing = 0; crossing < 2 && fmaxf(fabsf(x), fabsf(y)) > 0.5f; crossing++) {
         int side = fabsf(x) > fabsf(y) ? (x > 0 ? 1 : 3) : (y > 0 ? 2 : 0);

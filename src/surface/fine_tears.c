@@ -16,26 +16,26 @@
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
-static const float LIP_LEAST = 0.3f;    ///< S at the lip: 0.16 of a cell's side beside a straight tear
-static const float LIP_MIDDLE = 0.45f; ///< z from which on something is left of a cell
-static const float LIP_WANDERS = 0.25f; ///< |D|, at most, of a cell's side
-static const float LIP_WAVE = 2.2f;    ///< largest features of D, of a cell's side
-static const float LIP_STRENGTH = 0.6f, LIP_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
+static const float TEAR_EDGE_MIN = 0.3f;    ///< S at the lip: 0.16 of a cell's side beside a straight tear
+static const float TEAR_EDGE_CENTROID = 0.45f; ///< z from which on something is left of a cell
+static const float TEAR_EDGE_WANDERS = 0.25f; ///< |D|, at most, of a cell's side
+static const float TEAR_EDGE_WAVE = 2.2f;    ///< largest features of D, of a cell's side
+static const float TEAR_EDGE_STRENGTH = 0.6f, TEAR_EDGE_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
 
 static const float pi = 3.14159265f;
 
 static float angle_at(const Shell *shell, uint32_t cell, int corner) {
     const uint32_t *at = shell->cells[cell];
-    Vec p = vec_load(shell->rest_position[at[corner]]);
-    Vec a = vec_unit(vec_sub(vec_load(shell->rest_position[at[(corner + 1) & 3]]), p));
-    Vec b = vec_unit(vec_sub(vec_load(shell->rest_position[at[(corner + 3) & 3]]), p));
-    return atan2f(vec_length(vec_cross(a, b)), vec_dot(a, b));
+    Float3 p = float3_load(shell->rest_position[at[corner]]);
+    Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 1) & 3]]), p));
+    Float3 b = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 3) & 3]]), p));
+    return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
 }
 
 /// b of a vertex at a tear; marks its cells.
-static void lip_vertex(Fine *fine, uint32_t vertex) {
+static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
     const Shell *shell = fine->shell;
-    const Spline *spline = &fine->splines[SPLINE_LIP];
+    const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     float angle = 0;
     bool border = false;
     if (shell->fan_first[vertex] == shell->fan_first[vertex + 1]) return;
@@ -48,15 +48,15 @@ static void lip_vertex(Fine *fine, uint32_t vertex) {
         for (int side = i, turn = 0; turn < 2; turn++, side = (i + 3) & 3)
             border |= shell_neighbour(shell, cell, side) == SHELL_NONE &&
                       spline->edge[shell->cell_springs[cell].blue[side]] > 0;
-        fine->flags[cell] = (uint8_t)((fine->flags[cell] | FINE_LIP) & ~FINE_EVEN);
+        fine->flags[cell] = (uint8_t)((fine->flags[cell] | FINE_TEAR_EDGE) & ~FINE_EVEN);
     }
     spline->corner[vertex] = fmaxf(-0.5f, fminf((border ? 2 : 1) * angle / pi - 1, 0.75f));
 }
 
-void fine_lips(Fine *fine) {
+void fine_tear_edges(Fine *fine) {
     const Shell *shell = fine->shell;
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
-    const Spline *spline = &fine->splines[SPLINE_LIP];
+    const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     uint32_t first = blue->count - shell->edge_spare_count;
     if (shell->edge_spare_used == 0) return;
     for (uint32_t s = 0; s < blue->count; s++) spline->edge[s] = 1;
@@ -65,41 +65,41 @@ void fine_lips(Fine *fine) {
         spline->edge[first + k] = spline->edge[shell->edge_origin[k]] = 0;
     for (uint32_t k = 0; k < shell->edge_spare_used; k++)
         for (int end = 0; end < 2; end++) {
-            lip_vertex(fine, blue->ends[first + k][end]);
-            lip_vertex(fine, blue->ends[shell->edge_origin[k]][end]);
+            tear_edge_vertex(fine, blue->ends[first + k][end]);
+            tear_edge_vertex(fine, blue->ends[shell->edge_origin[k]][end]);
         }
 }
 
 /// D at a place, m, each component up to `reach`.
-static Vec wander(const FineSheet *sheet, Vec place, float size, float reach) {
-    Vec p = vec_scale(place, 1 / (LIP_WAVE * size)), sum = {0, 0, 0};
-    float strength = LIP_GAIN;
+static Float3 wander(const FineSheet *sheet, Float3 location, float size, float reach) {
+    Float3 p = float3_scale(location, 1 / (TEAR_EDGE_WAVE * size)), sum = {0, 0, 0};
+    float strength = TEAR_EDGE_GAIN;
     for (int octave = 0; octave < sheet->octaves; octave++) {
         const uint32_t seed = sheet->seed + 3 * (uint32_t)octave + 101;
-        Vec noise = vec(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
+        Float3 noise = float3(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
                         random_noise(p.x, p.y, p.z, seed + 2));
-        sum = vec_mad(sum, vec_sub(noise, vec(0.5f, 0.5f, 0.5f)), strength);
-        strength *= LIP_STRENGTH;
-        p = vec_add(vec_scale(p, 2), vec(11.83f, 17.31f, 5.77f));
+        sum = float3_mad(sum, float3_sub(noise, float3(0.5f, 0.5f, 0.5f)), strength);
+        strength *= TEAR_EDGE_STRENGTH;
+        p = float3_add(float3_scale(p, 2), float3(11.83f, 17.31f, 5.77f));
     }
-    float length = vec_length(sum);
-    return vec_scale(sum, length > 1 ? reach / length : reach);
+    float length = float3_length(sum);
+    return float3_scale(sum, length > 1 ? reach / length : reach);
 }
 
-float fine_lip_level(const Fine *fine, FinePlace place) {
+float fine_tear_level(const Fine *fine, FineLocation location) {
     const Shell *shell = fine->shell;
-    uint32_t index = shell->matter.sheet[shell_centre(shell, place.cell)];
+    uint32_t index = shell->matter.sheet[shell_centre(shell, location.cell)];
     const FineSheet *sheet = &fine->sheets[index];
-    const uint32_t *at = shell->cells[place.cell];
-    float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, LIP_WANDERS * size);
+    const uint32_t *at = shell->cells[location.cell];
+    float size = shell->sheets[index].cell_size, reach = fminf(sheet->reach, TEAR_EDGE_WANDERS * size);
     if (reach > 0) {
-        Vec corner[4], way = wander(sheet, fine_askew(fine_rest(shell, place)), size, reach);
-        for (int i = 0; i < 4; i++) corner[i] = vec_load(shell->rest_position[at[i]]);
-        Vec along = vec_scale(vec_sub(vec_add(corner[1], corner[2]), vec_add(corner[0], corner[3])), 0.5f);
-        Vec up = vec_scale(vec_sub(vec_add(corner[3], corner[2]), vec_add(corner[0], corner[1])), 0.5f);
-        place = fine_walk(shell, place, vec_dot(way, along) / vec_dot(along, along),
-                          vec_dot(way, up) / vec_dot(up, up));
+        Float3 corner[4], displacement = wander(sheet, fine_askew(fine_rest(shell, location)), size, reach);
+        for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
+        Float3 along = float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
+        Float3 up = float3_scale(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])), 0.5f);
+        location = fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
+                          float3_dot(displacement, up) / float3_dot(up, up));
     }
-    float field = fine_spline_at(shell, &fine->splines[SPLINE_LIP], place);
-    return 0.5f * fmaxf(field - LIP_LEAST, place.weight[2] - LIP_MIDDLE);
+    float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);
+    return 0.5f * fmaxf(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);
 }

@@ -68,16 +68,16 @@ static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state,
 }
 
 /// As many triangles as the cells left can have: four, or eight where the level set may pass.
-static uint64_t most_triangles(const AblatePlan *plan, const Shell *shell, const State *state) {
-    uint64_t most = 0;
+static uint64_t max_triangles(const AblatePlan *plan, const Shell *shell, const State *state) {
+    uint64_t max = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!(state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         const uint32_t *corners = shell->cells[c];
         bool whole = plan->level[shell_centre(shell, c)] >= 0;
         for (int i = 0; i < 4; i++) whole = whole && plan->level[corners[i]] >= 0;
-        most += whole ? 4 : 8;
+        max += whole ? 4 : 8;
     }
-    return most;
+    return max;
 }
 
 /// How many keys are marked.
@@ -103,24 +103,24 @@ void surface_normals(SingeSurface *surface) {
     memset(surface->normal, 0, surface->vertex_count * sizeof *surface->normal);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         const uint32_t *triangle = surface->triangles[t];
-        Vec corner = vec_load(surface->position[triangle[0]]);
-        Vec doubled = vec_cross(vec_sub(vec_load(surface->position[triangle[1]]), corner),
-                                vec_sub(vec_load(surface->position[triangle[2]]), corner));
+        Float3 corner = float3_load(surface->position[triangle[0]]);
+        Float3 doubled = float3_cross(float3_sub(float3_load(surface->position[triangle[1]]), corner),
+                                float3_sub(float3_load(surface->position[triangle[2]]), corner));
         for (int i = 0; i < 3; i++) {
             float *normal = surface->normal[triangle[i]];
-            vec_store(normal, vec_add(vec_load(normal), doubled));
+            float3_store(normal, float3_add(float3_load(normal), doubled));
         }
     }
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
-        Vec normal = vec_unit(vec_load(surface->normal[v]));
-        bool unit = vec_dot(normal, normal) > 0.5f;
-        vec_store(surface->normal[v], unit ? normal : vec(0, 0, 1));
+        Float3 normal = float3_unit(float3_load(surface->normal[v]));
+        bool unit = float3_dot(normal, normal) > 0.5f;
+        float3_store(surface->normal[v], unit ? normal : float3(0, 0, 1));
     }
 }
 
 static SingeResult draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
                         SingeSurface *surface, SingeError *error) {
-    TRY(surface_reserve_triangles(surface, most_triangles(plan, shell, state), error));
+    TRY(surface_reserve_triangles(surface, max_triangles(plan, shell, state), error));
     draw_cells(plan, shell, state, cell_first, surface);
     TRY(surface_reserve_vertices(surface, count_vertices(plan), error));
     fill_vertices(plan, shell, state, surface);

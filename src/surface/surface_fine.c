@@ -34,7 +34,7 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
     arrays[count++] = (FineArray){offsetof(Fine, field), sizeof *fine->field, number}
     if (shell->corner_uv) ARRAY(cell_triangle, cells + 1);
     ARRAY(sheets, shell->sheet_count), ARRAY(raw_level, shell->particle_count);
-    ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(most, corners), ARRAY(corner, corners);
+    ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(max, corners), ARRAY(corner, corners);
     ARRAY(sound, cells), ARRAY(valence, corners), ARRAY(regular, corners), ARRAY(inner, cells), ARRAY(rail, sides);
     ARRAY(limit, corners), ARRAY(shift, corners), ARRAY(bent, cells), ARRAY(bent_point, cells), ARRAY(bent_side, sides);
     ARRAY(splits, cells), ARRAY(parts, sides), ARRAY(cell_value, cells), ARRAY(low, cells), ARRAY(flags, cells);
@@ -44,10 +44,10 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
     return count;
 }
 
-enum { FINE_ARRAYS_MOST = 32 };
+enum { FINE_ARRAYS_MAX = 32 };
 
 static bool allocate(Fine *fine) {
-    FineArray arrays[FINE_ARRAYS_MOST];
+    FineArray arrays[FINE_ARRAYS_MAX];
     int count = list_arrays(fine, arrays);
     for (int i = 0; i < count; i++) {
         void *block = memory_new(fine->memory, arrays[i].count, arrays[i].size);
@@ -62,7 +62,7 @@ static bool allocate(Fine *fine) {
 }
 
 static void release(Fine *fine) {
-    FineArray arrays[FINE_ARRAYS_MOST];
+    FineArray arrays[FINE_ARRAYS_MAX];
     int count = list_arrays(fine, arrays);
     for (int i = 0; i < count; i++)
         memory_free(fine->memory, (char *)fine + arrays[i].offset, arrays[i].count, arrays[i].size);
@@ -110,7 +110,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
     for (int f = 0; f < SPLINE_COUNT; f++)
         if (fields[f]) fine_spline(fine, fields[f], &fine->splines[f]);
     fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);
-    fine_place(fine);
+    fine_position(fine);
     TRY(fine_points(fine, error));
     TRY(fine_march(fine, error));
     TRY(surface_reserve_vertices(fine->surface, fine->vertex_count, error));
@@ -122,7 +122,7 @@ static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *err
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
-    fine.room = detail->room, fine.leaves_most = detail->leaves_most > 0 ? detail->leaves_most : INFINITY;
+    fine.room = detail->room, fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = draw(&fine, detail, error);

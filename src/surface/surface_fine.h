@@ -14,12 +14,12 @@ enum {
     FINE_SPLIT = 2, ///< the level changes sign in it
     FINE_EVEN = 4,  ///< nothing to draw finely: one mass, and not negative
     FINE_WHOLE = 8, ///< nothing around it has gone
-    FINE_LIP = 16,  ///< at a tear
+    FINE_TEAR_EDGE = 16,  ///< at a tear
 };
 
 /// The fields that are drawn smoothly.
 typedef enum SplineField {
-    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_FUEL, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_LIP, SPLINE_COUNT
+    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_FUEL, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_TEAR_EDGE, SPLINE_COUNT
 } SplineField;
 
 /// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
@@ -29,11 +29,11 @@ typedef struct Spline {
 } Spline;
 
 /// A place on the sheet: a triangle of a cell and the weights of its corners side, side + 1 and the cell's centre.
-typedef struct FinePlace {
+typedef struct FineLocation {
     uint32_t cell;
     uint8_t side;
     float weight[3];
-} FinePlace;
+} FineLocation;
 
 /// What a place is drawn by.
 typedef struct FineValue {
@@ -42,7 +42,7 @@ typedef struct FineValue {
 
 /// A vertex to be.
 typedef struct FineVertex {
-    FinePlace place;
+    FineLocation location;
     float mass;
     uint32_t source; ///< vertex of the input, or SHELL_NONE
 } FineVertex;
@@ -64,7 +64,7 @@ typedef struct Fine {
     Memory *memory;
     Pool *pool;
     const float *room;       ///< [vertices] m, of SurfaceDetail
-    float leaves_most;       ///< m, of SurfaceDetail
+    float bulge_max;       ///< m, of SurfaceDetail
     FineSheet *sheets;       ///< [sheets]
     Spline splines[SPLINE_COUNT];
     float *raw_level;        ///< [particles] m'; below 0 for what is gone
@@ -88,7 +88,7 @@ typedef struct Fine {
     uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
     float (*normal)[3];      ///< [particles] unit, or 0
-    float *most;             ///< [vertices] m, how far the surface leaves flat triangles there
+    float *max;             ///< [vertices] m, how far the surface leaves flat triangles there
     float *share;            ///< [vertices] of its way to the patches that it goes there
     float (*corner)[4];      ///< [vertices] m, of the flat triangles
     uint8_t *sound;          ///< [cells] 1: it is there and not torn
@@ -115,14 +115,14 @@ void fine_spline_cells(const Fine *fine, Spline *spline);
 /// The least and the greatest coefficient of a cell: the spline lies between them.
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high);
 
-float fine_spline_at(const Shell *shell, const Spline *spline, FinePlace place);
+float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
 
 /// The place that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
 /// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
-FinePlace fine_walk(const Shell *shell, FinePlace place, float x, float y);
+FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
 
 /// A place in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
-void fine_coordinates(FinePlace place, float *x, float *y);
+void fine_coordinates(FineLocation location, float *x, float *y);
 
 /// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth
 /// curves where their sides have corners, so that the sides are nowhere to be seen.
@@ -134,19 +134,19 @@ static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f
 int fine_octaves(float spacing);
 
 /// The level and the mass that a place is drawn by.
-FineValue fine_value(const Fine *fine, FinePlace place);
+FineValue fine_value(const Fine *fine, FineLocation location);
 
 /// A place at rest, and a vector rotated out of every plane that sheets and their grids may lie in.
-Vec fine_rest(const Shell *shell, FinePlace place);
-Vec fine_askew(Vec p);
+Float3 fine_rest(const Shell *shell, FineLocation location);
+Float3 fine_askew(Float3 p);
 
 // ---- fine_tears.c
 
-/// Fills SPLINE_LIP where sheets have torn, and marks the cells there, which have their other flags.
-void fine_lips(Fine *fine);
+/// Fills SPLINE_TEAR_EDGE where sheets have torn, and marks the cells there, which have their other flags.
+void fine_tear_edges(Fine *fine);
 
 /// The level that tears give a place in a marked cell: below 0 is not drawn.
-float fine_lip_level(const Fine *fine, FinePlace place);
+float fine_tear_level(const Fine *fine, FineLocation location);
 
 // ---- fine_points.c
 
@@ -159,7 +159,7 @@ uint32_t fine_side_point(const Fine *fine, uint32_t cell, int side, int parts, i
 
 /// Point (i, j) of a cell's triangle: i of k along the side, j of k towards the centre.
 uint32_t fine_point(const Fine *fine, uint32_t cell, int side, int splits, int i, int j);
-FinePlace fine_point_place(uint32_t cell, int side, int splits, int i, int j);
+FineLocation fine_point_location(uint32_t cell, int side, int splits, int i, int j);
 
 static inline bool fine_is_split(const Fine *fine, uint32_t cell) { return fine->flags[cell] & FINE_SPLIT; }
 
@@ -184,12 +184,12 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side);
 
 /// A cell's points b_ij: i along side 0, j along side 3 backwards.
 typedef struct FinePatch {
-    Vec net[4][4];
+    Float3 net[4][4];
 } FinePatch;
 
 /// A point of a patch and its derivatives.
 typedef struct FinePoint {
-    Vec position, along_u, along_v;
+    Float3 position, along_u, along_v;
 } FinePoint;
 
 /// Finds the sound cells.
@@ -204,10 +204,10 @@ FinePoint fine_patch_at(const FinePatch *patch, float u, float v);
 // ---- fine_position.c
 
 /// Works out where the surface is, and how finely bent cells are to be drawn.
-void fine_place(Fine *fine);
+void fine_position(Fine *fine);
 
 /// Position and unit normal at a place, with the patch of its cell.
-void fine_place_at(const Fine *fine, const FinePatch *patch, const FinePlace *place, float position[3],
+void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                    float normal[3]);
 
 // ---- fine_vertices.c

@@ -30,21 +30,21 @@ static bool is_seamed(const Shell *shell, uint32_t cell) {
     return false;
 }
 
-static Vec corner_rest(const Shell *shell, uint32_t cell, int i) {
-    return vec_load(shell->rest_position[shell->cells[cell][i]]);
+static Float3 corner_rest(const Shell *shell, uint32_t cell, int i) {
+    return float3_load(shell->rest_position[shell->cells[cell][i]]);
 }
 
-static Vec centre_rest(const Shell *shell, uint32_t cell) {
-    Vec sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = vec_add(sum, corner_rest(shell, cell, i));
-    return vec_scale(sum, 0.25f);
+static Float3 centre_rest(const Shell *shell, uint32_t cell) {
+    Float3 sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = float3_add(sum, corner_rest(shell, cell, i));
+    return float3_scale(sum, 0.25f);
 }
 
 /// Barycentric weights of a point in the cell's triangle of that side.
-static void weights_at(const Shell *shell, uint32_t cell, int side, Vec point, float weight[3]) {
-    Vec c = centre_rest(shell, cell), a = vec_sub(corner_rest(shell, cell, side), c);
-    Vec b = vec_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = vec_sub(point, c);
-    float aa = vec_dot(a, a), ab = vec_dot(a, b), bb = vec_dot(b, b), pa = vec_dot(p, a), pb = vec_dot(p, b);
+static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point, float weight[3]) {
+    Float3 c = centre_rest(shell, cell), a = float3_sub(corner_rest(shell, cell, side), c);
+    Float3 b = float3_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = float3_sub(point, c);
+    float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a), pb = float3_dot(p, b);
     float det = aa * bb - ab * ab;
     weight[0] = det > 0 ? (pa * bb - pb * ab) / det : 0;
     weight[1] = det > 0 ? (pb * aa - pa * ab) / det : 0;
@@ -53,22 +53,22 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Vec point, f
 
 /// The side in whose triangle a drawn triangle lies: where the least weight of its middle is largest.
 static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
-    Vec middle = {0, 0, 0};
-    for (int k = 0; k < 3; k++) middle = vec_add(middle, vec_load(seams->surface->rest_position[triangle[k]]));
-    middle = vec_scale(middle, 1 / 3.0f);
+    Float3 centroid = {0, 0, 0};
+    for (int k = 0; k < 3; k++) centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
+    centroid = float3_scale(centroid, 1 / 3.0f);
     int best = 0;
-    float most = -INFINITY;
+    float max = -INFINITY;
     for (int side = 0; side < 4; side++) {
         float weight[3];
-        weights_at(seams->shell, cell, side, middle, weight);
-        float least = fminf(weight[0], fminf(weight[1], weight[2]));
-        if (least > most) most = least, best = side;
+        weights_at(seams->shell, cell, side, centroid, weight);
+        float min = fminf(weight[0], fminf(weight[1], weight[2]));
+        if (min > max) max = min, best = side;
     }
     return best;
 }
 
 /// uv of a point, and its number where it is a corner that has one.
-static void cell_uv(const Shell *shell, uint32_t cell, int side, Vec point, float uv[2], int32_t *source) {
+static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, float uv[2], int32_t *source) {
     const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
     const int next = (side + 1) & 3;
     float weight[3];
@@ -121,7 +121,7 @@ static void part_cell(Seams *seams, uint32_t cell, uint32_t begin, uint32_t end)
         for (int k = 0; k < 3; k++) {
             float uv[2];
             int32_t source = seams->surface->source_vertex[triangle[k]];
-            cell_uv(seams->shell, cell, side, vec_load(seams->surface->rest_position[triangle[k]]), uv, &source);
+            cell_uv(seams->shell, cell, side, float3_load(seams->surface->rest_position[triangle[k]]), uv, &source);
             parted[k] = copy_with(seams, triangle[k], uv, same, source);
         }
         memcpy(triangle, parted, sizeof parted);
@@ -146,10 +146,10 @@ static uint64_t claim(Seams *seams, const uint32_t *cell_first) {
 SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error) {
     Memory memory = memory_make(surface->allocator);
     Seams seams = {.shell = shell, .surface = surface};
-    uint64_t most = surface->vertex_count + claim(&seams, cell_first);
-    SingeResult result = surface_grow_vertices(surface, most, error);
+    uint64_t max = surface->vertex_count + claim(&seams, cell_first);
+    SingeResult result = surface_grow_vertices(surface, max, error);
     if (result) return result;
-    seams.capacity = (uint32_t)most;
+    seams.capacity = (uint32_t)max;
     if (NEW(&memory, seams.claimed, seams.capacity) && NEW(&memory, seams.next, seams.capacity)) {
         memset(seams.next, 0xff, seams.capacity * sizeof *seams.next);
         claim(&seams, cell_first);

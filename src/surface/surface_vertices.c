@@ -26,15 +26,15 @@ int surface_fan(const float level[3], float nearest) {
 }
 
 typedef struct Sample {
-    Vec position, velocity, rest;
+    Float3 position, velocity, rest;
     float u, v, temperature, temperature_peak, mass, burn_rate, coal, ash, burn, time_ignited;
     int32_t piece, sheet;
 } Sample;
 
-static Vec mean_of_corners(const uint32_t corners[4], const float (*field)[4]) {
-    Vec sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = vec_add(sum, vec_load(field[corners[i]]));
-    return vec_scale(sum, 0.25f);
+static Float3 mean_of_corners(const uint32_t corners[4], const float (*field)[4]) {
+    Float3 sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = float3_add(sum, float3_load(field[corners[i]]));
+    return float3_scale(sum, 0.25f);
 }
 
 static Sample sample_particle(const Shell *shell, const State *state, uint32_t particle) {
@@ -42,22 +42,22 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
     const float (*velocity)[4] = (const float (*)[4])state->dynamics.velocity;
     const float (*rest)[4] = (const float (*)[4])shell->rest_position;
     const BurnState *burn = &state->burn;
-    float least = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
-    float coal = yield * shell_char(burn->mass[particle], burn->fuel[particle], least, yield);
+    float min = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
+    float coal = yield * shell_char(burn->mass[particle], burn->fuel[particle], min, yield);
     Sample sample = {
         .u = shell->uv[particle][0], .v = shell->uv[particle][1],
         .temperature = state->heat.temperature[particle],
         .temperature_peak = state->heat.temperature_peak[particle],
         .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
         .coal = coal, .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
-        .burn = shell_burn_progress(burn->mass[particle], least),
+        .burn = shell_burn_progress(burn->mass[particle], min),
         .time_ignited = burn->time_ignited[particle],
         .piece = state->ablate.piece[particle], .sheet = shell->matter.sheet[particle],
     };
     if (shell_is_corner(shell, particle)) {
-        sample.position = vec_load(position[particle]);
-        sample.velocity = vec_load(velocity[particle]);
-        sample.rest = vec_load(rest[particle]);
+        sample.position = float3_load(position[particle]);
+        sample.velocity = float3_load(velocity[particle]);
+        sample.rest = float3_load(rest[particle]);
     } else {
         const uint32_t *corners = shell->cells[particle - shell->vertex_count];
         sample.position = mean_of_corners(corners, position);
@@ -68,7 +68,7 @@ static Sample sample_particle(const Shell *shell, const State *state, uint32_t p
 }
 
 static float mix(float a, float b, float t) { return a + (b - a) * t; }
-static Vec mix_vec(Vec a, Vec b, float t) { return vec_mad(a, vec_sub(b, a), t); }
+static Float3 mix_float3(Float3 a, Float3 b, float t) { return float3_mad(a, float3_sub(b, a), t); }
 
 /// Between two times of which -1 means never: then the other one counts.
 static float mix_times(float a, float b, float t) { return a < 0 ? b : b < 0 ? a : mix(a, b, t); }
@@ -76,9 +76,9 @@ static float mix_times(float a, float b, float t) { return a < 0 ? b : b < 0 ? a
 /// The end inside at t = 0; piece and sheet are its own.
 static Sample mix_samples(const Sample *a, const Sample *b, float t) {
     return (Sample){
-        .position = mix_vec(a->position, b->position, t),
-        .velocity = mix_vec(a->velocity, b->velocity, t),
-        .rest = mix_vec(a->rest, b->rest, t),
+        .position = mix_float3(a->position, b->position, t),
+        .velocity = mix_float3(a->velocity, b->velocity, t),
+        .rest = mix_float3(a->rest, b->rest, t),
         .u = mix(a->u, b->u, t), .v = mix(a->v, b->v, t),
         .temperature = mix(a->temperature, b->temperature, t),
         .temperature_peak = mix(a->temperature_peak, b->temperature_peak, t),
@@ -109,9 +109,9 @@ static Sample sample_key(const AblatePlan *plan, const Shell *shell, const State
 void surface_vertex(const AblatePlan *plan, const Shell *shell, const State *state, uint32_t key, uint32_t index,
                     SingeSurface *surface) {
     Sample sample = sample_key(plan, shell, state, key);
-    vec_store(surface->position[index], sample.position);
-    vec_store(surface->velocity[index], sample.velocity);
-    vec_store(surface->rest_position[index], sample.rest);
+    float3_store(surface->position[index], sample.position);
+    float3_store(surface->velocity[index], sample.velocity);
+    float3_store(surface->rest_position[index], sample.rest);
     surface->uv[index][0] = sample.u;
     surface->uv[index][1] = sample.v;
     surface->temperature[index] = sample.temperature;

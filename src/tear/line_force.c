@@ -31,11 +31,11 @@ enum { LINE_PASSES = 12 };
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
     const Matter *matter = &shell->matter;
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
-    float least = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
-    float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, least, yield);
+    float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
+    float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
     float burnt = powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
-    if (yield > least) burnt *= 1 + (LINE_ASH - 1) * ash;
+    if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
     return fresh * fminf(burnt, weakened);
 }
 
@@ -49,29 +49,29 @@ typedef struct Measure {
 } Measure;
 
 /// The middle of a cell's corners at rest: where its centre is, seen along the normal.
-static Vec middle(const Shell *shell, uint32_t cell) {
+static Float3 centroid(const Shell *shell, uint32_t cell) {
     const uint32_t *corner = shell->cells[cell];
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
-    Vec a = vec_add(vec_load(rest[corner[0]]), vec_load(rest[corner[1]]));
-    return vec_scale(vec_add(a, vec_add(vec_load(rest[corner[2]]), vec_load(rest[corner[3]]))), 0.25f);
+    Float3 a = float3_add(float3_load(rest[corner[0]]), float3_load(rest[corner[1]]));
+    return float3_scale(float3_add(a, float3_add(float3_load(rest[corner[2]]), float3_load(rest[corner[3]]))), 0.25f);
 }
 
 static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
     const float *const *pull = job->pull;
-    Vec p[4], centre = middle(shell, cell);
-    for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[shell->cells[cell][i]]);
+    Float3 p[4], centre = centroid(shell, cell);
+    for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[shell->cells[cell][i]]);
     memset(now, 0, sizeof(Tensor));
     for (int i = 0; i < 4; i++) {
         uint32_t other = shell_neighbour(shell, cell, i);
-        tensor_add(now, vec_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
+        tensor_add(now, float3_sub(p[i], centre), pull[SINGE_RED][springs->red[i]]);
         float share = other == SHELL_NONE ? 1 : 0.5f;
-        tensor_add(now, vec_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
+        tensor_add(now, float3_sub(p[(i + 1) & 3], p[i]), share * pull[SINGE_BLUE][springs->blue[i]]);
         if (other != SHELL_NONE)
-            tensor_add(now, vec_sub(middle(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
+            tensor_add(now, float3_sub(centroid(shell, other), centre), 0.5f * pull[SINGE_GREEN][springs->green[i]]);
     }
-    for (int i = 0; i < 2; i++) tensor_add(now, vec_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
+    for (int i = 0; i < 2; i++) tensor_add(now, float3_sub(p[i + 2], p[i]), pull[SINGE_YELLOW][springs->yellow[i]]);
     float area = shell->matter.area[shell_centre(shell, cell)];
     for (int k = 0; k < 6; k++) now[k] /= area;
 }
@@ -80,7 +80,7 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
 static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
-    float length = vec_length(vec_sub(vec_load(position[ends[0]]), vec_load(position[ends[1]])));
+    float length = float3_length(float3_sub(float3_load(position[ends[0]]), float3_load(position[ends[1]])));
     return length / shell->springs[colour].rest[spring];
 }
 
@@ -184,29 +184,29 @@ static bool pull_force(const TearPlan *plan, const Shell *shell, const State *st
 }
 
 /// The normal of a vertex at rest.
-static Vec pull_normal(const Shell *shell, const Fan *fan) {
-    Vec sum = {0, 0, 0};
+static Float3 pull_normal(const Shell *shell, const Fan *fan) {
+    Float3 sum = {0, 0, 0};
     for (int k = 0; k < fan->count; k++) {
         const uint32_t *corner = shell->cells[fan->cell[k]];
-        Vec p[4];
-        for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
-        sum = vec_add(sum, vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
+        sum = float3_add(sum, float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
     }
-    return vec_unit(sum);
+    return float3_unit(sum);
 }
 
 /// The largest stretch of the edges and diagonals at a vertex.
 static float fan_stretch(const Shell *shell, const State *state, const Fan *fan) {
-    float most = 0;
+    float max = 0;
     for (int k = 0; k < fan->count; k++) {
         const CellSprings *springs = &shell->cell_springs[fan->cell[k]];
         const int corner = fan->corner[k];
         if (!(state->ablate.cell_flags[fan->cell[k]] & SINGE_ALIVE)) continue;
-        most = fmaxf(most, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
-        most = fmaxf(most, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
-        most = fmaxf(most, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
+        max = fmaxf(max, edge_stretch(shell, state, SINGE_BLUE, springs->blue[corner]));
+        max = fmaxf(max, edge_stretch(shell, state, SINGE_BLUE, springs->blue[(corner + 3) & 3]));
+        max = fmaxf(max, edge_stretch(shell, state, SINGE_YELLOW, springs->yellow[corner & 1]));
     }
-    return most;
+    return max;
 }
 
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
@@ -216,12 +216,12 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     if (state->ablate.piece[vertex] < 0) return pull;
     split_fan(shell, vertex, &fan);
     if (fan.count < 2 || !pull_force(plan, shell, state, &fan, plan->torn[vertex], pull.force)) return pull;
-    Vec normal = pull_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? vec(1, 0, 0) : vec(0, 1, 0);
-    Vec e1 = vec_unit(vec_cross(normal, side)), e2 = vec_cross(normal, e1);
+    Float3 normal = pull_normal(shell, &fan), side = fabsf(normal.x) < 0.7f ? float3(1, 0, 0) : float3(0, 1, 0);
+    Float3 e1 = float3_unit(float3_cross(normal, side)), e2 = float3_cross(normal, e1);
     float a = tensor_across(pull.force, e1), b = tensor_across(pull.force, e2);
-    float c = (tensor_across(pull.force, vec_add(e1, e2)) - a - b) / 2;
+    float c = (tensor_across(pull.force, float3_add(e1, e2)) - a - b) / 2;
     float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = atan2f(c, (a - b) / 2) / 2;
-    pull.across = vec_add(vec_scale(e1, cosf(angle)), vec_scale(e2, sinf(angle)));
+    pull.across = float3_add(float3_scale(e1, cosf(angle)), float3_scale(e2, sinf(angle)));
     pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
     float stretch = mean + radius > plan->safe ? fan_stretch(shell, state, &fan) : 0;
     if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);

@@ -7,7 +7,7 @@
 /// How far each lip moves towards the middle of its own cells, of the way there: lips are never in one place, so that
 /// contact can tell their sides from the start. It is less than contact keeps free (collision/collision_plan.h), for it does
 /// not look at what moves here.
-static const float LIP_GAP = 0.002f;
+static const float TEAR_EDGE_GAP = 0.002f;
 
 #define COPY(array, to, from) memcpy((array) + (to), (array) + (from), sizeof *(array))
 
@@ -58,16 +58,16 @@ static void tear_edge_state(const Shell *shell, State *state, const TornEdge *to
 }
 
 /// From a lip to the mean of its cells' corners.
-static Vec lip_way(const Shell *shell, const State *state, uint32_t vertex) {
-    Vec sum = {0, 0, 0};
+static Float3 tear_edge_displacement(const Shell *shell, const State *state, uint32_t vertex) {
+    Float3 sum = {0, 0, 0};
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
     for (uint32_t k = first; k < last; k++)
         for (int i = 0; i < 4; i++)
-            sum = vec_add(sum, vec_load(state->dynamics.position[shell->cells[shell->fan[k]][i]]));
-    return vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), vec_load(state->dynamics.position[vertex]));
+            sum = float3_add(sum, float3_load(state->dynamics.position[shell->cells[shell->fan[k]][i]]));
+    return float3_sub(float3_scale(sum, 0.25f / (float)(last - first)), float3_load(state->dynamics.position[vertex]));
 }
 
-static bool lips_cross(const Shell *shell, const State *state, uint32_t one, uint32_t two) {
+static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t one, uint32_t two) {
     const uint32_t *first = shell->fan_first, *fan = shell->fan;
     const uint8_t *flags = state->ablate.cell_flags;
     for (uint32_t k = first[one]; k < first[one + 1]; k++)
@@ -80,17 +80,17 @@ static bool lips_cross(const Shell *shell, const State *state, uint32_t one, uin
 
 /// Parts two lips that are in one place, each towards its cells. Where the sheet is crumpled there, these may lie across
 /// the other lip: then along the first of 26 directions in which they do not cross.
-static void open_lips(const Shell *shell, State *state, uint32_t one, uint32_t two) {
+static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
     enum { DIRECTIONS = 27 };
     float *x = state->dynamics.position[one], *y = state->dynamics.position[two];
-    Vec place = vec_load(x), ways[2] = {lip_way(shell, state, one), lip_way(shell, state, two)};
-    float length = LIP_GAP * 0.5f * (vec_length(ways[0]) + vec_length(ways[1]));
-    vec_store(x, vec_mad(place, ways[0], LIP_GAP));
-    vec_store(y, vec_mad(place, ways[1], LIP_GAP));
-    for (int k = 0; k < DIRECTIONS && lips_cross(shell, state, one, two); k++) {
-        Vec way = vec_unit(vec((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
-        vec_store(x, vec_mad(place, way, length));
-        vec_store(y, vec_mad(place, way, -length));
+    Float3 position = float3_load(x), displacements[2] = {tear_edge_displacement(shell, state, one), tear_edge_displacement(shell, state, two)};
+    float length = TEAR_EDGE_GAP * 0.5f * (float3_length(displacements[0]) + float3_length(displacements[1]));
+    float3_store(x, float3_mad(position, displacements[0], TEAR_EDGE_GAP));
+    float3_store(y, float3_mad(position, displacements[1], TEAR_EDGE_GAP));
+    for (int k = 0; k < DIRECTIONS && tear_edges_cross(shell, state, one, two); k++) {
+        Float3 displacement = float3_unit(float3((float)(k % 3 - 1), (float)(k / 3 % 3 - 1), (float)(k / 9 - 1)));
+        float3_store(x, float3_mad(position, displacement, length));
+        float3_store(y, float3_mad(position, displacement, -length));
     }
 }
 
@@ -102,5 +102,5 @@ void tear_split(Shell *shell, State *state, const Fan *fan, const ShellSplit *sp
     for (int k = 0; k < result->torn_count; k++) count_degree(shell, state, result->torn[k].far);
     count_degree(shell, state, split->vertex);
     count_degree(shell, state, result->spare);
-    open_lips(shell, state, split->vertex, result->spare);
+    open_tear_edges(shell, state, split->vertex, result->spare);
 }

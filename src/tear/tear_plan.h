@@ -13,13 +13,13 @@ static const float TEAR_HINGE = 0.25f;
 typedef float Tensor[6];
 
 /// n . t n
-static inline float tensor_across(const float *t, Vec n) {
+static inline float tensor_across(const float *t, Float3 n) {
     return t[0] * n.x * n.x + t[1] * n.y * n.y + t[2] * n.z * n.z +
            2 * (t[3] * n.y * n.z + t[4] * n.z * n.x + t[5] * n.x * n.y);
 }
 
 /// t += s n n
-static inline void tensor_add(float *t, Vec n, float s) {
+static inline void tensor_add(float *t, Float3 n, float s) {
     t[0] += s * n.x * n.x, t[1] += s * n.y * n.y, t[2] += s * n.z * n.z;
     t[3] += s * n.y * n.z, t[4] += s * n.z * n.x, t[5] += s * n.x * n.y;
 }
@@ -27,7 +27,7 @@ static inline void tensor_add(float *t, Vec n, float s) {
 /// What pulls at a vertex.
 typedef struct TearPull {
     float ratio; ///< of the largest principal line force and the strength; 0 where nothing can tear
-    Vec across;  ///< its direction at rest
+    Float3 across;  ///< its direction at rest
     Tensor force;
 } TearPull;
 
@@ -42,7 +42,7 @@ struct TearPlan {
     uint32_t sheet_count;
     float safe;         ///< N/m, nothing tears below: the least strength of all, as char or weakened
     float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
-    float *least;       ///< [sheets] that factor where it is pulled farther apart than it reaches
+    float *min;       ///< [sheets] that factor where it is pulled farther apart than it reaches
 };
 
 /// N/m, the line force at which a vertex tears.

@@ -32,13 +32,13 @@
 #include <string.h>
 
 static const float STEP_CARRIES = 0.2f;
-static const float STRETCH_MOST = 1.03f; ///< paper breaks at 2 to 4 %
+static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
 
 /// The least line force across an edge that tears, of N_1: that of edges within 10 degrees of its direction.
-static const float EDGE_LEAST = 0.03f;
+static const float EDGE_MIN = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
     const Sheet *sheet = &shell->sheets[index];
@@ -52,10 +52,10 @@ float tear_carried(const Shell *shell, uint32_t index, float h) {
 
 /// A sheet's least strength.
 static float weakest(const Sheet *sheet, Field strength) {
-    float least = INFINITY;
+    float min = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
-        least = fminf(least, field_at(strength, v));
-    return least;
+        min = fminf(min, field_at(strength, v));
+    return min;
 }
 
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **out) {
@@ -67,7 +67,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
         !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
         !NEW(memory, plan->leader, plan->particle_count) || !NEW(memory, plan->weakened, plan->sheet_count) ||
-        !NEW(memory, plan->least, plan->sheet_count) ||
+        !NEW(memory, plan->min, plan->sheet_count) ||
         !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
@@ -76,8 +76,8 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         float strength = weakest(&shell->sheets[s], shell->matter.strength);
         plan->safe = fminf(plan->safe, weakest(&shell->sheets[s], shell->matter.char_strength));
-        plan->least[s] = isinf(strength) ? 1 : fminf(1, 0.5f * tear_carried(shell, s, h) / strength);
-        plan->safe = fminf(plan->safe, strength * plan->least[s]);
+        plan->min[s] = isinf(strength) ? 1 : fminf(1, 0.5f * tear_carried(shell, s, h) / strength);
+        plan->safe = fminf(plan->safe, strength * plan->min[s]);
         plan->weakened[s] = 1;
     }
     *out = plan;
@@ -91,13 +91,13 @@ void tear_plan_free(Memory *memory, TearPlan *plan) {
     FREE(memory, plan->torn, plan->vertex_count);
     FREE(memory, plan->leader, plan->particle_count);
     FREE(memory, plan->weakened, plan->sheet_count);
-    FREE(memory, plan->least, plan->sheet_count);
+    FREE(memory, plan->min, plan->sheet_count);
     FREE(memory, plan->partial, pool_blocks((int)plan->cell_count));
     FREE(memory, plan, 1);
 }
 
 void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch) {
-    plan->weakened[sheet] = stretch > STRETCH_MOST ? plan->least[sheet] : 1;
+    plan->weakened[sheet] = stretch > STRETCH_MAX ? plan->min[sheet] : 1;
 }
 
 /// Marks the ends of torn edges.
@@ -162,7 +162,7 @@ static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
 
 /// An edge of a vertex along which it may tear.
 typedef struct TearEdge {
-    Vec along;      ///< from the vertex, at rest
+    Float3 along;      ///< from the vertex, at rest
     float strength; ///< N/m, both ends'; INFINITY where too little of N_1 is across
     bool solid;     ///< cells on both sides are left
 } TearEdge;
@@ -172,24 +172,24 @@ static bool is_left(const State *state, const Fan *fan, int k) {
 }
 
 static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
-                          uint32_t vertex, uint32_t end, Vec normal) {
+                          uint32_t vertex, uint32_t end, Float3 normal) {
     TearEdge edge = {.strength = INFINITY};
-    edge.along = vec_unit(vec_sub(vec_load(shell->rest_position[end]), vec_load(shell->rest_position[vertex])));
-    float across = tensor_across(pull->force, vec_unit(vec_cross(normal, edge.along)));
-    if (across > EDGE_LEAST * tensor_across(pull->force, pull->across))
+    edge.along = float3_unit(float3_sub(float3_load(shell->rest_position[end]), float3_load(shell->rest_position[vertex])));
+    float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge.along)));
+    if (across > EDGE_MIN * tensor_across(pull->force, pull->across))
         edge.strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
     return edge;
 }
 
 /// One of the edges [begin, count) by which a tear goes on in direction `way`; -1 where there is none. `lot` is 0 to 1.
-static int pick_edge(const TearEdge *edges, int begin, int count, Vec way, float lot) {
-    float weight[SPLIT_FAN], least = INFINITY, sum = 0;
+static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displacement, float lot) {
+    float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)
-        if (edges[j].solid && vec_dot(edges[j].along, way) > 0) least = fminf(least, edges[j].strength);
-    if (isinf(least)) return -1;
+        if (edges[j].solid && float3_dot(edges[j].along, displacement) > 0) min = fminf(min, edges[j].strength);
+    if (isinf(min)) return -1;
     for (int j = begin; j < count; j++) {
-        float weaker = least / edges[j].strength;
-        weight[j] = edges[j].solid ? fmaxf(0, vec_dot(edges[j].along, way)) * weaker * weaker * weaker * weaker : 0;
+        float weaker = min / edges[j].strength;
+        weight[j] = edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, displacement)) * weaker * weaker * weaker * weaker : 0;
         sum += weight[j];
     }
     int last = -1;
@@ -215,22 +215,22 @@ static bool any_alive(const State *state, const Fan *fan, uint32_t cells, bool t
     return false;
 }
 
-static Vec fan_normal(const Shell *shell, const Fan *fan) {
-    Vec normal = {0, 0, 0};
+static Float3 fan_normal(const Shell *shell, const Fan *fan) {
+    Float3 normal = {0, 0, 0};
     for (int k = 0; k < fan->count; k++) {
         const uint32_t *corner = shell->cells[fan->cell[k]];
-        Vec p[4];
-        for (int i = 0; i < 4; i++) p[i] = vec_load(shell->rest_position[corner[i]]);
-        normal = vec_add(normal, vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
+        Float3 p[4];
+        for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
+        normal = float3_add(normal, float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
     }
-    return vec_unit(normal);
+    return float3_unit(normal);
 }
 
 /// Of what is open at a vertex, the edge that goes on the straightest from one that tears; -1 where nothing is.
-static int open_edge(const TearEdge *edges, int count, Vec way) {
+static int open_edge(const TearEdge *edges, int count, Float3 displacement) {
     int open = -1;
     for (int j = 0; j < count; j++)
-        if (!edges[j].solid && (open < 0 || vec_dot(edges[j].along, way) < vec_dot(edges[open].along, way))) open = j;
+        if (!edges[j].solid && (open < 0 || float3_dot(edges[j].along, displacement) < float3_dot(edges[open].along, displacement))) open = j;
     return open;
 }
 
@@ -255,23 +255,23 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
     const uint32_t hinge = hinge_part(state, fan, &turn);
     if (hinge) return hinge;
-    const Vec normal = fan_normal(shell, fan);
+    const Float3 normal = fan_normal(shell, fan);
     TearEdge edges[SPLIT_FAN];
-    Vec forward = {0, 0, 0};
+    Float3 forward = {0, 0, 0};
     const int begin = turn.closed ? 0 : 1, count = turn.count;
     for (int j = begin; j < count; j++) {
         edges[j] = tear_edge(plan, shell, state, pull, vertex, edge_end(shell, fan, turn.at[j]), normal);
         edges[j].solid = is_left(state, fan, turn.at[j]) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
-        if (edges[j].solid) forward = vec_add(forward, edges[j].along);
+        if (edges[j].solid) forward = float3_add(forward, edges[j].along);
     }
-    Vec way = vec_cross(normal, pull->across);
-    if (vec_dot(way, forward) < 0) way = vec_scale(way, -1);
+    Float3 displacement = float3_cross(normal, pull->across);
+    if (float3_dot(displacement, forward) < 0) displacement = float3_scale(displacement, -1);
     const float lot = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
-    int first = pick_edge(edges, begin, count, way, lot);
+    int first = pick_edge(edges, begin, count, displacement, lot);
     if (first < 0) return 0;
     if (!turn.closed) return smaller_part(fan, &turn, first, count);
     int second = open_edge(edges, count, edges[first].along);
-    if (second < 0) second = pick_edge(edges, 0, count, vec_scale(way, -1), lot);
+    if (second < 0) second = pick_edge(edges, 0, count, float3_scale(displacement, -1), lot);
     if (second < 0 || second == first) return 0;
     return smaller_part(fan, &turn, first < second ? first : second, first < second ? second : first);
 }
@@ -308,7 +308,7 @@ static void fill_ratios(void *task, int begin, int end) {
 }
 
 /// What has torn open does not carry line force across any more.
-static void unload(State *state, const Fan *fan, Vec across) {
+static void unload(State *state, const Fan *fan, Float3 across) {
     for (int k = 0; k < fan->count; k++) {
         float *force = state->tear.line_force[fan->cell[k]], carried = tensor_across(force, across);
         if (carried > 0) tensor_add(force, across, -carried);

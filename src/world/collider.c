@@ -22,13 +22,13 @@ SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what) : SINGE_OK;
 }
 
-static float collider_round(Vec offset, float radius, Vec *normal) {
-    float length = vec_length(offset);
-    *normal = length > 0 ? vec_scale(offset, 1 / length) : vec(0, 0, 1);
+static float collider_round(Float3 offset, float radius, Float3 *normal) {
+    float length = float3_length(offset);
+    *normal = length > 0 ? float3_scale(offset, 1 / length) : float3(0, 0, 1);
     return length - radius;
 }
 
-static float collider_box(const float half[3], Vec p, Vec *normal) {
+static float collider_box(const float half[3], Float3 p, Float3 *normal) {
     float q[3] = {p.x, p.y, p.z}, out[3], n[3] = {0, 0, 0};
     int nearest = 0;
     bool inside = true;
@@ -39,11 +39,11 @@ static float collider_box(const float half[3], Vec p, Vec *normal) {
     }
     if (inside) {
         n[nearest] = q[nearest] < 0 ? -1 : 1;
-        *normal = vec_load(n);
+        *normal = float3_load(n);
         return out[nearest];
     }
     for (int i = 0; i < 3; i++) n[i] = out[i] > 0 ? copysignf(out[i], q[i]) : 0;
-    return collider_round(vec_load(n), 0, normal);
+    return collider_round(float3_load(n), 0, normal);
 }
 
 SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error) {
@@ -69,38 +69,38 @@ void collider_free(Memory *memory, Collider *collider) {
     *collider = (Collider){0};
 }
 
-float collider_distance(const Collider *collider, Vec p, float limit, Vec *normal) {
+float collider_distance(const Collider *collider, Float3 p, float limit, Float3 *normal) {
     const SingeColliderDef *def = &collider->def;
     switch (def->kind) {
-    case SINGE_COLLIDER_PLANE: *normal = vec(0, 0, 1); return p.z;
+    case SINGE_COLLIDER_PLANE: *normal = float3(0, 0, 1); return p.z;
     case SINGE_COLLIDER_SPHERE: return collider_round(p, def->radius, normal);
     case SINGE_COLLIDER_BOX: return collider_box(def->half_size, p, normal);
     case SINGE_COLLIDER_CAPSULE: {
         float half = def->height / 2, along = fminf(fmaxf(p.z, -half), half);
-        return collider_round(vec(p.x, p.y, p.z - along), def->radius, normal);
+        return collider_round(float3(p.x, p.y, p.z - along), def->radius, normal);
     }
     case SINGE_COLLIDER_HEIGHTFIELD: return height_solid_distance(&collider->heights, p, limit, normal);
     case SINGE_COLLIDER_MESH: return mesh_solid_distance(&collider->mesh, p, limit, normal);
     }
-    *normal = vec(0, 0, 1);
+    *normal = float3(0, 0, 1);
     return INFINITY;
 }
 
-void collider_bounds(const Collider *collider, Vec *low, Vec *high) {
+void collider_bounds(const Collider *collider, Float3 *low, Float3 *high) {
     const SingeColliderDef *def = &collider->def;
-    Vec half = vec(INFINITY, INFINITY, INFINITY);
+    Float3 half = float3(INFINITY, INFINITY, INFINITY);
     switch (def->kind) {
-    case SINGE_COLLIDER_PLANE: *low = vec_scale(half, -1), *high = vec(INFINITY, INFINITY, 0); return;
-    case SINGE_COLLIDER_SPHERE: half = vec(def->radius, def->radius, def->radius); break;
-    case SINGE_COLLIDER_BOX: half = vec_load(def->half_size); break;
-    case SINGE_COLLIDER_CAPSULE: half = vec(def->radius, def->radius, def->radius + def->height / 2); break;
+    case SINGE_COLLIDER_PLANE: *low = float3_scale(half, -1), *high = float3(INFINITY, INFINITY, 0); return;
+    case SINGE_COLLIDER_SPHERE: half = float3(def->radius, def->radius, def->radius); break;
+    case SINGE_COLLIDER_BOX: half = float3_load(def->half_size); break;
+    case SINGE_COLLIDER_CAPSULE: half = float3(def->radius, def->radius, def->radius + def->height / 2); break;
     case SINGE_COLLIDER_HEIGHTFIELD: {
         const HeightSolid *heights = &collider->heights;
-        *low = vec(-heights->half[0], -heights->half[1], -INFINITY);
-        *high = vec(heights->half[0], heights->half[1], heights->high);
+        *low = float3(-heights->half[0], -heights->half[1], -INFINITY);
+        *high = float3(heights->half[0], heights->half[1], heights->high);
         return;
     }
     case SINGE_COLLIDER_MESH: *low = collider->mesh.low, *high = collider->mesh.high; return;
     }
-    *low = vec_scale(half, -1), *high = half;
+    *low = float3_scale(half, -1), *high = half;
 }

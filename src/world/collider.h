@@ -29,9 +29,9 @@ void collider_free(Memory *memory, Collider *collider);
 /// Signed distance of a point in the collider's own frame, negative inside, and the outward unit normal there (own
 /// frame). Exact inside and where it is less than `limit`; farther out it is some number that is not less than `limit`,
 /// and no more than the distance, and the normal is any. With a limit of 0 only its sign counts, inside too.
-float collider_distance(const Collider *collider, Vec local, float limit, Vec *normal);
+float collider_distance(const Collider *collider, Float3 local, float limit, Float3 *normal);
 
 /// The box that holds the collider, in its own frame; infinite where the collider is.
-void collider_bounds(const Collider *collider, Vec *low, Vec *high);
+void collider_bounds(const Collider *collider, Float3 *low, Float3 *high);
 
 #endif

@@ -9,15 +9,15 @@
 
 enum { HEIGHT_BLOCK = 8 };
 
-static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
+static uint32_t min(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 static void height_ranges(HeightSolid *solid) {
     for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
         for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
             float *range = solid->ranges[bj * solid->blocks[0] + bi];
             range[0] = INFINITY, range[1] = -INFINITY;
-            for (uint32_t j = bj * HEIGHT_BLOCK; j <= least((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
-                for (uint32_t i = bi * HEIGHT_BLOCK; i <= least((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
+            for (uint32_t j = bj * HEIGHT_BLOCK; j <= min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
+                for (uint32_t i = bi * HEIGHT_BLOCK; i <= min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
                     float h = solid->heights[(size_t)j * solid->columns + i];
                     range[0] = fminf(range[0], h), range[1] = fmaxf(range[1], h);
                 }
@@ -65,13 +65,13 @@ void height_solid_free(Memory *memory, HeightSolid *solid) {
     *solid = (HeightSolid){0};
 }
 
-static Vec height_node(const HeightSolid *solid, uint32_t i, uint32_t j) {
-    return vec((float)i * solid->step[0] - solid->half[0], (float)j * solid->step[1] - solid->half[1],
+static Float3 height_node(const HeightSolid *solid, uint32_t i, uint32_t j) {
+    return float3((float)i * solid->step[0] - solid->half[0], (float)j * solid->step[1] - solid->half[1],
                solid->heights[(size_t)j * solid->columns + i]);
 }
 
 /// The triangle `upper` of a cell; all turn up.
-static void height_triangle(const HeightSolid *solid, uint32_t i, uint32_t j, bool upper, Vec corner[3]) {
+static void height_triangle(const HeightSolid *solid, uint32_t i, uint32_t j, bool upper, Float3 corner[3]) {
     corner[0] = height_node(solid, i, j);
     corner[1] = upper ? height_node(solid, i + 1, j + 1) : height_node(solid, i + 1, j);
     corner[2] = upper ? height_node(solid, i, j + 1) : height_node(solid, i + 1, j + 1);
@@ -87,12 +87,12 @@ static uint32_t height_cell(const HeightSolid *solid, int axis, float x, float *
 }
 
 /// Height of the surface at a place, clamped to the rectangle, and its normal there.
-static float height_at(const HeightSolid *solid, float x, float y, Vec *normal) {
+static float height_at(const HeightSolid *solid, float x, float y, Float3 *normal) {
     float s, t;
     uint32_t i = height_cell(solid, 0, x, &s), j = height_cell(solid, 1, y, &t);
-    Vec corner[3];
+    Float3 corner[3];
     height_triangle(solid, i, j, t > s, corner);
-    *normal = vec_unit(vec_cross(vec_sub(corner[1], corner[0]), vec_sub(corner[2], corner[0])));
+    *normal = float3_unit(float3_cross(float3_sub(corner[1], corner[0]), float3_sub(corner[2], corner[0])));
     // the corners are a, b = a + (1, 0) or (1, 1) and c
     float b = t > s ? s : s - t, c = t > s ? t - s : t;
     return corner[0].z + b * (corner[1].z - corner[0].z) + c * (corner[2].z - corner[0].z);
@@ -108,7 +108,7 @@ static void height_offer(HeightFoot *best, const TriangleFoot *foot) {
 }
 
 /// Square of the distance from p to the box of cells [i, i_end) by [j, j_end) between two heights.
-static double height_box(const HeightSolid *solid, Vec p, const uint32_t first[2], const uint32_t end[2],
+static double height_box(const HeightSolid *solid, Float3 p, const uint32_t first[2], const uint32_t end[2],
                          const float range[2]) {
     const float x[2] = {p.x, p.y};
     double sum = 0;
@@ -122,11 +122,11 @@ static double height_box(const HeightSolid *solid, Vec p, const uint32_t first[2
     return sum + out * out;
 }
 
-static void height_block(const HeightSolid *solid, Vec p, uint32_t bi, uint32_t bj, const uint32_t from[2],
+static void height_block(const HeightSolid *solid, Float3 p, uint32_t bi, uint32_t bj, const uint32_t from[2],
                          const uint32_t to[2], HeightFoot *best) {
     uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
-    uint32_t end[2] = {least(first[0] + HEIGHT_BLOCK, solid->columns - 1),
-                       least(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
+    uint32_t end[2] = {min(first[0] + HEIGHT_BLOCK, solid->columns - 1),
+                       min(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
     if (height_box(solid, p, first, end, solid->ranges[bj * solid->blocks[0] + bi]) >= best->square) return;
     for (int d = 0; d < 2; d++) {
         if (first[d] < from[d]) first[d] = from[d];
@@ -135,7 +135,7 @@ static void height_block(const HeightSolid *solid, Vec p, uint32_t bi, uint32_t 
     for (uint32_t j = first[1]; j < end[1]; j++)
         for (uint32_t i = first[0]; i < end[0]; i++)
             for (int upper = 0; upper < 2; upper++) {
-                Vec corner[3];
+                Float3 corner[3];
                 height_triangle(solid, i, j, upper, corner);
                 TriangleFoot foot = triangle_foot(p, corner[0], corner[1], corner[2]);
                 height_offer(best, &foot);
@@ -143,7 +143,7 @@ static void height_block(const HeightSolid *solid, Vec p, uint32_t bi, uint32_t 
 }
 
 /// The surface's foot among those nearer than best->square.
-static void height_surface(const HeightSolid *solid, Vec p, HeightFoot *best) {
+static void height_surface(const HeightSolid *solid, Float3 p, HeightFoot *best) {
     float reach = (float)sqrt(best->square) * 1.0001f, part;
     uint32_t from[2] = {height_cell(solid, 0, p.x - reach, &part), height_cell(solid, 1, p.y - reach, &part)};
     uint32_t to[2] = {height_cell(solid, 0, p.x + reach, &part), height_cell(solid, 1, p.y + reach, &part)};
@@ -153,42 +153,42 @@ static void height_surface(const HeightSolid *solid, Vec p, HeightFoot *best) {
 }
 
 /// The walls' foot.
-static void height_walls(const HeightSolid *solid, Vec p, HeightFoot *best) {
+static void height_walls(const HeightSolid *solid, Float3 p, HeightFoot *best) {
     for (int wall = 0; wall < 4; wall++) {
         float side = wall & 1 ? 1 : -1, at[2] = {p.x, p.y};
         int axis = wall >> 1;
         at[axis] = side * solid->half[axis];
         at[1 - axis] = fminf(fmaxf(at[1 - axis], -solid->half[1 - axis]), solid->half[1 - axis]);
-        Vec normal;
+        Float3 normal;
         TriangleFoot foot = {.away = {(double)p.x - (double)at[0], (double)p.y - (double)at[1], 0}};
         foot.square = triangle_dot(foot.away, foot.away);
         if (foot.square < best->square && p.z <= height_at(solid, at[0], at[1], &normal)) height_offer(best, &foot);
     }
 }
 
-float height_solid_distance(const HeightSolid *solid, Vec p, float limit, Vec *normal) {
+float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Float3 *normal) {
     float dx = fabsf(p.x) - solid->half[0], dy = fabsf(p.y) - solid->half[1];
     bool over = dx <= 0 && dy <= 0;
-    Vec out = vec(fmaxf(dx, 0), fmaxf(dy, 0), fmaxf(p.z - solid->high, 0));
-    float bound = vec_length(out);
-    *normal = vec(0, 0, 1);
+    Float3 out = float3(fmaxf(dx, 0), fmaxf(dy, 0), fmaxf(p.z - solid->high, 0));
+    float bound = float3_length(out);
+    *normal = float3(0, 0, 1);
     if (bound > 0 && bound >= limit) return bound;
     if (!isfinite(p.x + p.y + p.z)) return INFINITY;
     float above = p.z - height_at(solid, p.x, p.y, normal);
     bool inside = over && above < 0;
     if (limit == 0) return inside ? -1 : 1;
     // straight up or down, or at the foot over the nearest place of the rectangle, there is some surface
-    double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + vec_length(p)); // heights are rounded
-    double most = (double)vec_length(vec(out.x, out.y, above)) + slack;
-    if (!inside) most = fmin(most, (double)limit); // what is not found is not nearer
-    HeightFoot best = {.square = most * most};
+    double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + float3_length(p)); // heights are rounded
+    double max = (double)float3_length(float3(out.x, out.y, above)) + slack;
+    if (!inside) max = fmin(max, (double)limit); // what is not found is not nearer
+    HeightFoot best = {.square = max * max};
     double unfound = best.square;
     height_walls(solid, p, &best);
     height_surface(solid, p, &best);
-    if (!(best.square < unfound)) return inside ? above : (float)most;
+    if (!(best.square < unfound)) return inside ? above : (float)max;
     double distance = sqrt(best.square), sign = inside ? -1 : 1;
-    if (distance > 1e-7 * (1 + (double)vec_length(p)))
-        *normal = vec((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
+    if (distance > 1e-7 * (1 + (double)float3_length(p)))
+        *normal = float3((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
                       (float)(sign * best.away[2] / distance));
     return (float)(sign * distance);
 }

@@ -22,6 +22,6 @@ SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows,
 void height_solid_free(Memory *memory, HeightSolid *solid);
 
 /// See collider_distance.
-float height_solid_distance(const HeightSolid *solid, Vec p, float limit, Vec *normal);
+float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Float3 *normal);
 
 #endif

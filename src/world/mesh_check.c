@@ -4,7 +4,7 @@
 #include <string.h>
 
 /// m; beyond, squares of differences lose what contact needs.
-static const float MESH_PLACE_MAX = 1e4f;
+static const float MESH_POSITION_MAX = 1e4f;
 
 /// m2, twice a triangle's area at least: its square must not vanish.
 static const float MESH_AREA_MIN = 1e-17f;
@@ -57,7 +57,7 @@ static SingeResult mesh_check_numbers(uint32_t vertex_count, const float *vertic
     if (triangle_count > INT32_MAX / 4 || vertex_count > INT32_MAX / 4)
         return error_set(error, SINGE_ERROR_LIMIT, "collider", -1, "the mesh is too large");
     for (size_t k = 0; k < 3 * (size_t)vertex_count; k++)
-        if (!(fabsf(vertices[k]) <= MESH_PLACE_MAX))
+        if (!(fabsf(vertices[k]) <= MESH_POSITION_MAX))
             return error_set(error, SINGE_ERROR_MESH, "collider", (int64_t)(k / 3),
                              "vertex %zu of the mesh is not finite or beyond 10 km", k / 3);
     for (size_t k = 0; k < 3 * (size_t)triangle_count; k++)
@@ -75,17 +75,17 @@ static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *f
     for (uint32_t v = 0; ok && v < solid->vertex_count; v++) {
         uint32_t key[3];
         memcpy(key, solid->vertices[v], sizeof key);
-        uint32_t *place = table_find(&table, key);
-        if (*place == UINT32_MAX) *place = v;
-        first[v] = *place;
+        uint32_t *position = table_find(&table, key);
+        if (*position == UINT32_MAX) *position = v;
+        first[v] = *position;
     }
     table_free(memory, &table);
     return ok ? SINGE_OK : mesh_memory(error);
 }
 
-static Vec mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
-    Vec a = vec_load(solid->vertices[t[0]]);
-    return vec_cross(vec_sub(vec_load(solid->vertices[t[1]]), a), vec_sub(vec_load(solid->vertices[t[2]]), a));
+static Float3 mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
+    Float3 a = float3_load(solid->vertices[t[0]]);
+    return float3_cross(float3_sub(float3_load(solid->vertices[t[1]]), a), float3_sub(float3_load(solid->vertices[t[2]]), a));
 }
 
 /// Triangles by the vertices that are left, without those that lost their extent; *source* has their numbers before.
@@ -97,7 +97,7 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
         for (int i = 0; i < 3; i++) corner[i] = first[triangles[3 * (size_t)t + (size_t)i]];
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         source[count++] = t;
-        if (!(vec_length(mesh_cross(solid, corner)) > MESH_AREA_MIN))
+        if (!(float3_length(mesh_cross(solid, corner)) > MESH_AREA_MIN))
             return error_set(error, SINGE_ERROR_MESH, "collider", t, "triangle %u of the mesh has no area", t);
     }
     memset(solid->triangles[count], 0, (solid->triangle_count - count) * sizeof *solid->triangles);
@@ -108,12 +108,12 @@ static SingeResult mesh_gather(const uint32_t *triangles, const uint32_t *first,
 /// Turns a mesh that is inside out, by its volume: the sum of those of the tetrahedra over its triangles.
 static void mesh_turn(MeshSolid *solid) {
     double volume = 0;
-    Vec o = vec_load(solid->vertices[solid->triangles[0][0]]);
+    Float3 o = float3_load(solid->vertices[solid->triangles[0][0]]);
     for (uint32_t t = 0; t < solid->triangle_count; t++) {
         const uint32_t *corner = solid->triangles[t];
         double p[3][3];
         for (int i = 0; i < 3; i++) {
-            Vec v = vec_sub(vec_load(solid->vertices[corner[i]]), o);
+            Float3 v = float3_sub(float3_load(solid->vertices[corner[i]]), o);
             p[i][0] = (double)v.x, p[i][1] = (double)v.y, p[i][2] = (double)v.z;
         }
         for (int i = 0; i < 3; i++) {
@@ -133,13 +133,13 @@ static SingeResult mesh_link(const PairTable *edges, const uint32_t *source, Mes
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t key[3] = {solid->triangles[t][i], solid->triangles[t][(i + 1) % 3], 0};
-            uint32_t *place = table_find(edges, key);
-            if (*place != UINT32_MAX)
+            uint32_t *position = table_find(edges, key);
+            if (*position != UINT32_MAX)
                 return error_set(error, SINGE_ERROR_MESH, "collider", source[t],
                                  "triangles %u and %u of the mesh both run from vertex %u to vertex %u: one is turned "
                                  "the wrong way round, or more than two meet there",
-                                 source[*place], source[t], key[0], key[1]);
-            *place = t;
+                                 source[*position], source[t], key[0], key[1]);
+            *position = t;
         }
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {

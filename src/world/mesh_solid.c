@@ -16,100 +16,100 @@
 #include <string.h>
 
 /// Cells of the grid for a triangle, and how many there are at least and most.
-static const double GRID_SHARE = 32, GRID_LEAST = 4096, GRID_MOST = 1 << 20;
+static const double GRID_SHARE = 32, GRID_MIN = 4096, GRID_MAX = 1 << 20;
 
 /// Of a square of a distance, for rounding.
 static const float SOLID_SLACK = 1.001f;
 
-static Vec solid_corner(const MeshSolid *solid, uint32_t t, uint32_t corner) {
-    return vec_load(solid->vertices[solid->triangles[t][corner]]);
+static Float3 solid_corner(const MeshSolid *solid, uint32_t t, uint32_t corner) {
+    return float3_load(solid->vertices[solid->triangles[t][corner]]);
 }
 
-static Vec solid_face_normal(const MeshSolid *solid, uint32_t t) {
-    Vec a = solid_corner(solid, t, 0);
-    return vec_unit(vec_cross(vec_sub(solid_corner(solid, t, 1), a), vec_sub(solid_corner(solid, t, 2), a)));
+static Float3 solid_face_normal(const MeshSolid *solid, uint32_t t) {
+    Float3 a = solid_corner(solid, t, 0);
+    return float3_unit(float3_cross(float3_sub(solid_corner(solid, t, 1), a), float3_sub(solid_corner(solid, t, 2), a)));
 }
 
 static bool solid_normals(Memory *memory, MeshSolid *solid) {
     if (!NEW(memory, solid->vertex_normals, solid->vertex_count)) return false;
     for (uint32_t t = 0; t < solid->triangle_count; t++) {
-        Vec normal = solid_face_normal(solid, t);
+        Float3 normal = solid_face_normal(solid, t);
         for (uint32_t i = 0; i < 3; i++) {
-            Vec at = solid_corner(solid, t, i), a = vec_sub(solid_corner(solid, t, (i + 1) % 3), at);
-            Vec b = vec_sub(solid_corner(solid, t, (i + 2) % 3), at);
-            float angle = atan2f(vec_length(vec_cross(a, b)), vec_dot(a, b));
+            Float3 at = solid_corner(solid, t, i), a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
+            Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
+            float angle = atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
             float *sum = solid->vertex_normals[solid->triangles[t][i]];
-            vec_store(sum, vec_mad(vec_load(sum), normal, angle));
+            float3_store(sum, float3_mad(float3_load(sum), normal, angle));
         }
     }
     return true;
 }
 
 static void solid_bounds(MeshSolid *solid) {
-    Vec low = solid_corner(solid, 0, 0), high = low;
+    Float3 low = solid_corner(solid, 0, 0), high = low;
     for (uint32_t t = 0; t < solid->triangle_count; t++)
         for (uint32_t i = 0; i < 3; i++) {
-            Vec v = solid_corner(solid, t, i);
-            low = vec(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
-            high = vec(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
+            Float3 v = solid_corner(solid, t, i);
+            low = float3(fminf(low.x, v.x), fminf(low.y, v.y), fminf(low.z, v.z));
+            high = float3(fmaxf(high.x, v.x), fmaxf(high.y, v.y), fmaxf(high.z, v.z));
         }
     solid->low = low, solid->high = high;
 }
 
-static Vec solid_middle(const MeshSolid *solid, int i, int j, int k) {
-    return vec(solid->origin.x + ((float)i + 0.5f) * solid->cell, solid->origin.y + ((float)j + 0.5f) * solid->cell,
+static Float3 solid_centroid(const MeshSolid *solid, int i, int j, int k) {
+    return float3(solid->origin.x + ((float)i + 0.5f) * solid->cell, solid->origin.y + ((float)j + 0.5f) * solid->cell,
                solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
 
 /// The pseudonormal where a foot lies.
-static Vec solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
+static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
     if (feature >= TRIANGLE_FACE) return solid_face_normal(solid, t);
     if (feature < TRIANGLE_EDGE)
-        return vec_unit(vec_load(solid->vertex_normals[solid->triangles[t][feature - TRIANGLE_CORNER]]));
-    Vec sum = vec_add(solid_face_normal(solid, t),
+        return float3_unit(float3_load(solid->vertex_normals[solid->triangles[t][feature - TRIANGLE_CORNER]]));
+    Float3 sum = float3_add(solid_face_normal(solid, t),
                       solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
-    return vec_unit(sum);
+    return float3_unit(sum);
 }
 
 /// The distance that the nearest triangle gives.
-static float solid_signed(const MeshSolid *solid, Vec p, uint32_t t, Vec *normal) {
-    Vec a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
+static float solid_signed(const MeshSolid *solid, Float3 p, uint32_t t, Float3 *normal) {
+    Float3 a = solid_corner(solid, t, 0), b = solid_corner(solid, t, 1), c = solid_corner(solid, t, 2);
     TriangleFoot foot = triangle_foot(p, a, b, c);
-    Vec pseudo = solid_pseudonormal(solid, t, foot.feature);
+    Float3 pseudo = solid_pseudonormal(solid, t, foot.feature);
     const double n[3] = {(double)pseudo.x, (double)pseudo.y, (double)pseudo.z};
     double along = triangle_dot(foot.away, n), distance = sqrt(foot.square);
     float sign = along < 0 ? -1 : 1;
     *normal = pseudo;
     // beside an edge or a vertex the way out is along what is away from it, unless that is lost in rounding
-    if (foot.feature < TRIANGLE_FACE && distance > 1e-7 * (1 + (double)vec_length(p))) {
+    if (foot.feature < TRIANGLE_FACE && distance > 1e-7 * (1 + (double)float3_length(p))) {
         double scale = (double)sign / distance;
-        *normal = vec((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
+        *normal = float3((float)(foot.away[0] * scale), (float)(foot.away[1] * scale), (float)(foot.away[2] * scale));
     }
     return sign * (float)distance;
 }
 
 /// The grid's distances, one after another along x: each bounds how far the next has to look.
 static bool solid_grid(Memory *memory, MeshSolid *solid) {
-    Vec size = vec_sub(solid->high, solid->low);
-    double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_LEAST), GRID_MOST);
+    Float3 size = float3_sub(solid->high, solid->low);
+    double wanted = fmin(fmax(GRID_SHARE * solid->triangle_count, GRID_MIN), GRID_MAX);
     // a flat one is taken to be thicker: else all cells would lie in its plane
-    double least = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
-    double side[3] = {fmax((double)size.x, least), fmax((double)size.y, least), fmax((double)size.z, least)};
+    double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
+    double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
     solid->cell = (float)cbrt(side[0] * side[1] * side[2] / wanted);
     size_t count = 1;
     for (int d = 0; d < 3; d++) { // and one cell about it
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;
         count *= (size_t)solid->cells[d];
     }
-    Vec half = vec((float)solid->cells[0], (float)solid->cells[1], (float)solid->cells[2]);
-    solid->origin = vec_mad(vec_scale(vec_add(solid->low, solid->high), 0.5f), half, -0.5f * solid->cell);
+    Float3 half = float3((float)solid->cells[0], (float)solid->cells[1], (float)solid->cells[2]);
+    solid->origin = float3_mad(float3_scale(float3_add(solid->low, solid->high), 0.5f), half, -0.5f * solid->cell);
     if (!NEW(memory, solid->coarse, count)) return false;
     float *coarse = solid->coarse;
     for (int k = 0; k < solid->cells[2]; k++)
         for (int j = 0; j < solid->cells[1]; j++) {
             float square = INFINITY;
             for (int i = 0; i < solid->cells[0]; i++, coarse++) {
-                Vec p = solid_middle(solid, i, j, k), normal;
+                Float3 p = solid_centroid(solid, i, j, k), normal;
                 *coarse = solid_signed(solid, p, mesh_tree_nearest(solid, p, &square), &normal);
                 float next = fabsf(*coarse) + 1.01f * solid->cell;
                 square = next * next;
@@ -144,37 +144,37 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
 }
 
 /// What the grid knows: *least of the distance's size, *most of it, and the sign where least is above 0.
-static float solid_look(const MeshSolid *solid, const int at[3], Vec p, float *least, float *most) {
+static float solid_look(const MeshSolid *solid, const int at[3], Float3 p, float *min, float *max) {
     size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
     float coarse = solid->coarse[index];
-    float way = 1.0001f * vec_length(vec_sub(p, solid_middle(solid, at[0], at[1], at[2])));
-    *least = fabsf(coarse) - way;
-    *most = fabsf(coarse) + way;
+    float displacement = 1.0001f * float3_length(float3_sub(p, solid_centroid(solid, at[0], at[1], at[2])));
+    *min = fabsf(coarse) - displacement;
+    *max = fabsf(coarse) + displacement;
     return coarse;
 }
 
-float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *normal) {
+float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 *normal) {
     const float q[3] = {(p.x - solid->origin.x) / solid->cell, (p.y - solid->origin.y) / solid->cell,
                         (p.z - solid->origin.z) / solid->cell};
     int at[3];
     bool within = true;
-    *normal = vec(0, 0, 1);
+    *normal = float3(0, 0, 1);
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) return INFINITY; // every box of the tree would be near
     for (int d = 0; d < 3; d++) {
         within = within && q[d] >= 0 && q[d] < (float)solid->cells[d];
         at[d] = within ? (int)q[d] : 0;
     }
-    float least = 0, most = INFINITY;
+    float min = 0, max = INFINITY;
     if (within) {
-        float coarse = solid_look(solid, at, p, &least, &most);
-        if (least > 0 && least >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? least : -least;
+        float coarse = solid_look(solid, at, p, &min, &max);
+        if (min > 0 && min >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? min : -min;
     } else {
-        Vec low = vec_sub(solid->low, p), high = vec_sub(p, solid->high);
-        Vec out = vec(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
-        least = vec_length(out);
-        if (least >= limit) return least;
+        Float3 low = float3_sub(solid->low, p), high = float3_sub(p, solid->high);
+        Float3 out = float3(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
+        min = float3_length(out);
+        if (min >= limit) return min;
     }
-    float square = SOLID_SLACK * most * most;
+    float square = SOLID_SLACK * max * max;
     uint32_t t = mesh_tree_nearest(solid, p, &square);
     return t == UINT32_MAX ? INFINITY : solid_signed(solid, p, t, normal);
 }

@@ -12,12 +12,12 @@ enum { SOLID_WIDE = 4 };
 
 /// Four triangles side by side: a corner and the edges from it. What is left over repeats the last.
 typedef struct SolidLeaf {
-    Quad a[3], ab[3], ac[3];
+    Float4 a[3], ab[3], ac[3];
 } SolidLeaf;
 
 /// Four boxes side by side, and what they hold: node `child`, or leaf ~child. One that holds nothing is infinitely far.
 typedef struct SolidNode {
-    Quad low[3], high[3];
+    Float4 low[3], high[3];
     int32_t child[SOLID_WIDE];
 } SolidNode;
 
@@ -33,10 +33,10 @@ typedef struct MeshSolid {
     uint32_t leaf_count, node_count;
     SolidLeaf *leaves;
     SolidNode *nodes;
-    Vec low, high;             ///< of the vertices
+    Float3 low, high;             ///< of the vertices
     float cell;                ///< m, side of the cells of the grid
     int32_t cells[3];
-    Vec origin;
+    Float3 origin;
     float *coarse;             ///< signed distances at the middles of the cells
     bool turned;               ///< it was inside out
 } MeshSolid;
@@ -48,7 +48,7 @@ SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float
 void mesh_solid_free(Memory *memory, MeshSolid *solid);
 
 /// See collider_distance.
-float mesh_solid_distance(const MeshSolid *solid, Vec p, float limit, Vec *normal);
+float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 *normal);
 
 // mesh_check.c
 /// Fills in vertices, triangles and neighbours.
@@ -59,6 +59,6 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
 /// Fills in order, leaves and nodes; false when out of memory.
 bool mesh_tree_create(Memory *memory, MeshSolid *solid);
 /// The triangle nearest to p among those nearer than sqrt(*square), with its distance's square; UINT32_MAX: none.
-uint32_t mesh_tree_nearest(const MeshSolid *solid, Vec p, float *square);
+uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 p, float *square);
 
 #endif

@@ -10,7 +10,7 @@ enum { TREE_STACK = 3 * 17 + 4 };
 
 typedef struct TreeBuild {
     MeshSolid *solid;
-    float (*middle)[3];
+    float (*centroid)[3];
     uint32_t leaves, nodes;
 } TreeBuild;
 
@@ -27,34 +27,34 @@ static void tree_count(uint32_t count, uint32_t *nodes) {
         if (parts[i] > SOLID_WIDE) tree_count(parts[i], nodes);
 }
 
-static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Vec *low, Vec *high) {
-    *low = vec(INFINITY, INFINITY, INFINITY), *high = vec(-INFINITY, -INFINITY, -INFINITY);
+static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Float3 *low, Float3 *high) {
+    *low = float3(INFINITY, INFINITY, INFINITY), *high = float3(-INFINITY, -INFINITY, -INFINITY);
     for (uint32_t k = first; k < first + count; k++)
         for (int i = 0; i < 3; i++) {
             const float *v = build->solid->vertices[build->solid->triangles[build->solid->order[k]][i]];
-            *low = vec(fminf(low->x, v[0]), fminf(low->y, v[1]), fminf(low->z, v[2]));
-            *high = vec(fmaxf(high->x, v[0]), fmaxf(high->y, v[1]), fmaxf(high->z, v[2]));
+            *low = float3(fminf(low->x, v[0]), fminf(low->y, v[1]), fminf(low->z, v[2]));
+            *high = float3(fmaxf(high->x, v[0]), fmaxf(high->y, v[1]), fmaxf(high->z, v[2]));
         }
 }
 
 /// The axis along which the middles reach farthest.
 static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
     int best = 0;
-    float most = -1;
+    float max = -1;
     for (int axis = 0; axis < 3; axis++) {
         float low = INFINITY, high = -INFINITY;
         for (uint32_t k = first; k < first + count; k++) {
-            float x = build->middle[build->solid->order[k]][axis];
+            float x = build->centroid[build->solid->order[k]][axis];
             low = fminf(low, x), high = fmaxf(high, x);
         }
-        if (high - low > most) most = high - low, best = axis;
+        if (high - low > max) max = high - low, best = axis;
     }
     return best;
 }
 
 /// Whether triangle a comes before b along the axis: by number where they are equal, so that there is one order.
 static bool tree_before(const TreeBuild *build, int axis, uint32_t a, uint32_t b) {
-    float x = build->middle[a][axis], y = build->middle[b][axis];
+    float x = build->centroid[a][axis], y = build->centroid[b][axis];
     return x < y || (!(y < x) && a < b);
 }
 
@@ -104,7 +104,7 @@ static int32_t tree_build(TreeBuild *build, uint32_t first, uint32_t count) {
     if (half > SOLID_WIDE) tree_split(build, first, half, parts[0]);
     if (count - half > SOLID_WIDE) tree_split(build, first + half, count - half, parts[2]);
     for (int i = 0; i < SOLID_WIDE; first += parts[i++]) {
-        Vec low, high;
+        Float3 low, high;
         tree_box(build, first, parts[i], &low, &high);
         int32_t child = parts[i] ? tree_build(build, first, parts[i]) : 0;
         SolidNode *node = &build->solid->nodes[index];
@@ -122,54 +122,54 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
     solid->node_count = nodes;
     TreeBuild build = {.solid = solid};
     bool ok = NEW(memory, solid->order, count) && NEW(memory, solid->leaves, solid->leaf_count) &&
-              NEW(memory, solid->nodes, nodes) && NEW(memory, build.middle, count);
+              NEW(memory, solid->nodes, nodes) && NEW(memory, build.centroid, count);
     for (uint32_t t = 0; ok && t < count; t++) {
         solid->order[t] = t;
         for (int i = 0; i < 3; i++) {
             const uint32_t *corner = solid->triangles[t];
             float a = solid->vertices[corner[0]][i], b = solid->vertices[corner[1]][i];
-            build.middle[t][i] = a + b + solid->vertices[corner[2]][i];
+            build.centroid[t][i] = a + b + solid->vertices[corner[2]][i];
         }
     }
     if (ok && count > SOLID_WIDE) tree_build(&build, 0, count);
     if (ok && count <= SOLID_WIDE) { // a node all the same
         tree_leaf(&build, 0, count);
         for (int i = 0; i < 3; i++)
-            solid->nodes[0].low[i] = quad_all(-INFINITY), solid->nodes[0].high[i] = quad_all(INFINITY);
+            solid->nodes[0].low[i] = float4_all(-INFINITY), solid->nodes[0].high[i] = float4_all(INFINITY);
         for (int i = 0; i < SOLID_WIDE; i++) solid->nodes[0].child[i] = ~0;
     }
-    FREE(memory, build.middle, count);
+    FREE(memory, build.centroid, count);
     return ok;
 }
 
-static inline Quad tree_dot(const Quad a[3], const Quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline Float4 tree_dot(const Float4 a[3], const Float4 b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Squares of the distances to the boxes; infinite for an empty one.
-static inline Quad tree_boxes(const SolidNode *node, const Quad p[3]) {
-    Quad sum = quad_all(0);
+static inline Float4 tree_boxes(const SolidNode *node, const Float4 p[3]) {
+    Float4 sum = float4_all(0);
     for (int i = 0; i < 3; i++) {
-        Quad out = quad_max(quad_max(node->low[i] - p[i], p[i] - node->high[i]), quad_all(0));
+        Float4 out = float4_max(float4_max(node->low[i] - p[i], p[i] - node->high[i]), float4_all(0));
         sum += out * out;
     }
     return sum;
 }
 
 /// Square of the distance from pa (seen from the edge's start) to the edge.
-static inline Quad tree_edge(const Quad pa[3], const Quad edge[3]) {
-    Quad t = quad_min(quad_max(tree_dot(pa, edge) / tree_dot(edge, edge), quad_all(0)), quad_all(1)), off[3];
+static inline Float4 tree_edge(const Float4 pa[3], const Float4 edge[3]) {
+    Float4 t = float4_min(float4_max(tree_dot(pa, edge) / tree_dot(edge, edge), float4_all(0)), float4_all(1)), off[3];
     for (int i = 0; i < 3; i++) off[i] = pa[i] - t * edge[i];
     return tree_dot(off, off);
 }
 
-static inline void tree_cross(const Quad a[3], const Quad b[3], Quad out[3]) {
+static inline void tree_cross(const Float4 a[3], const Float4 b[3], Float4 out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /// Squares of the distances to a leaf's triangles: to the plane over the inside, else to the nearest edge.
-static inline Quad tree_triangles(const SolidLeaf *leaf, const Quad p[3]) {
-    Quad pa[3], pb[3], bc[3], normal[3], side[3], back[3];
+static inline Float4 tree_triangles(const SolidLeaf *leaf, const Float4 p[3]) {
+    Float4 pa[3], pb[3], bc[3], normal[3], side[3], back[3];
     for (int i = 0; i < 3; i++) {
         pa[i] = p[i] - leaf->a[i];
         pb[i] = pa[i] - leaf->ab[i];
@@ -178,15 +178,15 @@ static inline Quad tree_triangles(const SolidLeaf *leaf, const Quad p[3]) {
     }
     tree_cross(leaf->ab, leaf->ac, normal);
     tree_cross(leaf->ab, pa, side);
-    QuadMask inside = tree_dot(side, normal) >= 0;
+    Float4Mask inside = tree_dot(side, normal) >= 0;
     tree_cross(bc, pb, side);
     inside &= tree_dot(side, normal) >= 0;
     tree_cross(back, pa, side);
     inside &= tree_dot(side, normal) >= 0;
-    Quad height = tree_dot(pa, normal);
-    Quad plane = height * height / tree_dot(normal, normal);
-    Quad edges = quad_min(quad_min(tree_edge(pa, leaf->ab), tree_edge(pa, leaf->ac)), tree_edge(pb, bc));
-    return quad_select(inside, plane, edges);
+    Float4 height = tree_dot(pa, normal);
+    Float4 plane = height * height / tree_dot(normal, normal);
+    Float4 edges = float4_min(float4_min(tree_edge(pa, leaf->ab), tree_edge(pa, leaf->ac)), tree_edge(pb, bc));
+    return float4_select(inside, plane, edges);
 }
 
 typedef struct TreeItem {
@@ -195,8 +195,8 @@ typedef struct TreeItem {
 } TreeItem;
 
 /// Pushes what a node holds nearer than the best, the nearest last.
-static int tree_push(const SolidNode *node, const Quad p[3], float best, TreeItem *stack, int depth) {
-    Quad square = tree_boxes(node, p);
+static int tree_push(const SolidNode *node, const Float4 p[3], float best, TreeItem *stack, int depth) {
+    Float4 square = tree_boxes(node, p);
     int first = depth;
     for (int i = 0; i < SOLID_WIDE; i++) {
         if (!(square[i] < best)) continue;
@@ -207,8 +207,8 @@ static int tree_push(const SolidNode *node, const Quad p[3], float best, TreeIte
     return depth;
 }
 
-uint32_t mesh_tree_nearest(const MeshSolid *solid, Vec at, float *square) {
-    const Quad p[3] = {quad_all(at.x), quad_all(at.y), quad_all(at.z)};
+uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 at, float *square) {
+    const Float4 p[3] = {float4_all(at.x), float4_all(at.y), float4_all(at.z)};
     TreeItem stack[TREE_STACK];
     float best = *square;
     uint32_t found = UINT32_MAX;
@@ -220,7 +220,7 @@ uint32_t mesh_tree_nearest(const MeshSolid *solid, Vec at, float *square) {
             depth = tree_push(&solid->nodes[item.child], p, best, stack, depth);
             continue;
         }
-        Quad near = tree_triangles(&solid->leaves[~item.child], p);
+        Float4 near = tree_triangles(&solid->leaves[~item.child], p);
         for (int i = 0; i < SOLID_WIDE; i++)
             if (near[i] < best) best = near[i], found = (uint32_t)~item.child * SOLID_WIDE + (uint32_t)i;
     }

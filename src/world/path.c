@@ -4,11 +4,11 @@
 #include <string.h>
 
 /// Positions (m) up to this size leave room for their differences and squares in float.
-static const float path_place_max = 1e9f;
+static const float path_position_max = 1e9f;
 
 static bool path_key_finite(const SingePoseKey *key) {
     bool finite = isfinite(key->time);
-    for (int i = 0; i < 3; i++) finite = finite && fabsf(key->position[i]) <= path_place_max;
+    for (int i = 0; i < 3; i++) finite = finite && fabsf(key->position[i]) <= path_position_max;
     for (int i = 0; i < 4; i++) finite = finite && isfinite(key->rotation[i]);
     return finite;
 }
@@ -68,7 +68,7 @@ Pose path_pose(const Path *path, double time) {
     const SingePoseKey *b = &path->keys[next < path->count ? next : path->count - 1];
     const SingePoseKey *a = next > 0 ? &path->keys[next - 1] : b;
     float t = a == b ? 0 : (float)((time - a->time) / ((double)b->time - a->time));
-    Pose pose = {vec_mad(vec_load(a->position), vec_sub(vec_load(b->position), vec_load(a->position)), t),
+    Pose pose = {float3_mad(float3_load(a->position), float3_sub(float3_load(b->position), float3_load(a->position)), t),
                  {0, 0, 0, 1}};
     // the shorter way round, then normalised
     float dot = 0, length = 0;

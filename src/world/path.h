@@ -13,7 +13,7 @@ typedef struct Path {
 } Path;
 
 typedef struct Pose {
-    Vec position;
+    Float3 position;
     float rotation[4];
 } Pose;
 
@@ -33,11 +33,11 @@ void path_free(Path *path, Memory *memory);
 Pose path_pose(const Path *path, double time);
 
 /// local → world and back.
-static inline Vec pose_apply(const Pose *pose, Vec local) {
-    return vec_add(pose->position, quat_rotate(pose->rotation, local));
+static inline Float3 pose_apply(const Pose *pose, Float3 local) {
+    return float3_add(pose->position, quat_rotate(pose->rotation, local));
 }
-static inline Vec pose_unapply(const Pose *pose, Vec world) {
-    return quat_unrotate(pose->rotation, vec_sub(world, pose->position));
+static inline Float3 pose_unapply(const Pose *pose, Float3 world) {
+    return quat_unrotate(pose->rotation, float3_sub(world, pose->position));
 }
 
 #endif

@@ -22,7 +22,7 @@ static inline double triangle_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static inline void triangle_less(Vec b, Vec a, double out[3]) {
+static inline void triangle_less(Float3 b, Float3 a, double out[3]) {
     out[0] = (double)b.x - (double)a.x, out[1] = (double)b.y - (double)a.y, out[2] = (double)b.z - (double)a.z;
 }
 
@@ -35,7 +35,7 @@ static inline TriangleFoot triangle_foot_at(const double pa[3], const double ab[
     return foot;
 }
 
-static inline TriangleFoot triangle_foot(Vec p, Vec a, Vec b, Vec c) {
+static inline TriangleFoot triangle_foot(Float3 p, Float3 a, Float3 b, Float3 c) {
     double ab[3], ac[3], pa[3];
     triangle_less(b, a, ab), triangle_less(c, a, ac), triangle_less(p, a, pa);
     const double bb = triangle_dot(ab, ab), cc = triangle_dot(ac, ac), bc = triangle_dot(ab, ac);

@@ -14,8 +14,8 @@ SingeResult wind_check(const SingeWindDef *def, SingeError *error) {
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "wind", -1, "%s", what) : SINGE_OK;
 }
 
-Vec wind_velocity(const SingeWindDef *def, Vec position, double time) {
-    Vec mean = vec_load(def->velocity);
+Float3 wind_velocity(const SingeWindDef *def, Float3 position, double time) {
+    Float3 mean = float3_load(def->velocity);
     if (def->gust <= 0) return mean;
     // time runs along its own diagonal of the lattice, so that no place repeats another
     float t = (float)(time / def->gust_time), s = 1 / def->gust_size, gust[3];
@@ -23,5 +23,5 @@ Vec wind_velocity(const SingeWindDef *def, Vec position, double time) {
         gust[i] = 2 * random_noise(position.x * s + t, position.y * s + 0.7f * t, position.z * s + 0.4f * t,
                                    def->seed * 3 + i) -
                   1;
-    return vec_mad(mean, vec_load(gust), def->gust);
+    return float3_mad(mean, float3_load(gust), def->gust);
 }

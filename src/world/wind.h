@@ -7,6 +7,6 @@
 #include "singe/types.h"
 
 SingeResult wind_check(const SingeWindDef *def, SingeError *error);
-Vec wind_velocity(const SingeWindDef *def, Vec position, double time);
+Float3 wind_velocity(const SingeWindDef *def, Float3 position, double time);
 
 #endif

@@ -209,7 +209,7 @@ static void nothing_goes_without_ablation(void **unused) {
 }
 
 /// Where m_loss lies under m_min the sheet burns to ash and stays whole.
-static void ash_stays_where_loss_is_below_least(void **unused) {
+static void ash_stays_where_loss_is_below_min(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     material.mass_min = singe_param(0.3f), material.mass_loss = singe_param(0.2f);
@@ -386,7 +386,7 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
     AblatePlan *plan = plan_for(b);
     double partial[8], initial = mass_left(b), heat = 0;
     float thickening = 1;
-    uint32_t most = 0, count = b->shell.particle_count;
+    uint32_t max = 0, count = b->shell.particle_count;
     size_t freed = 0;
     for (int n = 0; n < 150; n++) {
         b->state.time = 0.05 * n;
@@ -407,11 +407,11 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
         free(before);
         expect_consistent(b);
         for (size_t k = 0; k < b->events.count; k++) freed += b->events.items[k].kind == SINGE_EVENT_PIECE_FREED;
-        if (b->state.ablate.piece_count > most) most = b->state.ablate.piece_count;
+        if (b->state.ablate.piece_count > max) max = b->state.ablate.piece_count;
         double gone = b->state.burn.mass_burnt + b->state.ablate.mass_removed;
         assert_true(fabs(initial - mass_left(b) - gone) < 1e-12 * initial);
     }
-    assert_true(most >= 4);
+    assert_true(max >= 4);
     assert_true(b->state.ablate.mass_removed > 0.02 * initial);
     assert_true(fabs(heat - b->state.ablate.heat_removed) < 1e-12 * heat);
     assert_int_equal(b->state.ablate.next_piece, 1 + freed);
@@ -472,7 +472,7 @@ int main(void) {
         cmocka_unit_test(yellow_and_green_go_with_the_cell),
         cmocka_unit_test(all_can_go),
         cmocka_unit_test(nothing_goes_without_ablation),
-        cmocka_unit_test(ash_stays_where_loss_is_below_least),
+        cmocka_unit_test(ash_stays_where_loss_is_below_min),
         cmocka_unit_test(pieces_split_and_keep_ids),
         cmocka_unit_test(equal_parts_keep_by_smallest_particle),
         cmocka_unit_test(small_loose_pieces_are_dropped),

@@ -21,7 +21,7 @@ static uint32_t random_bits(void) {
     return (uint32_t)(random_state >> 33);
 }
 
-static int random_integer(int most) { return (int)(random_bits() % (2 * (uint32_t)most + 1)) - most; }
+static int random_integer(int max) { return (int)(random_bits() % (2 * (uint32_t)max + 1)) - max; }
 
 // ---- orientation
 
@@ -45,9 +45,9 @@ static int orient3_of_integers(int64_t p[4][3]) {
 }
 
 /// Points of whole coordinates up to `most`, of which a fourth is put into the plane of the others half of the time.
-static void random_points(int most, int64_t p[4][3]) {
+static void random_points(int max, int64_t p[4][3]) {
     for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++) p[i][k] = random_integer(most);
+        for (int k = 0; k < 3; k++) p[i][k] = random_integer(max);
     const int64_t s = random_integer(3), t = random_integer(3);
     if (random_bits() % 2) return;
     for (int k = 0; k < 3; k++) p[3][k] = p[0][k] + s * (p[1][k] - p[0][k]) + t * (p[2][k] - p[0][k]);
@@ -57,10 +57,10 @@ static void test_orientation(void **state) {
     (void)state;
     int flat = 0;
     for (int trial = 0; trial < 200000; trial++) {
-        const int most = trial % 2 ? 3 : 1 << 20, shift = random_integer(90);
+        const int max = trial % 2 ? 3 : 1 << 20, shift = random_integer(90);
         int64_t p[4][3];
         float at[4][3];
-        random_points(most, p);
+        random_points(max, p);
         for (int i = 0; i < 4; i++)
             for (int k = 0; k < 3; k++) at[i][k] = ldexpf((float)p[i][k], shift);
         const int expected = orient3_of_integers(p);
@@ -96,9 +96,9 @@ static void test_orientation_near_a_plane(void **state) {
 /// What doubles cannot tell: the least of floats decides beside the largest.
 static void test_orientation_far_apart(void **state) {
     (void)state;
-    const float huge = 0x1p126f, least = 0x1p-149f;
+    const float huge = 0x1p126f, min = 0x1p-149f;
     const float a[3] = {huge, 0, 0}, b[3] = {0, huge, 0}, c[3] = {-huge, -huge, 0};
-    const float d[3] = {1, 2, 0}, below[3] = {1, 2, -least}, above[3] = {1, 2, least};
+    const float d[3] = {1, 2, 0}, below[3] = {1, 2, -min}, above[3] = {1, 2, min};
     assert_int_equal(exact_orient3(a, b, c, d), 0);
     assert_int_equal(exact_orient3(a, b, c, below), 1);
     assert_int_equal(exact_orient3(a, b, c, above), -1);
@@ -172,12 +172,12 @@ static void test_pairs(void **state) {
 
 // ---- the tree
 
-enum { MOST = 3000 };
+enum { MAX = 3000 };
 
 typedef struct Soup {
     uint32_t count;
-    float position[3 * MOST][3];
-    uint32_t triangles[MOST][3];
+    float position[3 * MAX][3];
+    uint32_t triangles[MAX][3];
 } Soup;
 
 /// Triangles of about `size` in the unit cube, on a lattice where `steps` is above 0; those on a line are left out.
@@ -288,7 +288,7 @@ static void add_lines(const float *const lines[3], uint32_t first, float (*posit
 
 static void test_hinges(void **state) {
     (void)state;
-    static const float left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0}, right[3] = {1, 0, 0};
+    static const float left[3] = {-1, 0, 0}, centroid[3] = {0, 0, 0}, right[3] = {1, 0, 0};
     for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++)
         for (int apart = 0; apart < 4; apart++) { // lines at the same places, or not; the sheets' order
             const Meeting *m = &meetings[i];
@@ -296,7 +296,7 @@ static void test_hinges(void **state) {
             uint32_t triangles[16][3];
             CrossingList list;
             const uint32_t first = apart & 1 ? 9 : 0;
-            add_lines((const float *const[3]){left, middle, right}, first, position, triangles + (first ? 8 : 0));
+            add_lines((const float *const[3]){left, centroid, right}, first, position, triangles + (first ? 8 : 0));
             const uint32_t second = 9 - first;
             add_lines((const float *const[3]){m->other, m->ridge, m->foot}, second, position,
                       triangles + (first ? 0 : 8));

@@ -29,7 +29,7 @@ static Drawing *folded(float degrees) {
 static double drawn_angle(float degrees, const float *room) {
     Folds folds = {0};
     Drawing *d = folded(degrees);
-    d->detail.room = room, d->detail.leaves_most = 2.25e-4f; // of contact at its usual thickness
+    d->detail.room = room, d->detail.bulge_max = 2.25e-4f; // of contact at its usual thickness
     draw_fine(d);
     assert_true(folds_add(&d->surface, &folds));
     assert_true(folds.count > 50);

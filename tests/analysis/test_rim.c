@@ -23,7 +23,7 @@ typedef struct Sheet {
 } Sheet;
 
 /// The sheet leaves its plane upwards; x is the distance from the edge at rest.
-static void place(const Sheet *sheet, double x, double y, float *position, float *normal) {
+static void position(const Sheet *sheet, double x, double y, float *position, float *normal) {
     const double radius = sheet->curl > 0 ? 0.01 / (sheet->curl * degree) : INFINITY;
     double turn = x < rolled ? (rolled - x) / radius : 0;
     double px = x, pz = 0;
@@ -75,7 +75,7 @@ static Rim look(Sheet sheet) {
         double x = i * side / CELLS, y = j * side / CELLS;
         const float rest[3] = {(float)x, (float)y, 0};
         memcpy(s.rest_position[v], rest, sizeof rest);
-        place(&sheet, x, y, s.position[v], s.normal[v]);
+        position(&sheet, x, y, s.position[v], s.normal[v]);
         s.burn[v] = sheet.burnt && i == 0 ? 1 : 0; // the edges that meet it have not burnt
         s.mass[v] = (float)fmin(0.25 + 0.75 * x / 0.012, 1);
     }
@@ -167,8 +167,8 @@ static void test_sums_are_of_areas(void **state) {
     rim_sum(&large, &sum);
     near_to(sum.band[1].rest_area, small.band[1].rest_area + large.band[1].rest_area, 1e-12);
     assert_true(sum.curl_max == large.curl_max);
-    double middle = rim_percentile(sum.curl, 0.5);
-    assert_true(middle > rim_percentile(small.curl, 0.4) && middle < rim_percentile(large.curl, 0.6));
+    double centroid = rim_percentile(sum.curl, 0.5);
+    assert_true(centroid > rim_percentile(small.curl, 0.4) && centroid < rim_percentile(large.curl, 0.6));
 }
 
 static void test_nothing_left(void **state) {

@@ -19,9 +19,9 @@ static const double side = 0.12, pi = 3.14159265358979323846;
 typedef double Height(double x, double y, double number);
 
 static void set_vertex(SingeSurface *s, uint32_t v, double x, double y, double z) {
-    const float rest[3] = {(float)x, 0.3f, (float)y}, place[3] = {(float)x, (float)(0.3 - z), (float)y};
+    const float rest[3] = {(float)x, 0.3f, (float)y}, position[3] = {(float)x, (float)(0.3 - z), (float)y};
     memcpy(s->rest_position[v], rest, sizeof rest); // it stands upright: no axis of space is the sheet's normal
-    memcpy(s->position[v], place, sizeof place);
+    memcpy(s->position[v], position, sizeof position);
     s->uv[v][0] = (float)(x / side), s->uv[v][1] = (float)(y / side);
     s->burn[v] = x < side / 3 ? 1 : 0, s->time_ignited[v] = x < side / 3 ? 1 : -1;
 }

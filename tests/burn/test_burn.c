@@ -64,7 +64,7 @@ static void ceilings_may_vary(void **unused) {
     static const float halves[] = {0, 1};
     SingeMaterialDef material = plain_material();
     material.rate_ceiling =
-        (SingeParam){.value = 50, .to = 200, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+        (SingeParam){.value = 50, .to = 200, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
     BurningSheet *b = burning_sheet(8, 2, 0.01f, &material);
     heat_all(b, 5000);
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
@@ -142,7 +142,7 @@ static void kinetics_follow_arrhenius(void **unused) {
     }
 }
 
-static void no_step_passes_the_least_mass(void **unused) {
+static void no_step_passes_the_min_mass(void **unused) {
     (void)unused;
     const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2, 5}, steps[] = {1, 50, 1e4f, 1e30f};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
@@ -151,14 +151,14 @@ static void no_step_passes_the_least_mass(void **unused) {
             material.ash_exponent = singe_param(exponents[e]);
             BurningSheet *b = burning_sheet(1, 1, 0.01f, &material);
             heat_all(b, 1500);
-            float least = field_at(b->shell.matter.mass_min, 0), before = 1;
+            float min = field_at(b->shell.matter.mass_min, 0), before = 1;
             for (int n = 0; n < 30; n++) {
                 assert_int_equal(step(b, NULL, steps[s], 1, 1), SINGE_OK);
                 float mass = b->state.burn.mass[0];
-                assert_true(mass >= least && mass <= before);
+                assert_true(mass >= min && mass <= before);
                 before = mass;
             }
-            if (exponents[e] <= 1) assert_float_equal(before, least, 1e-6);
+            if (exponents[e] <= 1) assert_float_equal(before, min, 1e-6);
             burning_sheet_free(b);
         }
 }
@@ -397,7 +397,7 @@ int main(void) {
         cmocka_unit_test(exponents_follow_their_solutions),
         cmocka_unit_test(any_rate_leaves_a_mass),
         cmocka_unit_test(kinetics_follow_arrhenius),
-        cmocka_unit_test(no_step_passes_the_least_mass),
+        cmocka_unit_test(no_step_passes_the_min_mass),
         cmocka_unit_test(ignites_once_and_in_order),
         cmocka_unit_test(burnt_when_mass_is_below_loss),
         cmocka_unit_test(springs_shrink_by_eq_6),

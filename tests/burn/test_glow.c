@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double YIELD = 0.35, LEAST = 0.15, RATE = 0.5, AIR = 0.1;
+static const double YIELD = 0.35, MIN = 0.15, RATE = 0.5, AIR = 0.1;
 static const double SLOWING = 4; // of char without fuel
 static const float HOT = 1500; // K: kinetics are no limit
 
@@ -19,7 +19,7 @@ static SingeResult step(BurningSheet *b, float h, float pace, float thickening) 
 
 static SingeMaterialDef charring(void) {
     SingeMaterialDef material = plain_material();
-    material.char_yield = singe_param((float)YIELD), material.mass_min = singe_param((float)LEAST);
+    material.char_yield = singe_param((float)YIELD), material.mass_min = singe_param((float)MIN);
     material.char_rate = singe_param((float)RATE), material.char_air = singe_param((float)AIR);
     material.reference_grammage = 0;
     return material;
@@ -36,7 +36,7 @@ static BurningSheet *leaf(uint32_t cells, const SingeMaterialDef *material, floa
 }
 
 static double left_of_char(const BurningSheet *b, uint32_t i) {
-    return ((double)b->state.burn.mass[i] - LEAST) / (YIELD - LEAST);
+    return ((double)b->state.burn.mass[i] - MIN) / (YIELD - MIN);
 }
 
 static double kinetics(double temperature) { return 5.667e9 * exp(-160e3 / (8.314462618 * temperature)); }
@@ -73,17 +73,17 @@ static void leaves_glow_slower_than_edges(void **unused) {
     assert_float_equal(b->state.burn.mass[cold], YIELD, 1e-7);
     // ash beside it lets air through
     uint32_t centre = b->shell.vertex_count + 3 * 6 + 3;
-    b->state.burn.mass[centre] = (float)(LEAST + 0.5 * (YIELD - LEAST));
+    b->state.burn.mass[centre] = (float)(MIN + 0.5 * (YIELD - MIN));
     double root = sqrt(left_of_char(b, inner));
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(root - sqrt(left_of_char(b, inner)), 0.5 * 0.1 * RATE * 0.5, 1e-3);
     // fuel beside it, in the other layer, keeps the air away, and so does the flame
-    b->state.burn.fuel[centre] = 0.5f, b->state.burn.mass[centre] += 0.5f - 0.5f * (float)LEAST;
+    b->state.burn.fuel[centre] = 0.5f, b->state.burn.mass[centre] += 0.5f - 0.5f * (float)MIN;
     double held = sqrt(left_of_char(b, inner));
     b->state.heat.temperature[centre] = 400;
     assert_int_equal(step(b, 0.1f * (float)SLOWING, 1, 1), SINGE_OK);
     assert_float_equal(sqrt(left_of_char(b, inner)), held, 2e-4);
-    b->state.burn.fuel[centre] = 0, b->state.burn.mass[centre] = (float)LEAST;
+    b->state.burn.fuel[centre] = 0, b->state.burn.mass[centre] = (float)MIN;
     // a hole beside it is an edge
     uint32_t before = inner;
     double was = sqrt(left_of_char(b, before));
@@ -112,14 +112,14 @@ static void ledgers_close_from_fuel_to_ash(void **unused) {
         for (int n = 0; n < 2000; n++) {
             assert_int_equal(step(b, steps[s], 1, 1), SINGE_OK);
             double mass = (double)b->state.burn.mass[0];
-            assert_true(mass <= last && mass >= LEAST - 1e-7);
+            assert_true(mass <= last && mass >= MIN - 1e-7);
             assert_true(b->state.burn.fuel[0] > 0 || mass <= YIELD + 1e-6);
             warmed += (double)b->state.burn.release[0] * (double)steps[s], last = mass;
         }
-        assert_float_equal(last, LEAST, 1e-6);
-        assert_float_equal(b->state.burn.mass_burnt / first, 1 - LEAST, 1e-6);
+        assert_float_equal(last, MIN, 1e-6);
+        assert_float_equal(b->state.burn.mass_burnt / first, 1 - MIN, 1e-6);
         double monoxide = 2500 * exp(-6240 / (double)HOT), heat = 0.28 + 0.72 / (1 + monoxide);
-        double eta = 0.25 * 16e6 / 1400 * (1 - YIELD), glow = 28e6 / 1400 * heat * (YIELD - LEAST);
+        double eta = 0.25 * 16e6 / 1400 * (1 - YIELD), glow = 28e6 / 1400 * heat * (YIELD - MIN);
         if (s < 2) assert_float_equal(warmed, eta + glow, 2e-3 * (eta + glow));
         burning_sheet_free(b);
     }
@@ -131,7 +131,7 @@ static void no_char_is_the_papers_eq_4(void **unused) {
     BurningSheet *b[2];
     for (int k = 0; k < 2; k++) {
         SingeMaterialDef material = charring();
-        material.char_yield = singe_param(k ? (float)LEAST : 0), material.char_rate = singe_param(k ? 1e6f : 0);
+        material.char_yield = singe_param(k ? (float)MIN : 0), material.char_rate = singe_param(k ? 1e6f : 0);
         b[k] = burning_sheet(3, 3, 0.01f, &material);
         for (uint32_t i = 0; i < b[k]->shell.particle_count; i++)
             b[k]->state.heat.temperature[i] = 500 + 20 * (float)i;
@@ -159,7 +159,7 @@ static void char_and_ash_have_densities_of_their_own(void **unused) {
         assert_int_equal(step(b, 100, 1, 1), SINGE_OK);
     }
     assert_float_equal(ratio[0], YIELD / 0.45, 1e-5);
-    assert_float_equal(ratio[1], LEAST / 0.22, 1e-5);
+    assert_float_equal(ratio[1], MIN / 0.22, 1e-5);
     burning_sheet_free(b);
 }
 

@@ -217,7 +217,7 @@ class Resume(Case):
         def material(thickness):
             with open(self.path("m.yaml"), "w") as file:
                 file.write(f"base: newsprint\nthickness: {thickness} mm\n"
-                           "grammage: {from: 50 g/m2, to: 60 g/m2, picture: rate.png}\n")
+                           "grammage: {from: 50 g/m2, to: 60 g/m2, texture: rate.png}\n")
 
         extra = ("colliders:\n  - {kind: mesh, mesh: c.obj, position: [0, 0, -10 cm]}\n"
                  "  - {kind: heightfield, picture: heights.png, size: [1, 1], heights: [-30 cm, -20 cm]}\n")
@@ -226,7 +226,7 @@ class Resume(Case):
             text = file.read()
         text = text.replace("    translate:",
                             "    material: {base: ./m.yaml}\n    picture: print.png\n    translate:", 1)
-        text = text.replace("sources:\n", "sources:\n  - {kind: picture, picture: flux.png, flux: 100}\n", 1)
+        text = text.replace("sources:\n", "sources:\n  - {kind: texture, texture: flux.png, flux: 100}\n", 1)
         text = text.replace("samples: 1}", "samples: 1, environment: {picture: sky.png}}")
         with open(self.scene, "w") as file:
             file.write(text)

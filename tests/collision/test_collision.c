@@ -105,7 +105,7 @@ static void a_heap_does_not_cross(void **unused) {
     SingeTimers timers = singe_sim_timers(sim);
     assert_int_equal(timers.contact_unresolved, 0);
     assert_int_equal(timers.contact_dropped, 0);
-    assert_true(timers.contact_pushes > 1000);
+    assert_true(timers.contact_repulsions > 1000);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.speed_rms_unburnt < 0.3f); // it lies there
     singe_sim_destroy(sim), singe_sim_destroy(without);
@@ -182,7 +182,7 @@ static void crossing_input_is_left_alone(void **unused) {
     add_flat(sim, &(Flat){10, {0.0112f, 0.0253f, 0.98f}, {0.04f, 0, 0}, {0, 0, 0.05f}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     steps(sim, 1);
-    assert_true(singe_sim_stats(sim).tangled_cells > 8);
+    assert_true(singe_sim_stats(sim).intersecting_cells > 8);
     steps(sim, 120);
     SingeStats stats = singe_sim_stats(sim);
     assert_true(stats.strain_max < 0.2 && stats.speed_rms_unburnt < 4);
@@ -206,7 +206,7 @@ static void cells_of_other_crossings_are_kept_apart(void **unused) {
     }
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     steps(sim, 1);
-    assert_int_equal(singe_sim_stats(sim).tangled_cells, 4);
+    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 4);
     steps(sim, 14); // unhindered they pass each other at the fifth, and are 19 mm beyond
     SingeView view = singe_sim_view(sim);
     float lower = 0, upper = 0;
@@ -216,7 +216,7 @@ static void cells_of_other_crossings_are_kept_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void sheets_in_one_place_are_left_alone(void **unused) {
+static void sheets_in_one_position_are_left_alone(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
@@ -225,9 +225,9 @@ static void sheets_in_one_place_are_left_alone(void **unused) {
     add_flat(sim, &(Flat){10, {0.2f, 0, 1}, {0.05f, 0, 0}, {0, 0.05f, 0}}, 0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     steps(sim, 1);
-    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     steps(sim, 20);
-    assert_int_equal(singe_sim_stats(sim).tangled_cells, 300);
+    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 300);
     assert_int_equal(singe_sim_timers(sim).contact_stops, 0);
     singe_sim_destroy(sim);
 }
@@ -263,7 +263,7 @@ typedef struct Searched {
     SheetSource source;
     Shell shell;
     State state;
-    TouchPlan *plan;
+    CollisionPlan *plan;
 } Searched;
 
 /// A crumpled sheet of n x n cells: its vertices moved by noise of a wavelength of some cells.
@@ -289,16 +289,16 @@ static Searched *searched(uint32_t n) {
     assert_int_equal(shell_create(&s->memory, &s->source, 1, &s->shell, NULL), SINGE_OK);
     assert_int_equal(state_create(&s->memory, &s->shell, &s->state), SINGE_OK);
     SingeContactDef contact = singe_default_contact();
-    assert_int_equal(touch_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
+    assert_int_equal(collision_plan_create(&s->memory, &s->shell, &contact, 1.0f / 480, &s->plan), SINGE_OK);
     for (uint32_t v = 0; v < row * row; v++)
         for (int k = 0; k < 3; k++) s->state.dynamics.velocity[v][k] = 0.5f * sinf((float)(v * (uint32_t)(k + 3)));
-    assert_int_equal(touch_open(s->plan, &s->shell, &s->state, NULL, &s->state.dynamics), SINGE_OK);
+    assert_int_equal(collision_open(s->plan, &s->shell, &s->state, NULL, &s->state.dynamics), SINGE_OK);
     free(x), free(cells);
     return s;
 }
 
 static void searched_free(Searched *s) {
-    touch_plan_free(&s->memory, s->plan);
+    collision_plan_free(&s->memory, s->plan);
     state_free(&s->memory, &s->state);
     shell_free(&s->memory, &s->shell);
     sheet_source_free(&s->memory, &s->source);
@@ -306,40 +306,40 @@ static void searched_free(Searched *s) {
     free(s);
 }
 
-static float at_most(float a, Quad b) { return fminf(a, sqrtf(quad_dot(b, b))); }
+static float at_most(float a, Float4 b) { return fminf(a, sqrtf(float4_dot(b, b))); }
 
 /// Distance of two cells: the least of all their features', or of those that they own.
 static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned) {
-    const TouchPlan *plan = s->plan;
-    Quad p[5], q[5], origin = quad_load(plan->place[s->shell.cells[a][0]]);
-    float least = INFINITY, weight[3], u, t;
-    touch_nodes(s->shell.cells[a], (const float(*)[4])plan->place, origin, p);
-    touch_nodes(s->shell.cells[b], (const float(*)[4])plan->place, origin, q);
+    const CollisionPlan *plan = s->plan;
+    Float4 p[5], q[5], origin = float4_load(plan->position[s->shell.cells[a][0]]);
+    float min = INFINITY, weight[3], u, t;
+    collision_nodes(s->shell.cells[a], (const float(*)[4])plan->position, origin, p);
+    collision_nodes(s->shell.cells[b], (const float(*)[4])plan->position, origin, q);
     for (int i = 0; i < 5; i++)
         for (int j = 0; j < 4; j++) {
-            const uint8_t *k = touch_triangle[j];
-            Quad first = touch_from_triangle(p[i], q[k[0]], q[k[1]], q[k[2]], weight);
-            Quad second = touch_from_triangle(q[i], p[k[0]], p[k[1]], p[k[2]], weight);
-            if (!owned || touch_owns_node(plan, a, i)) least = at_most(least, first);
-            if (!owned || touch_owns_node(plan, b, i)) least = at_most(least, second);
+            const uint8_t *k = collision_triangle[j];
+            Float4 first = feature_from_triangle(p[i], q[k[0]], q[k[1]], q[k[2]], weight);
+            Float4 second = feature_from_triangle(q[i], p[k[0]], p[k[1]], p[k[2]], weight);
+            if (!owned || collision_owns_node(plan, a, i)) min = at_most(min, first);
+            if (!owned || collision_owns_node(plan, b, i)) min = at_most(min, second);
         }
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 8; j++) {
-            Quad apart = touch_from_segment(p[touch_edge[i][0]], p[touch_edge[i][1]], q[touch_edge[j][0]],
-                                            q[touch_edge[j][1]], &u, &t);
-            if (!owned || (touch_owns_edge(plan, a, i) && touch_owns_edge(plan, b, j))) least = at_most(least, apart);
+            Float4 apart = feature_from_segment(p[collision_edge[i][0]], p[collision_edge[i][1]], q[collision_edge[j][0]],
+                                            q[collision_edge[j][1]], &u, &t);
+            if (!owned || (collision_owns_edge(plan, a, i) && collision_owns_edge(plan, b, j))) min = at_most(min, apart);
         }
-    return least;
+    return min;
 }
 
 static void the_search_finds_all(void **unused) {
     (void)unused;
     Searched *s = searched(30);
-    const TouchPlan *plan = s->plan;
+    const CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, near = 0;
     uint8_t *listed = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
         listed[pair->a * n + pair->b] = 1;
     }
@@ -354,7 +354,7 @@ static void the_search_finds_all(void **unused) {
     // no listed pair is said to be farther apart than it is; those that are near are measured
     uint32_t measured = 0;
     for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
         float distance = cell_distance(s, pair->a, pair->b, true);
         assert_true(pair->distance <= distance + 1e-6f);
@@ -369,39 +369,39 @@ static void the_search_finds_all(void **unused) {
 static void features_are_measured(void **unused) {
     (void)unused;
     Searched *s = searched(20);
-    const TouchPlan *plan = s->plan;
-    const float(*x)[4] = (const float(*)[4])plan->place;
+    const CollisionPlan *plan = s->plan;
+    const float(*x)[4] = (const float(*)[4])plan->position;
     uint32_t found = 0;
     for (uint32_t k = 0; k < plan->listed_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         if (pair->a == pair->b || pair->bridge != SHELL_NONE) continue;
-        Quad origin = quad_load(x[s->shell.cells[pair->a][0]]);
-        TouchCell a, b;
-        TouchNear near[TOUCH_NEAR];
-        touch_cell_place(plan, &s->shell, pair->a, x, origin, &a);
-        touch_cell_place(plan, &s->shell, pair->b, x, origin, &b);
-        float nearest, least = cell_distance(s, pair->a, pair->b, true);
-        assert_true(touch_cells_apart(&a, &b) <= least + 1e-6f);
-        TouchFar far = {plan->reach, plan->reach, plan->reach, true};
-        int count = touch_features(&s->shell, pair, &a, &b, &far, near, &nearest);
-        assert_true(fabsf(nearest - fminf(least, plan->reach)) < 1e-6f);
+        Float4 origin = float4_load(x[s->shell.cells[pair->a][0]]);
+        NarrowCell a, b;
+        NearFeatures near[NARROW_MAX];
+        narrow_cell_set(plan, &s->shell, pair->a, x, origin, &a);
+        narrow_cell_set(plan, &s->shell, pair->b, x, origin, &b);
+        float nearest, min = cell_distance(s, pair->a, pair->b, true);
+        assert_true(narrow_slabs_distance(&a, &b) <= min + 1e-6f);
+        FeatureRange far = {plan->reach, plan->reach, plan->reach, true};
+        int count = narrow_features(&s->shell, pair, &a, &b, &far, near, &nearest);
+        assert_true(fabsf(nearest - fminf(min, plan->reach)) < 1e-6f);
         for (int i = 0; i < count; i++) {
-            const TouchNear *n = &near[i];
+            const NearFeatures *n = &near[i];
             float weight[3], u, v;
-            Quad apart;
-            if (n->kind == TOUCH_EDGES) {
-                const uint8_t *e = touch_edge[n->first], *f = touch_edge[n->second];
-                apart = touch_from_segment(a.node[e[0]], a.node[e[1]], b.node[f[0]], b.node[f[1]], &u, &v);
+            Float4 apart;
+            if (n->kind == COLLISION_EDGES) {
+                const uint8_t *e = collision_edge[n->first], *f = collision_edge[n->second];
+                apart = feature_from_segment(a.node[e[0]], a.node[e[1]], b.node[f[0]], b.node[f[1]], &u, &v);
             } else {
-                const TouchCell *own = n->kind == TOUCH_NODE_OF_A ? &a : &b, *other = own == &a ? &b : &a;
-                const uint8_t *t = touch_triangle[n->second];
-                apart = touch_from_triangle(own->node[n->first], other->node[t[0]], other->node[t[1]],
+                const NarrowCell *own = n->kind == COLLISION_NODE_OF_A ? &a : &b, *other = own == &a ? &b : &a;
+                const uint8_t *t = collision_triangle[n->second];
+                apart = feature_from_triangle(own->node[n->first], other->node[t[0]], other->node[t[1]],
                                             other->node[t[2]], weight);
                 if (own == &b) apart = -apart;
                 u = weight[1], v = weight[2];
             }
-            Quad off = apart - n->apart;
-            assert_true(quad_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
+            Float4 off = apart - n->apart;
+            assert_true(float4_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
             assert_true(fabsf(u - n->u) < 1e-3f && fabsf(v - n->v) < 1e-3f);
         }
         found += (uint32_t)count;
@@ -411,7 +411,7 @@ static void features_are_measured(void **unused) {
 }
 
 /// Whether the regions that two cells pass over on their way from the step's start meet.
-static bool ways_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32_t b) {
+static bool displacements_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32_t b) {
     for (int k = 0; k < 3; k++) {
         float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
         for (int i = 0; i < 8; i++) {
@@ -425,9 +425,9 @@ static bool ways_meet(const Searched *s, const float (*x)[4], uint32_t a, uint32
 }
 
 /// Cells that are thrown out of their boxes, and some `far` (m) beyond all others, against brute force.
-static void check_strays(float far) {
+static void check_outside(float far) {
     Searched *s = searched(30);
-    TouchPlan *plan = s->plan;
+    CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, count = 0, met = 0;
     float(*x)[4] = malloc(plan->vertex_count * sizeof *x);
     memcpy(x, plan->start, plan->vertex_count * sizeof *x);
@@ -435,20 +435,20 @@ static void check_strays(float far) {
         for (int k = 0; k < 3; k++) x[v][k] += 4e-3f * sinf((float)(v * (uint32_t)(k + 2))); // two cells far
     for (int k = 0; k < 3; k++) x[17 * 20][k] += far;
     for (uint32_t c = 0; c < n; c++) {
-        plan->strayed[c] = 0;
-        for (int i = 0; i < 4; i++) plan->strayed[c] |= s->shell.cells[c][i] % 17 == 0;
-        if (plan->strayed[c]) plan->stray[count++] = c;
+        plan->is_outside[c] = 0;
+        for (int i = 0; i < 4; i++) plan->is_outside[c] |= s->shell.cells[c][i] % 17 == 0;
+        if (plan->is_outside[c]) plan->outside[count++] = c;
     }
-    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
+    assert_int_equal(broad_search_outside(plan, &s->shell, NULL, count, (const float(*)[4])x), SINGE_OK);
     uint8_t *listed = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
-        const TouchPair *pair = &plan->pairs[k];
+        const CollisionPair *pair = &plan->pairs[k];
         assert_int_equal(listed[pair->a * n + pair->b] + listed[pair->b * n + pair->a], 0); // once
         listed[pair->a * n + pair->b] = 1;
     }
     for (uint32_t k = 0; k < count; k++)
-        for (uint32_t b = 0, a = plan->stray[k]; b < n; b++) {
-            if (a == b || !ways_meet(s, (const float(*)[4])x, a, b)) continue;
+        for (uint32_t b = 0, a = plan->outside[k]; b < n; b++) {
+            if (a == b || !displacements_meet(s, (const float(*)[4])x, a, b)) continue;
             met++;
             assert_true(listed[a * n + b] || listed[b * n + a]);
         }
@@ -457,20 +457,20 @@ static void check_strays(float far) {
     searched_free(s);
 }
 
-static void strays_are_found(void **unused) {
+static void cells_out_of_bounds_are_found(void **unused) {
     (void)unused;
-    check_strays(0);
-    check_strays(1e4f); // through more cubes than can be counted
+    check_outside(0);
+    check_outside(1e4f); // through more cubes than can be counted
 }
 
 /// Cells of which some are thousands of cubes long, and what has no place at all.
 static void the_grid_has_bounds(void **unused) {
     (void)unused;
     Searched *s = searched(30);
-    TouchPlan *plan = s->plan;
+    CollisionPlan *plan = s->plan;
     uint32_t n = plan->cell_count, listed = plan->listed_count;
-    plan->place[500][0] += 200;
-    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
+    plan->position[500][0] += 200;
+    assert_int_equal(broad_search(plan, &s->shell, NULL), SINGE_OK);
     assert_true(plan->listed_count >= listed / 2);
     uint8_t *seen = calloc((size_t)n * n, 1);
     for (uint32_t k = 0; k < plan->listed_count; k++) {
@@ -478,9 +478,9 @@ static void the_grid_has_bounds(void **unused) {
         assert_int_equal(*at, 0); // once
         *at = 1;
     }
-    plan->place[500][1] = NAN, plan->speed[77][2] = INFINITY;
-    assert_int_equal(touch_search(plan, &s->shell, NULL), SINGE_OK);
-    assert_int_equal(touch_search_strayed(plan, &s->shell, NULL, 3, (const float(*)[4])plan->place), SINGE_OK);
+    plan->position[500][1] = NAN, plan->speed[77][2] = INFINITY;
+    assert_int_equal(broad_search(plan, &s->shell, NULL), SINGE_OK);
+    assert_int_equal(broad_search_outside(plan, &s->shell, NULL, 3, (const float(*)[4])plan->position), SINGE_OK);
     free(seen);
     searched_free(s);
 }
@@ -513,10 +513,10 @@ int main(void) {
         cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
         cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone),
-        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_in_one_place_are_left_alone),
+        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_in_one_position_are_left_alone),
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
-        cmocka_unit_test(strays_are_found),            cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(cells_out_of_bounds_are_found),            cmocka_unit_test(the_search_is_linear),
         cmocka_unit_test(the_grid_has_bounds),
         cmocka_unit_test(bad_values_are_refused),
     };

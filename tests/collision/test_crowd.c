@@ -16,18 +16,18 @@ enum { BLOCKS = 90 };
 
 /// Items of a block: none, one, some chunks and their edges.
 static uint32_t block_items(int block) {
-    const uint32_t items[] = {0, 1, TOUCH_CHUNK - 1, TOUCH_CHUNK, TOUCH_CHUNK + 1, 5 * TOUCH_CHUNK, 3, 0, 200};
+    const uint32_t items[] = {0, 1, BLOCK_CHUNK - 1, BLOCK_CHUNK, BLOCK_CHUNK + 1, 5 * BLOCK_CHUNK, 3, 0, 200};
     return items[block % 9];
 }
 
-static void write_items(void *unused, TouchList *list, int block) {
+static void write_items(void *unused, BlockList *list, int block) {
     (void)unused;
-    TouchWriter writer = touch_list_begin(list, block);
+    BlockWriter writer = block_list_begin(list, block);
     for (uint32_t k = 0; k < block_items(block); k++) {
-        uint32_t *item = touch_list_add(&writer);
+        uint32_t *item = block_list_add(&writer);
         if (item) *item = (uint32_t)block << 16 | k;
     }
-    touch_list_end(&writer);
+    block_list_end(&writer);
 }
 
 static void read_item(void *context, const void *item, uint32_t number) {
@@ -37,25 +37,25 @@ static void read_item(void *context, const void *item, uint32_t number) {
 /// Writes the list, and makes it larger where that is told; checks that the first items are there, and no others.
 static void check_list(uint32_t capacity, uint32_t grown, Pool *pool) {
     Memory memory = memory_make((SingeAllocator){0});
-    TouchList list;
+    BlockList list;
     uint64_t all = 0;
     for (int b = 0; b < BLOCKS; b++) all += block_items(b);
-    assert_true(touch_list_create(&memory, &list, sizeof(uint32_t), capacity, BLOCKS));
+    assert_true(block_list_create(&memory, &list, sizeof(uint32_t), capacity, BLOCKS));
     for (int turn = 0; turn < 2; turn++) { // the second turn finds what the first has left
-        uint64_t count = touch_list_write(&list, pool, BLOCKS, UINT32_MAX / 2, write_items, NULL);
+        uint64_t count = block_list_write(&list, pool, BLOCKS, UINT32_MAX / 2, write_items, NULL);
         assert_int_equal(count, all);
-        if (grown && turn == 0) assert_true(touch_list_grow(&memory, &list, grown, BLOCKS + 7));
-        uint32_t kept = touch_list_settle(&list, pool, BLOCKS, count, list.capacity, write_items, NULL);
+        if (grown && turn == 0) assert_true(block_list_grow(&memory, &list, grown, BLOCKS + 7));
+        uint32_t kept = block_list_settle(&list, pool, BLOCKS, count, list.capacity, write_items, NULL);
         assert_int_equal(kept, all < list.capacity ? all : list.capacity);
         uint32_t *read = malloc((all + 1) * sizeof *read), number = 0;
         memset(read, 0xff, (all + 1) * sizeof *read);
-        touch_list_read(&list, pool, BLOCKS, kept, read_item, read);
+        block_list_read(&list, pool, BLOCKS, kept, read_item, read);
         for (uint32_t b = 0; b < BLOCKS; b++)
             for (uint32_t k = 0; k < block_items((int)b); k++, number++)
                 assert_int_equal(read[number], number < kept ? b << 16 | k : UINT32_MAX);
         free(read);
     }
-    touch_list_free(&memory, &list);
+    block_list_free(&memory, &list);
     assert_int_equal(memory.held, 0);
 }
 
@@ -79,12 +79,12 @@ static void a_list_keeps_what_comes_first(void **state) {
 static void a_block_counts_up_to_the_most(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
-    TouchList list;
-    assert_true(touch_list_create(&memory, &list, sizeof(uint32_t), 100, BLOCKS));
-    uint64_t count = touch_list_write(&list, NULL, BLOCKS, 10, write_items, NULL), expected = 0;
+    BlockList list;
+    assert_true(block_list_create(&memory, &list, sizeof(uint32_t), 100, BLOCKS));
+    uint64_t count = block_list_write(&list, NULL, BLOCKS, 10, write_items, NULL), expected = 0;
     for (int b = 0; b < BLOCKS; b++) expected += block_items(b) < 11 ? block_items(b) : 11;
     assert_int_equal(count, expected);
-    touch_list_free(&memory, &list);
+    block_list_free(&memory, &list);
 }
 
 // ---- scenes
@@ -142,13 +142,13 @@ static SingeSim *crowd(const Crowd *crowd, int threads, const SingeAllocator *al
     return sim;
 }
 
-static const TouchPlan *touch(const SingeSim *sim) { return sim->dynamics->touch; }
+static const CollisionPlan *collision(const SingeSim *sim) { return sim->dynamics->collision; }
 
 /// Gives a simulation lists of other sizes.
-static void resize(SingeSim *sim, const TouchSizes *sizes) {
-    touch_plan_free(&sim->memory, sim->dynamics->touch);
-    assert_int_equal(touch_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step, sizes,
-                                             &sim->dynamics->touch),
+static void resize(SingeSim *sim, const CollisionSizes *sizes) {
+    collision_plan_free(&sim->memory, sim->dynamics->collision);
+    assert_int_equal(collision_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step, sizes,
+                                             &sim->dynamics->collision),
                      SINGE_OK);
 }
 
@@ -161,9 +161,9 @@ static long crossings(SingeSim *sim) {
 }
 
 /// No room to begin with: everything has to grow.
-static TouchSizes tiny(const SingeSim *sim) {
-    TouchSizes sizes = touch_sizes(&sim->shell);
-    sizes.entries = 8 * sim->shell.cell_count, sizes.pairs = sim->shell.cell_count, sizes.pushes = 1;
+static CollisionSizes tiny(const SingeSim *sim) {
+    CollisionSizes sizes = collision_sizes(&sim->shell);
+    sizes.entries = 8 * sim->shell.cell_count, sizes.pairs = sim->shell.cell_count, sizes.repulsions = 1;
     return sizes;
 }
 
@@ -179,10 +179,10 @@ static void check_growth(const Crowd *scene, bool pairs) {
         test_steps(one, 3), test_steps(three, 3), test_steps(resumed, 3);
         assert_true(scene->soup || crossings(one) == 0);
     }
-    const TouchSizes *sizes = &touch(one)->sizes;
-    print_message("%u pairs where %u are usual, %u pushes where %u are\n", touch(one)->pair_capacity, sizes->pairs,
-                  touch(one)->push_capacity, sizes->pushes);
-    assert_true(pairs ? touch(one)->pair_capacity > sizes->pairs : touch(one)->push_capacity > sizes->pushes);
+    const CollisionSizes *sizes = &collision(one)->sizes;
+    print_message("%u pairs where %u are usual, %u pushes where %u are\n", collision(one)->pair_capacity, sizes->pairs,
+                  collision(one)->repulsion_capacity, sizes->repulsions);
+    assert_true(pairs ? collision(one)->pair_capacity > sizes->pairs : collision(one)->repulsion_capacity > sizes->repulsions);
     assert_int_equal(singe_sim_timers(one).contact_dropped, 0);
     test_assert_same(one, three);
     test_assert_same(one, resumed);
@@ -201,11 +201,11 @@ static void what_lists_grow_to_decides_nothing(void **state) {
     for (int k = 0; k < 2; k++) {
         SingeSim *usual = crowd(scenes[k], 1, NULL), *small = crowd(scenes[k], 1, NULL);
         SingeSim *threads = crowd(scenes[k], 3, NULL);
-        TouchSizes sizes = tiny(small), same = touch_sizes(&usual->shell);
+        CollisionSizes sizes = tiny(small), same = collision_sizes(&usual->shell);
         same.entries = sizes.entries; // the order of pairs follows the grid
         resize(small, &sizes), resize(threads, &sizes), resize(usual, &same);
         test_steps(usual, 8), test_steps(small, 8), test_steps(threads, 8);
-        assert_true(touch(small)->pair_capacity > sizes.pairs);
+        assert_true(collision(small)->pair_capacity > sizes.pairs);
         assert_int_equal(singe_sim_timers(small).contact_dropped, 0);
         test_assert_same(usual, small);
         test_assert_same(usual, threads);
@@ -218,16 +218,16 @@ static void what_is_dropped_is_counted(void **state) {
     (void)state;
     const struct {
         const Crowd *scene;
-        bool pairs, pushes;
+        bool pairs, repulsions;
     } cases[] = {{&stack, true, false}, {&stack, false, true}, {&stack, true, true}, {&soup, true, false}};
     for (int full = 0; full < 4; full++) {
         SingeSim *sims[3];
         for (int k = 0; k < 3; k++) {
             sims[k] = crowd(cases[full].scene, k + 1, NULL);
-            TouchSizes sizes = tiny(sims[k]);
+            CollisionSizes sizes = tiny(sims[k]);
             uint32_t cells = sims[k]->shell.cell_count;
-            if (cases[full].pairs) sizes.pair_most = sizes.pairs = sizes.pair_budget = cells + cells / 2;
-            if (cases[full].pushes) sizes.push_most = sizes.pushes = cells / 3;
+            if (cases[full].pairs) sizes.pair_max = sizes.pairs = sizes.pair_budget = cells + cells / 2;
+            if (cases[full].repulsions) sizes.repulsion_max = sizes.repulsions = cells / 3;
             resize(sims[k], &sizes);
             test_steps(sims[k], 10);
         }
@@ -250,7 +250,7 @@ static void no_memory_to_grow(void **state) {
         TestAllocator hook = {0};
         SingeAllocator allocator = test_allocator(&hook);
         SingeSim *sim = crowd(&stack, 1, &allocator);
-        TouchSizes sizes = tiny(sim);
+        CollisionSizes sizes = tiny(sim);
         resize(sim, &sizes);
         hook.fail_at = hook.calls + fail, hook.once = true;
         SingeResult result = SINGE_OK;

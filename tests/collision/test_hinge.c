@@ -27,15 +27,15 @@ static float random_from(uint32_t *seed, float low, float high) {
 static void add_hinge(SingeSim *sim, uint32_t *seed, int number) {
     static const uint32_t cells[8] = {0, 1, 2, 3, 2, 1, 0, 4};
     const float edge = 4e-3f, near = random_from(seed, 0.2f, 0.5f) * edge, far = random_from(seed, 1.5f, 4) * edge;
-    float place[5][3] = {{0, 0, 0}, {edge / 2, 0, 0}, {edge, 0, 0}}, axes[3][3], x[5][3];
-    place[3][0] = random_from(seed, 0, edge), place[3][1] = near * random_from(seed, 0, 1), place[3][2] = near;
-    place[4][0] = random_from(seed, 0, edge), place[4][1] = -far;
+    float position[5][3] = {{0, 0, 0}, {edge / 2, 0, 0}, {edge, 0, 0}}, axes[3][3], x[5][3];
+    position[3][0] = random_from(seed, 0, edge), position[3][1] = near * random_from(seed, 0, 1), position[3][2] = near;
+    position[4][0] = random_from(seed, 0, edge), position[4][1] = -far;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++) axes[k][i] = random_from(seed, -1, 1) + 2 * (float)(i == (k + number) % 3);
     for (int v = 0; v < 5; v++)
         for (int i = 0; i < 3; i++) {
             x[v][i] = i == 2 ? 0.02f : 0.05f * (float)(i == 0 ? number % 8 : number / 8);
-            for (int k = 0; k < 3; k++) x[v][i] += place[v][k] * axes[k][i] / 2;
+            for (int k = 0; k < 3; k++) x[v][i] += position[v][k] * axes[k][i] / 2;
         }
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
@@ -105,10 +105,10 @@ static SingeSim *pages(int count) {
     for (int i = 0; i < count; i++) {
         const float angle = 6.2831853f * (float)i / (float)count, x = 0.1f * cosf(angle), y = 0.1f * sinf(angle);
         const float in = 5e-3f; // next to the line
-        const float place[4][3] = {{in * x, in * y, 0.3f}, {x, y, 0.32f}, {x, y, 0.38f}, {in * x, in * y, 0.4f}};
+        const float position[4][3] = {{in * x, in * y, 0.3f}, {x, y, 0.32f}, {x, y, 0.38f}, {in * x, in * y, 0.4f}};
         SingeSheetDef sheet = singe_default_sheet();
         SingeSheetId id;
-        sheet.vertex_count = 4, sheet.positions = place[0], sheet.cell_count = 1, sheet.cells = cell;
+        sheet.vertex_count = 4, sheet.positions = position[0], sheet.cell_count = 1, sheet.cells = cell;
         sheet.material.thickness = singe_param(1e-4f);
         sheet.velocity[0] = random_from(&seed, -1, 1), sheet.velocity[1] = random_from(&seed, -1, 1);
         assert_int_equal(singe_sim_add_sheet(sim, &sheet, &id), SINGE_OK);
@@ -124,7 +124,7 @@ static void a_book_is_soon_parted(void **unused) {
     for (int count = 50; count <= 100; count += 50) {
         SingeSim *sim = pages(count);
         for (int step = 0; step < 4; step++) assert_int_equal(singe_sim_step(sim), SINGE_OK);
-        const TouchCounters touches = dynamics_plan_touches(sim->dynamics);
+        const CollisionCounters touches = dynamics_plan_contacts(sim->dynamics);
         const double looks = (double)touches.looks / (double)touches.pairs;
         print_message("%d pages: pairs are looked at again %.1f times a step\n", count, looks);
         assert_int_equal(touches.unresolved, 0);

@@ -14,16 +14,16 @@ static void range_and_spread(void **state) {
     (void)state;
     uint32_t random = 3;
     double mean = 0;
-    float least = 1, most = 0;
+    float min = 1, max = 0;
     for (int i = 0; i < 100000; i++) {
         float x = coordinate(&random), y = coordinate(&random), z = coordinate(&random);
         float n = random_noise(x, y, z, 7);
         assert_true(n >= 0 && n <= 1);
         mean += (double)n / 100000;
-        least = fminf(least, n), most = fmaxf(most, n);
+        min = fminf(min, n), max = fmaxf(max, n);
     }
     assert_true(fabs(mean - 0.5) < 0.01);
-    assert_true(least < 0.05f && most > 0.95f);
+    assert_true(min < 0.05f && max > 0.95f);
 }
 
 static void fractal_range(void **state) {
@@ -31,13 +31,13 @@ static void fractal_range(void **state) {
     uint32_t random = 5;
     for (int octaves = 1; octaves <= 8; octaves++) {
         SingeNoise noise = {0.5f, octaves, 11};
-        float least = 1, most = 0;
+        float min = 1, max = 0;
         for (int i = 0; i < 20000; i++) {
             float n = random_fractal(&noise, coordinate(&random), coordinate(&random), coordinate(&random));
             assert_true(n >= 0 && n <= 1);
-            least = fminf(least, n), most = fmaxf(most, n);
+            min = fminf(min, n), max = fmaxf(max, n);
         }
-        assert_true(least < 0.1f && most > 0.9f);
+        assert_true(min < 0.1f && max > 0.9f);
     }
 }
 

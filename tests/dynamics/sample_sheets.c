@@ -86,13 +86,13 @@ void bench_step(Bench *bench, float h) {
 }
 
 double bench_height(const Bench *bench, uint32_t cell) {
-    Vec mean = {0, 0, 0}, p[4];
+    Float3 mean = {0, 0, 0}, p[4];
     for (int i = 0; i < 4; i++) {
-        p[i] = vec_load(bench->state.dynamics.position[bench->shell.cells[cell][i]]);
-        mean = vec_mad(mean, p[i], 0.25f);
+        p[i] = float3_load(bench->state.dynamics.position[bench->shell.cells[cell][i]]);
+        mean = float3_mad(mean, p[i], 0.25f);
     }
-    Vec normal = vec_unit(vec_cross(vec_sub(p[2], p[0]), vec_sub(p[3], p[1])));
-    return (double)vec_dot(vec_sub(vec_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
+    Float3 normal = float3_unit(float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
+    return (double)float3_dot(float3_sub(float3_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
                            normal);
 }
 

@@ -40,17 +40,17 @@ static void project(Bench *bench) {
 static double excess(const Bench *bench, int source) {
     const Attachments *attachments = &bench->plan->attachments;
     const float *anchor = bench->state.dynamics.position[attachments->source[0][source]];
-    double most = 0;
+    double max = 0;
     for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
-        Vec away = vec_sub(vec_load(bench->state.dynamics.position[v]), vec_load(anchor));
-        most = fmax(most, (double)(vec_length(away) - attachments->length[v][source]));
+        Float3 away = float3_sub(float3_load(bench->state.dynamics.position[v]), float3_load(anchor));
+        max = fmax(max, (double)(float3_length(away) - attachments->length[v][source]));
     }
-    return most;
+    return max;
 }
 
 static double far_from_start(const Bench *bench, uint32_t i) {
-    return (double)vec_length(
-        vec_sub(vec_load(bench->state.dynamics.position[i]), vec_load(bench->shell.rest_position[i])));
+    return (double)float3_length(
+        float3_sub(float3_load(bench->state.dynamics.position[i]), float3_load(bench->shell.rest_position[i])));
 }
 
 static void test_none_is_too_far(void **unused) {
@@ -227,12 +227,12 @@ static void test_lengths_shorten_by_and_by(void **unused) {
 }
 
 static double farthest_moved(const Bench *bench, float (*before)[4]) {
-    double most = 0;
+    double max = 0;
     for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
-        Vec way = vec_sub(vec_load(bench->state.dynamics.position[v]), vec_load(before[v]));
-        most = fmax(most, (double)vec_length(way));
+        Float3 displacement = float3_sub(float3_load(bench->state.dynamics.position[v]), float3_load(before[v]));
+        max = fmax(max, (double)float3_length(displacement));
     }
-    return most;
+    return max;
 }
 
 /// A tight sheet that may tear is left to its springs. What has gone too far meanwhile is not thrown back when a held
@@ -292,8 +292,8 @@ static void test_pulled_apart(void **unused) {
             test_steps(sim, 1);
             SingeView view = singe_sim_view(sim);
             for (uint32_t i = 0; i < view.particle_count; i++) {
-                double speed = (double)vec_length(vec_load(view.velocity[i]));
-                double reach = (double)vec_length(vec_load(view.position[i]));
+                double speed = (double)float3_length(float3_load(view.velocity[i]));
+                double reach = (double)float3_length(float3_load(view.position[i]));
                 assert_true(isfinite(speed) && isfinite(reach));
                 fastest = fmax(fastest, speed), farthest = fmax(farthest, reach);
             }

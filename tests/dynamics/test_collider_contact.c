@@ -39,17 +39,17 @@ static void close_all(Bench *bench) {
     bench_close(bench);
 }
 
-static Vec middle(const Bench *bench) {
-    Vec sum = {0, 0, 0};
+static Float3 centroid(const Bench *bench) {
+    Float3 sum = {0, 0, 0};
     for (uint32_t i = 0; i < bench->shell.vertex_count; i++)
-        sum = vec_add(sum, vec_load(bench->state.dynamics.position[i]));
-    return vec_scale(sum, 1 / (float)bench->shell.vertex_count);
+        sum = float3_add(sum, float3_load(bench->state.dynamics.position[i]));
+    return float3_scale(sum, 1 / (float)bench->shell.vertex_count);
 }
 
-static void place(Bench *bench, const float rotation[4], Vec at) {
+static void position(Bench *bench, const float rotation[4], Float3 at) {
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
-        vec_store(bench->state.dynamics.position[i],
-                  vec_add(at, quat_rotate(rotation, vec_load(bench->shell.rest_position[i]))));
+        float3_store(bench->state.dynamics.position[i],
+                  float3_add(at, quat_rotate(rotation, float3_load(bench->shell.rest_position[i]))));
 }
 
 // ---- thin things
@@ -63,13 +63,13 @@ static int passed(SingeColliderDef plate, float sheet_speed, float plate_speed, 
     for (int k = 0; k < 4; k++) keys[0].rotation[k] = keys[1].rotation[k] = rotation[k];
     add_collider(&bench, plate, 2, keys);
     const float none[4] = {0, 0, 0, 1};
-    place(&bench, none, vec(-0.016f, -0.016f, 0.02f));
+    position(&bench, none, float3(-0.016f, -0.016f, 0.02f));
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) bench.state.dynamics.velocity[i][2] = -sheet_speed;
     for (int step = 0; step < 24; step++) bench_step(&bench, STEP);
     Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
     int count = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
-        Vec local = pose_unapply(&pose, vec_load(bench.state.dynamics.position[i]));
+        Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
         count += local.z < 0 && fabsf(local.x) < 0.03f && fabsf(local.y) < 0.03f;
     }
     close_all(&bench);
@@ -118,16 +118,16 @@ static double slide(SingeColliderDef def, float slope, double *late) {
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     float top = def.kind == SINGE_COLLIDER_BOX || def.kind == SINGE_COLLIDER_MESH ? 0.05f : 0;
     add_collider(&bench, def, 1, &key);
-    place(&bench, key.rotation, quat_rotate(key.rotation, vec(0, 0, top + def.offset)));
-    Vec start = middle(&bench), half = start;
+    position(&bench, key.rotation, quat_rotate(key.rotation, float3(0, 0, top + def.offset)));
+    Float3 start = centroid(&bench), half = start;
     for (int step = 0; step < 240; step++) {
         bench_step(&bench, STEP);
-        if (step == 119) half = middle(&bench);
+        if (step == 119) half = centroid(&bench);
     }
-    double way = (double)vec_length(vec_sub(middle(&bench), start));
-    if (late) *late = (double)vec_length(vec_sub(middle(&bench), half));
+    double displacement = (double)float3_length(float3_sub(centroid(&bench), start));
+    if (late) *late = (double)float3_length(float3_sub(centroid(&bench), half));
     close_all(&bench);
-    return way;
+    return displacement;
 }
 
 static void sheets_slip_above_the_angle_of_friction(void **unused) {
@@ -139,12 +139,12 @@ static void sheets_slip_above_the_angle_of_friction(void **unused) {
     for (int kind = SINGE_COLLIDER_PLANE; kind <= SINGE_COLLIDER_MESH; kind++) {
         if (kind == SINGE_COLLIDER_SPHERE || kind == SINGE_COLLIDER_CAPSULE) continue;
         SingeColliderDef def = slab((SingeColliderKind)kind, &triangles, heights);
-        double held = slide(def, 0.98f * angle, NULL), free_way = slide(def, 1.1f * angle, NULL);
+        double held = slide(def, 0.98f * angle, NULL), free_displacement = slide(def, 1.1f * angle, NULL);
         double expected = 0.5 * 9.81 * (sin(1.1 * (double)angle) - 0.4 * cos(1.1 * (double)angle)) * 0.25;
         printf("%s: at 0.98 of the angle of friction %.3f mm in 0.5 s, at 1.1 of it %.2f mm (Coulomb: %.2f)\n",
-               names[kind], 1e3 * held, 1e3 * free_way, 1e3 * expected);
+               names[kind], 1e3 * held, 1e3 * free_displacement, 1e3 * expected);
         assert_true(held < 0.5e-3);
-        assert_true(fabs(free_way - expected) < 0.1 * expected);
+        assert_true(fabs(free_displacement - expected) < 0.1 * expected);
     }
     triangles_free(&triangles);
 }
@@ -177,11 +177,11 @@ static double behind_belt(SingeColliderDef def, float acceleration) {
         keys[k] = (SingePoseKey){t, {acceleration * t * t / 2, 0, -0.05f - def.offset}, {0, 0, 0, 1}};
     }
     add_collider(&bench, def, KEYS, keys);
-    float start = middle(&bench).x;
+    float start = centroid(&bench).x;
     for (int step = 0; step < 192; step++) bench_step(&bench, STEP);
-    double way = (double)(middle(&bench).x - start), belt = 0.5 * (double)acceleration * 0.16;
+    double displacement = (double)(centroid(&bench).x - start), belt = 0.5 * (double)acceleration * 0.16;
     close_all(&bench);
-    return belt - way;
+    return belt - displacement;
 }
 
 static void a_belt_carries_what_friction_allows(void **unused) {
@@ -210,14 +210,14 @@ static double deepest(const Bench *bench, double *speed) {
             float u = (float)(k % 5) / 4, v = (float)(k / 5) / 4; // on the two triangles that are drawn
             const float *a = x[corner[0]], *b = x[corner[u > v ? 1 : 3]], *d = x[corner[2]];
             float wide = u > v ? u - v : v - u, far = u > v ? v : u;
-            Vec p = vec_mad(vec_scale(vec_load(a), 1 - wide - far), vec_load(b), wide), normal;
-            p = vec_mad(p, vec_load(d), far);
+            Float3 p = float3_mad(float3_scale(float3_load(a), 1 - wide - far), float3_load(b), wide), normal;
+            p = float3_mad(p, float3_load(d), far);
             float distance = collider_distance(collider, pose_unapply(&pose, p), INFINITY, &normal);
             worst = fmax(worst, -(double)distance);
         }
     }
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
-        sum += (double)vec_length(vec_load(bench->state.dynamics.velocity[i]));
+        sum += (double)float3_length(float3_load(bench->state.dynamics.velocity[i]));
     *speed = sum / bench->shell.particle_count;
     return worst;
 }
@@ -231,7 +231,7 @@ static double rests(SingeColliderDef def, const char *name, float height) {
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 1}};
     add_collider(&bench, def, 1, &key);
     const float turned[4] = {0, 0, 0.2588f, 0.9659f};
-    place(&bench, turned, vec_add(vec(0, 0, height), quat_rotate(turned, vec(-0.04f, -0.04f, 0))));
+    position(&bench, turned, float3_add(float3(0, 0, height), quat_rotate(turned, float3(-0.04f, -0.04f, 0))));
     for (int step = 0; step < 480; step++) bench_step(&bench, STEP);
     double speed, worst = deepest(&bench, &speed);
     printf("%s: after 1 s the deepest point of the sheet is %.3f mm in (%.1f %% of a cell), mean speed %.1f mm/s\n",
@@ -282,13 +282,13 @@ static void small_spheres_hold(void **unused) {
 
 /// m/s that the particles move at most, and how many are under the plane z = 0.
 static double fastest(const Bench *bench, int *under) {
-    double most = 0;
+    double max = 0;
     *under = 0;
     for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
-        most = fmax(most, (double)vec_length(vec_load(bench->state.dynamics.velocity[i])));
+        max = fmax(max, (double)float3_length(float3_load(bench->state.dynamics.velocity[i])));
         *under += bench->state.dynamics.position[i][2] < -1e-5f;
     }
-    return most;
+    return max;
 }
 
 /// A block comes down on a sheet that lies on a plate, nearer than sheet and offsets are thick, and is lifted again.
@@ -315,18 +315,18 @@ static void what_is_pressed_stays_and_rests(void **unused) {
         bench.colliders = (ColliderList){2, 2, both};
         assert_true(dynamics_plan_reserve(&bench.memory, bench.plan, 2));
         const float none[4] = {0, 0, 0, 1};
-        place(&bench, none, vec(0, 0, plate.offset));
+        position(&bench, none, float3(0, 0, plate.offset));
         int under, ever = 0;
-        double most = 0;
+        double max = 0;
         for (int step = 0; step < 480; step++) {
             bench_step(&bench, STEP);
-            most = fmax(most, fastest(&bench, &under));
+            max = fmax(max, fastest(&bench, &under));
             ever += under;
         }
         double last = fastest(&bench, &under);
         printf("pressed to %.2f mm: at most %.2f m/s, %.4f m/s after 1 s, %d times under the plate\n",
-               1e3 * (double)gap, most, last, ever);
-        assert_true(ever == 0 && most < 2 && last < 0.02);
+               1e3 * (double)gap, max, last, ever);
+        assert_true(ever == 0 && max < 2 && last < 0.02);
         collider_free(&bench.memory, &both[1]);
         close_all(&bench);
         triangles_free(&triangles);
@@ -349,12 +349,12 @@ static void a_swat_passes_nothing(void **unused) {
     }
     add_collider(&bench, triangles_def(&triangles), KEYS, keys);
     const float none[4] = {0, 0, 0, 1};
-    place(&bench, none, vec(0.04f, -0.016f, 0.004f));
+    position(&bench, none, float3(0.04f, -0.016f, 0.004f));
     for (int step = 0; step < 15; step++) bench_step(&bench, STEP);
     Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
     int through = 0, hit = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
-        Vec local = pose_unapply(&pose, vec_load(bench.state.dynamics.position[i]));
+        Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
         through += local.z < 0 && local.x > 0.011f && local.x < 0.109f && fabsf(local.y) < 0.049f;
         hit += bench.state.dynamics.velocity[i][2] > 1;
     }
@@ -373,12 +373,12 @@ static double seconds(void) {
 }
 
 /// ns a particle for one look at the collider, with the sheet at that place.
-static double look(Bench *bench, Vec at, uint64_t *contacts) {
+static double look(Bench *bench, Float3 at, uint64_t *contacts) {
     const float none[4] = {0, 0, 0, 1};
     DynamicsPlan *plan = bench->plan;
     double best = INFINITY;
     for (int repeat = 0; repeat < 7; repeat++) {
-        place(bench, none, at);
+        position(bench, none, at);
         for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
             bench->state.dynamics.position[i][3] = 1;
             memcpy(plan->predicted[i], bench->state.dynamics.position[i], sizeof plan->predicted[i]);
@@ -402,8 +402,8 @@ static void what_is_far_costs_next_to_nothing(void **unused) {
     SingePoseKey key = {0, {0.035f, 0.035f, -0.01f}, {0, 0, 0, 1}};
     add_collider(&bench, triangles_def(&triangles), 1, &key);
     uint64_t none, some, all;
-    double far = look(&bench, vec(0, 0, 0.1f), &none), above = look(&bench, vec(0, 0, 0.005f), &some);
-    double touching = look(&bench, vec(0, 0, 0.00005f), &all);
+    double far = look(&bench, float3(0, 0, 0.1f), &none), above = look(&bench, float3(0, 0, 0.005f), &some);
+    double touching = look(&bench, float3(0, 0, 0.00005f), &all);
     printf("%u particles and %u triangles: %.1f ns a particle where far, %.0f ns 5 mm above, %.0f ns in contact\n",
            bench.shell.particle_count, triangles.triangle_count, far, above, touching);
     assert_true(none == 0 && some == 0 && all == bench.shell.particle_count);

@@ -85,7 +85,7 @@ static bool along_x(const Shell *shell, uint32_t k) {
 }
 
 static double distance(const float *a, const float *b) {
-    return (double)vec_length(vec_sub(vec_load(b), vec_load(a)));
+    return (double)float3_length(float3_sub(float3_load(b), float3_load(a)));
 }
 
 /// A rolled sheet has the length that the crease's formula gives: on it every spring of every colour is at rest.
@@ -140,12 +140,12 @@ static void test_what_a_mesh_holds(void **unused) {
         rig_open(&rig, meshes[m], NULL, 1);
         for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) {
             const Hinge *hinge = &rig.plan->hinges[k];
-            float most = 1 / cosf(hinge->lean), before = crease_ratio(hinge, -3, -3);
+            float max = 1 / cosf(hinge->lean), before = crease_ratio(hinge, -3, -3);
             assert_true(crease_ratio(hinge, 0, 0) == 1);
             assert_true(before > 0.01f);
             for (float angle = -2.9f; angle < 3; angle += 0.1f) {
                 float ratio = crease_ratio(hinge, angle, angle);
-                assert_true(ratio >= before && ratio <= most);
+                assert_true(ratio >= before && ratio <= max);
                 before = ratio;
             }
         }
@@ -216,13 +216,13 @@ static void test_single_edge(void **unused) {
     (void)unused;
     const SingeMaterialDef material = singe_default_material();
     const double yield = 1 / (double)material.crease_radius.value, share = (double)material.crease_share.value;
-    const float dx = 0.004f, middle = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
+    const float dx = 0.004f, centroid = 4 * dx, c = cosf(150 * dx), s = sinf(150 * dx);
     Rig rig;
     rig_open(&rig, test_grid(8, 4, dx, 0.003f), NULL, 1);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         const float *rest = rig.shell.rest_position[i];
-        float *x = rig.state.dynamics.position[i], along = rest[0] - middle;
-        if (along > 1e-5f) x[0] = middle + c * along + s * rest[2], x[2] = c * rest[2] - s * along;
+        float *x = rig.state.dynamics.position[i], along = rest[0] - centroid;
+        if (along > 1e-5f) x[0] = centroid + c * along + s * rest[2], x[2] = c * rest[2] - s * along;
     }
     rig_pass(&rig, 200);
     int creased = 0;
@@ -294,13 +294,13 @@ static void test_char_forgets(void **unused) {
         rig_open(&rig, test_grid(8, 4, (float)dx, 0.003f), NULL, 1);
         rig_roll(&rig, dx, 0.7);
         if (!ash) rig_pass(&rig, 200);
-        float crease = rig.state.dynamics.crease[0], least = singe_default_material().mass_min.value;
-        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = least;
+        float crease = rig.state.dynamics.crease[0], min = singe_default_material().mass_min.value;
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = min;
         rig.state.burn.mass_burnt = 1;
         assert_true(crease_kept(&rig.shell, &rig.state, 0) == 0);
         rig_pass(&rig, 200);
         assert_true(rig.state.dynamics.crease[0] == crease && (crease == 0) == (ash == 1));
-        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.5f * (1 + least);
+        for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.5f * (1 + min);
         assert_true(fabsf(crease_kept(&rig.shell, &rig.state, 0) - 0.5f) < 1e-6f);
         rig_close(&rig);
     }

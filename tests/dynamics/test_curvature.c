@@ -41,14 +41,14 @@ static void prepare(Bench *bench) {
 
 /// The largest |r| of three vertices in a row along x, over what an arc of the limit has.
 static double sharpest(const Bench *bench) {
-    double most = 0;
+    double max = 0;
     for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
         if (v % (NX + 1) == 0 || v % (NX + 1) == NX) continue;
         const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
-        Vec a = vec_sub(vec_load(x[v]), vec_load(x[v - 1])), b = vec_sub(vec_load(x[v + 1]), vec_load(x[v]));
-        most = fmax(most, (double)vec_length(vec_sub(b, a)));
+        Float3 a = float3_sub(float3_load(x[v]), float3_load(x[v - 1])), b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
+        max = fmax(max, (double)float3_length(float3_sub(b, a)));
     }
-    return most / (double)(2 * cell * sinf(0.5f * curvature * cell));
+    return max / (double)(2 * cell * sinf(0.5f * curvature * cell));
 }
 
 /// kg m and kg m2: sums of m x and of m x cross x_0, which no force between particles changes.
@@ -203,9 +203,9 @@ static void rings_are_limited_all_around(void **unused) {
         for (int i = 0; i < 300; i++) curvature_project(bench.plan, bench.pool, &bench.state.dynamics);
         for (uint32_t v = 0; v < 32; v++) {
             const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
-            Vec r = vec_add(vec_sub(vec_load(x[(v + 31) % 32]), vec_scale(vec_load(x[v]), 2)),
-                            vec_load(x[(v + 1) % 32]));
-            assert_true(vec_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
+            Float3 r = float3_add(float3_sub(float3_load(x[(v + 31) % 32]), float3_scale(float3_load(x[v]), 2)),
+                            float3_load(x[(v + 1) % 32]));
+            assert_true(float3_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
         }
     }
     bench_close(&bench);

@@ -34,8 +34,8 @@ static void distances_from(Distances *d, uint32_t source) {
 }
 
 static double apart(const Distances *d, uint32_t a, uint32_t b) {
-    return (double)vec_length(vec_sub(vec_load(d->bench.shell.rest_position[a]),
-                                      vec_load(d->bench.shell.rest_position[b])));
+    return (double)float3_length(float3_sub(float3_load(d->bench.shell.rest_position[a]),
+                                      float3_load(d->bench.shell.rest_position[b])));
 }
 
 /// The largest relative error against straight lines, from some sources to all vertices.
@@ -80,8 +80,8 @@ static void test_cylinder(void **unused) {
     for (uint32_t v = 0; v < d.bench.shell.vertex_count; v++) {
         int i = abs((int)(v % AROUND) - 5);
         if (i > AROUND / 2) i = AROUND - i;
-        double way = hypot(chord * i, (double)side * (v / AROUND));
-        if (way > 0) worst = fmax(worst, fabs((double)d.distance[v] / way - 1));
+        double displacement = hypot(chord * i, (double)side * (v / AROUND));
+        if (displacement > 0) worst = fmax(worst, fabs((double)d.distance[v] / displacement - 1));
     }
     print_message("worst error on a cylinder: %.1e\n", worst);
     assert_true(worst < 1e-3);
@@ -98,13 +98,13 @@ static void remove_cells(Distances *d, uint32_t i0, uint32_t i1, uint32_t j0, ui
 }
 
 /// The way over corners: the sum of the straight lines between them.
-static double way(const Distances *d, int count, const uint32_t *corners) {
+static double displacement(const Distances *d, int count, const uint32_t *corners) {
     double sum = 0;
     for (int k = 1; k < count; k++) sum += apart(d, corners[k - 1], corners[k]);
     return sum;
 }
 
-static void assert_way(const Distances *d, uint32_t to, double expected) {
+static void assert_displacement(const Distances *d, uint32_t to, double expected) {
     double error = (double)d->distance[to] / expected - 1;
     if (fabs(error) > 0.01) fail_msg("vertex %u: %g m, not %g", to, (double)d->distance[to], expected);
 }
@@ -119,9 +119,9 @@ static void test_around_a_slit(void **unused) {
     for (uint32_t j = 21; j <= SIDE; j++)
         for (uint32_t i = 0; i <= 10; i++) {
             const uint32_t corners[] = {source, vertex(20, 20), vertex(20, 21), vertex(i, j)};
-            assert_way(&d, corners[3], way(&d, 4, corners));
+            assert_displacement(&d, corners[3], displacement(&d, 4, corners));
         }
-    assert_way(&d, vertex(35, 30), apart(&d, source, vertex(35, 30))); // in sight
+    assert_displacement(&d, vertex(35, 30), apart(&d, source, vertex(35, 30))); // in sight
     distances_close(&d);
 }
 
@@ -133,7 +133,7 @@ static void test_around_a_hole(void **unused) {
     const uint32_t source = vertex(20, 4), to = vertex(20, 36);
     distances_from(&d, source);
     const uint32_t corners[] = {source, vertex(12, 14), vertex(12, 26), to};
-    assert_way(&d, to, way(&d, 4, corners));
+    assert_displacement(&d, to, displacement(&d, 4, corners));
     assert_true(isinf(d.distance[vertex(20, 20)])); // within the hole
     distances_close(&d);
 }
@@ -175,8 +175,8 @@ static void test_held_does_not_shrink(void **unused) {
     for (uint32_t j = 0; j <= SIDE; j++)
         for (uint32_t i = 0; i <= 10; i++) d.bench.state.dynamics.pinned[vertex(i, j)] = 1;
     distances_from(&d, vertex(0, 20));
-    assert_way(&d, vertex(10, 20), 0.10);
-    assert_way(&d, vertex(30, 20), 0.10 + 0.5 * 0.20);
+    assert_displacement(&d, vertex(10, 20), 0.10);
+    assert_displacement(&d, vertex(30, 20), 0.10 + 0.5 * 0.20);
     distances_close(&d);
 }
 

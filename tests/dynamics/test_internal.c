@@ -138,20 +138,20 @@ static void test_inverted_cells_are_mended(void **unused) {
 /// The most that a side of any cell is longer than its target, times it.
 static double longest_side(const Bench *bench) {
     const Shell *shell = &bench->shell;
-    double most = 0;
+    double max = 0;
     for (uint32_t c = 0; c < shell->cell_count; c++)
         for (int i = 0; i < 4; i++) {
             const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
-            Vec side = vec_sub(vec_load(x[shell->cells[c][(i + 1) & 3]]), vec_load(x[shell->cells[c][i]]));
+            Float3 side = float3_sub(float3_load(x[shell->cells[c][(i + 1) & 3]]), float3_load(x[shell->cells[c][i]]));
             uint32_t spring = shell->cell_springs[c].blue[i];
-            most = fmax(most, (double)(vec_length(side) / bench->state.burn.spring_length[SINGE_BLUE][spring]));
+            max = fmax(max, (double)(float3_length(side) / bench->state.burn.spring_length[SINGE_BLUE][spring]));
         }
-    return most;
+    return max;
 }
 
 /// What has been torn away by three cells comes back to a quarter more than a side, and flies off no more, with the
 /// momentum that was there.
-static void test_sides_have_a_most(void **unused) {
+static void test_sides_have_a_max(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain();
     Bench bench;
@@ -177,7 +177,7 @@ static void test_sides_have_a_most(void **unused) {
 }
 
 /// What has burnt, what may stretch, what is held at both ends and a sheet that is held too far apart have no most.
-static void test_some_sides_have_no_most(void **unused) {
+static void test_some_sides_have_no_max(void **unused) {
     (void)unused;
     for (int kind = 0; kind < 5; kind++) {
         SingeMaterialDef material = plain();
@@ -273,7 +273,7 @@ static void test_damping_and_drag_by_picture(void **unused) {
     for (int drag = 0; drag < 2; drag++) {
         Bench bench;
         SingeMaterialDef material = plain();
-        SingeParam param = {.value = 0, .to = 4, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+        SingeParam param = {.value = 0, .to = 4, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
         if (drag) material.drag = param;
         else material.damping = param;
         bench_open(&bench, quads_grid(8, 2, 0.01f, 0.01f, false), &material, 1);
@@ -319,7 +319,7 @@ static void test_compliance_by_picture(void **unused) {
     static const float halves[] = {0, 1}; // white at the bottom
     double all[2], half[2];
     hang(singe_param(5), all);
-    hang((SingeParam){.value = 0, .to = 5, .field = SINGE_FIELD_PICTURE, .picture = {1, 2, halves}}, half);
+    hang((SingeParam){.value = 0, .to = 5, .field = SINGE_FIELD_TEXTURE, .texture = {1, 2, halves}}, half);
     assert_true(all[0] > 1e-5 && all[1] > 3 * all[0]); // the upper end bears more
     assert_true(fabs(half[0] / all[0] - 1) < 0.05);
     assert_true(fabs(half[1]) < 0.02 * all[1]);
@@ -331,8 +331,8 @@ int main(void) {
         cmocka_unit_test(test_friction_keeps_momentum),
         cmocka_unit_test(test_friction_stops_at_cuts),
         cmocka_unit_test(test_inverted_cells_are_mended),
-        cmocka_unit_test(test_sides_have_a_most),
-        cmocka_unit_test(test_some_sides_have_no_most),
+        cmocka_unit_test(test_sides_have_a_max),
+        cmocka_unit_test(test_some_sides_have_no_max),
         cmocka_unit_test(test_weights),
         cmocka_unit_test(test_compliance_is_physical),
         cmocka_unit_test(test_char_weight_by_attribute),

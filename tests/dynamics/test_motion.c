@@ -19,23 +19,23 @@ static SingeMaterialDef plain(void) {
     return material;
 }
 
-static Vec centre_of_mass(const Bench *bench) {
+static Float3 centre_of_mass(const Bench *bench) {
     double sum[3] = {0, 0, 0}, mass = 0;
     for (uint32_t i = 0; i < bench->shell.particle_count; i++) {
         double m = (double)bench->shell.matter.mass[i];
         for (int k = 0; k < 3; k++) sum[k] += m * (double)bench->state.dynamics.position[i][k];
         mass += m;
     }
-    return vec((float)(sum[0] / mass), (float)(sum[1] / mass), (float)(sum[2] / mass));
+    return float3((float)(sum[0] / mass), (float)(sum[1] / mass), (float)(sum[2] / mass));
 }
 
 static double blue_strain(const Bench *bench) {
     const SpringSet *blue = &bench->shell.springs[SINGE_BLUE];
     double worst = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
-        Vec d = vec_sub(vec_load(bench->state.dynamics.position[blue->ends[k][1]]),
-                        vec_load(bench->state.dynamics.position[blue->ends[k][0]]));
-        worst = fmax(worst, fabs((double)vec_length(d) / (double)blue->rest[k] - 1));
+        Float3 d = float3_sub(float3_load(bench->state.dynamics.position[blue->ends[k][1]]),
+                        float3_load(bench->state.dynamics.position[blue->ends[k][0]]));
+        worst = fmax(worst, fabs((double)float3_length(d) / (double)blue->rest[k] - 1));
     }
     return worst;
 }
@@ -94,7 +94,7 @@ static void test_free_flight(void **unused) {
         float v[4] = {0.5f, 2 * (r[0] - 0.1f), 2 * (r[0] - 0.1f) + ripple, 0};
         memcpy(bench.state.dynamics.velocity[i], v, sizeof v);
     }
-    Vec start = centre_of_mass(&bench);
+    Float3 start = centre_of_mass(&bench);
     double worst = 0;
     for (int step = 0; step < 240; step++) {
         bench_step(&bench, 1.0f / 480);
@@ -114,7 +114,7 @@ static void test_damping_law(void **unused) {
     bench_open(&bench, quads_grid(4, 4, 0.01f, 0.01f, false), &material, 1);
     bench.plan->settings.gravity[2] = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        vec_store(bench.state.dynamics.velocity[i], vec(0.3f, -0.2f, 0.1f));
+        float3_store(bench.state.dynamics.velocity[i], float3(0.3f, -0.2f, 0.1f));
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
     double substeps = 480.0 * bench.settings.solver.substeps, left = pow(1 + 2 / substeps, -substeps);
     double momentum = 0, mass = 0;
@@ -164,10 +164,10 @@ static double spin_left(int axis, float smoothing, bool bent) {
     bench_open(&bench, quads, &material, 1);
     bench.plan->settings.gravity[2] = 0;
     bench.plan->settings.solver.smoothing = smoothing;
-    Vec centre = centre_of_mass(&bench), turn = vec(axis == 0 ? 6.2832f : 0, 0, axis == 2 ? 6.2832f : 0);
+    Float3 centre = centre_of_mass(&bench), turn = float3(axis == 0 ? 6.2832f : 0, 0, axis == 2 ? 6.2832f : 0);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        vec_store(bench.state.dynamics.velocity[i],
-                  vec_cross(turn, vec_sub(vec_load(bench.shell.rest_position[i]), centre)));
+        float3_store(bench.state.dynamics.velocity[i],
+                  float3_cross(turn, float3_sub(float3_load(bench.shell.rest_position[i]), centre)));
     double before[3], after[3];
     angular_momentum(&bench, before);
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
@@ -211,7 +211,7 @@ static double open_crushed(uint32_t seed) {
     for (int step = 0; step < 480; step++) {
         bench_step(&bench, 1.0f / 480);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-            fastest = fmax(fastest, (double)vec_length(vec_load(bench.state.dynamics.velocity[i])));
+            fastest = fmax(fastest, (double)float3_length(float3_load(bench.state.dynamics.velocity[i])));
     }
     double strain = blue_strain(&bench);
     print_message("crushed to 1 %%: opens at %.1f m/s, strain %.4f after 1 s\n", fastest, strain);
@@ -241,13 +241,13 @@ static double slide(float slope, float friction) {
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     add_collider(&bench, plane, 1, &key);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        vec_store(bench.state.dynamics.position[i], quat_rotate(key.rotation, vec_load(bench.shell.rest_position[i])));
-    Vec start = centre_of_mass(&bench);
+        float3_store(bench.state.dynamics.position[i], quat_rotate(key.rotation, float3_load(bench.shell.rest_position[i])));
+    Float3 start = centre_of_mass(&bench);
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
-    double way = (double)vec_length(vec_sub(centre_of_mass(&bench), start));
+    double displacement = (double)float3_length(float3_sub(centre_of_mass(&bench), start));
     drop_collider(&bench);
     bench_close(&bench);
-    return way;
+    return displacement;
 }
 
 static void test_block_on_slope(void **unused) {
@@ -293,8 +293,8 @@ static void test_never_inside_a_collider(void **unused) {
         for (int step = 0; step < 360; step++) bench_step(&bench, 1.0f / 480);
         Pose pose = path_pose(&bench.colliders.items[0].path, bench.state.time);
         for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
-            Vec normal;
-            Vec local = pose_unapply(&pose, vec_load(bench.state.dynamics.position[i]));
+            Float3 normal;
+            Float3 local = pose_unapply(&pose, float3_load(bench.state.dynamics.position[i]));
             assert_true(collider_distance(bench.colliders.items, local, INFINITY, &normal) > def.offset - 1e-5f);
         }
         drop_collider(&bench);
@@ -340,8 +340,8 @@ static void test_hangs_still(void **unused) {
     for (int step = 0; step < 1440; step++) bench_step(&bench, 1.0f / 480);
     double square = 0;
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
-        Vec v = vec_load(bench.state.dynamics.velocity[i]);
-        square += (double)vec_dot(v, v);
+        Float3 v = float3_load(bench.state.dynamics.velocity[i]);
+        square += (double)float3_dot(v, v);
     }
     assert_true(sqrt(square / bench.shell.particle_count) < 1e-3);
     assert_true(blue_strain(&bench) < 2e-3);

@@ -33,11 +33,11 @@ static double parting(const Bench *bench, uint32_t c) {
     const uint32_t *corner = bench->shell.cells[c];
     const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
     const float(*v)[4] = (const float(*)[4])bench->state.dynamics.velocity;
-    Vec normal = vec_unit(vec_cross(vec_sub(vec_load(x[corner[2]]), vec_load(x[corner[0]])),
-                                    vec_sub(vec_load(x[corner[3]]), vec_load(x[corner[1]]))));
-    Vec away = vec_load(v[shell_centre(&bench->shell, c)]);
-    for (int i = 0; i < 4; i++) away = vec_mad(away, vec_load(v[corner[i]]), -0.25f);
-    return (double)vec_dot(away, normal);
+    Float3 normal = float3_unit(float3_cross(float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]])),
+                                    float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
+    Float3 away = float3_load(v[shell_centre(&bench->shell, c)]);
+    for (int i = 0; i < 4; i++) away = float3_mad(away, float3_load(v[corner[i]]), -0.25f);
+    return (double)float3_dot(away, normal);
 }
 
 static void test_moves_centres_alone(void **unused) {
@@ -48,9 +48,9 @@ static void test_moves_centres_alone(void **unused) {
     size_t size = bench.shell.particle_count * sizeof *bench.state.dynamics.position;
     float(*x)[4] = malloc(size), (*v)[4] = malloc(size);
     memcpy(x, bench.state.dynamics.position, size), memcpy(v, bench.state.dynamics.velocity, size);
-    double *before = malloc(cells * sizeof *before), least = 0.1 * 0.3 * 1e-3;
+    double *before = malloc(cells * sizeof *before), min = 0.1 * 0.3 * 1e-3;
     uint32_t low = 0;
-    for (uint32_t c = 0; c < cells; c++) low += (before[c] = bench_height(&bench, c)) < least;
+    for (uint32_t c = 0; c < cells; c++) low += (before[c] = bench_height(&bench, c)) < min;
     assert_true(low > cells / 4 && low < 3 * cells / 4);
     order(&bench);
     assert_memory_equal(x, bench.state.dynamics.position, vertices * sizeof *x);
@@ -58,8 +58,8 @@ static void test_moves_centres_alone(void **unused) {
     for (uint32_t c = 0; c < cells; c++) {
         uint32_t centre = shell_centre(&bench.shell, c);
         bool same = memcmp(x[centre], bench.state.dynamics.position[centre], sizeof *x) == 0;
-        assert_true(same == (before[c] >= least));
-        assert_true(bench_height(&bench, c) > 0.99 * least);
+        assert_true(same == (before[c] >= min));
+        assert_true(bench_height(&bench, c) > 0.99 * min);
         if (same) assert_memory_equal(v[centre], bench.state.dynamics.velocity[centre], sizeof *v);
         else if (c != 7) assert_true(parting(&bench, c) > -1e-5); // cell 7's is pinned
     }
@@ -95,13 +95,13 @@ static void test_pinned_and_crushed(void **unused) {
 }
 
 static uint32_t step_and_count(SingeSim *sim, int steps) {
-    uint32_t most = 0;
+    uint32_t max = 0;
     for (int s = 0; s < steps; s++) {
         test_steps(sim, 1);
         uint32_t inverted = singe_sim_stats(sim).inverted_cells;
-        if (inverted > most) most = inverted;
+        if (inverted > max) max = inverted;
     }
-    return most;
+    return max;
 }
 
 /// A box comes down on a rumpled sheet on the ground, front up or down, and shoves it aside.
@@ -122,11 +122,11 @@ static void test_pressed_on_the_ground(void **unused) {
         SingeSim *sim = test_sim(&def, mesh, NULL);
         SingeColliderDef ground = singe_default_collider(), box = singe_default_collider();
         const SingePoseKey floor = test_key(0, 0, 0, 0);
-        const SingePoseKey way[] = {test_key(0, 0.06f, 0.06f, 0.08f), test_key(0.3f, 0.06f, 0.06f, 0.032f),
+        const SingePoseKey displacement[] = {test_key(0, 0.06f, 0.06f, 0.08f), test_key(0.3f, 0.06f, 0.06f, 0.032f),
                                     test_key(0.5f, 0.10f, 0.07f, 0.032f)};
         SingeColliderId id;
         ground.path_count = 1, ground.path = &floor;
-        box.kind = SINGE_COLLIDER_BOX, box.friction = 0.8f, box.path_count = 3, box.path = way;
+        box.kind = SINGE_COLLIDER_BOX, box.friction = 0.8f, box.path_count = 3, box.path = displacement;
         box.half_size[0] = box.half_size[1] = 0.05f, box.half_size[2] = 0.03f;
         test_ok(sim, singe_sim_add_collider(sim, &ground, &id));
         test_ok(sim, singe_sim_add_collider(sim, &box, &id));

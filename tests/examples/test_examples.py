@@ -34,7 +34,7 @@ class Example(Case):
         super().setUp()
         self.run_example("whole", "--threads", "1")
         self.rows = [{k: float(v) for k, v in row.items()} for row in self.stats("whole")]
-        self.cells = self.record("whole")["census"]["cells"]
+        self.cells = self.record("whole")["counts"]["cells"]
         self.fps = self.record("whole")["scene"]["fps"]
         self.say = {}
 

@@ -281,7 +281,7 @@ static void luminance_is_exact_at_the_ends(void **state) {
     (void)state;
     uint8_t rgb[] = {0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 51, 51};
     Image image = {.width = 3, .height = 2, .rgb = rgb};
-    SingePicture picture;
+    SingeTexture picture;
     TestAllocator counter = {0};
     SingeError error;
     assert_int_equal(image_luminance(&image, test_allocator(&counter), &picture, &error), SINGE_OK);

@@ -263,7 +263,7 @@ static void worn_grid_keeps_its_outline(void **state) {
     assert_int_equal(mesh_grid(0.2f, 0.3f, NX, NY, (SingeAllocator){0}, &plain, &error), SINGE_OK);
     mesh_grid_wear(&mesh, NX, NY, &(GridWear){.seed = 5});
     assert_memory_equal(mesh.positions, plain.positions, 12 * mesh.vertex_count);
-    mesh_grid_wear(&mesh, NX, NY, &(GridWear){.jitter = 0.3f, .relief = 2e-3f, .seed = 5});
+    mesh_grid_wear(&mesh, NX, NY, &(GridWear){.jitter = 0.3f, .displacement = 2e-3f, .seed = 5});
     double moved = 0, height = 0, mean = 0;
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
         const float *p = mesh.positions + 3 * v, *q = plain.positions + 3 * v;

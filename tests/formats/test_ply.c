@@ -317,11 +317,11 @@ static void allocation_failure_is_clean(void **state) {
 /// Their names are compared with each other: many of them would take minutes.
 static void kinds_of_elements_and_properties_are_limited(void **state) {
     (void)state;
-    enum { LINE = 24, MOST = 1001 };
-    static char text[MOST * LINE + 400];
+    enum { LINE = 24, MAX = 1001 };
+    static char text[MAX * LINE + 400];
     for (int kinds = 0; kinds < 2; kinds++) {
         size_t length = (size_t)sprintf(text, kinds ? HEADER : HEADER "element a 0\n");
-        int count = kinds ? 101 : MOST;
+        int count = kinds ? 101 : MAX;
         for (int i = 0; i < count; i++)
             length += (size_t)sprintf(text + length, kinds ? "element e%d 0\n" : "property int p%d\n", i);
         strcpy(text + length, "end_header\n");

@@ -68,8 +68,8 @@ static void cuts(void **state) {
             const Shown word = shown(text), path = shown_path(text);
             assert_true(printable_is(word.text) && printable_is(path.text));
             bool cut = strstr(word.text, "...") != NULL, cut_path = strstr(path.text, "...") == path.text;
-            assert_int_equal(cut, count > SHOWN_MOST);
-            assert_int_equal(cut_path, count > SHOWN_PATH_MOST);
+            assert_int_equal(cut, count > SHOWN_MAX);
+            assert_int_equal(cut_path, count > SHOWN_PATH_MAX);
         }
 }
 

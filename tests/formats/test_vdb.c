@@ -144,7 +144,7 @@ static void bad_bytes_are_refused(void **state) {
     bytes_free(&bytes), gas_free(&gas);
 }
 
-static void no_memory_is_told(void **state) {
+static void no_memory_is_reported(void **state) {
     (void)state;
     GasSample sample;
     SingeError error;
@@ -187,7 +187,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip_is_bitwise), cmocka_unit_test(empty_is_small),
         cmocka_unit_test(bad_gas_is_refused),    cmocka_unit_test(bad_bytes_are_refused),
-        cmocka_unit_test(no_memory_is_told),
+        cmocka_unit_test(no_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -4,7 +4,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Image image;
     SingeError error;
     if (image_read("fuzz.png", data, size, (SingeAllocator){0}, &image, &error) == SINGE_OK) {
-        SingePicture picture;
+        SingeTexture picture;
         demand(image.width > 0 && image.height > 0 && image.rgb);
         if ((int64_t)image.width * image.height < 1 << 20 && !image_luminance(&image, (SingeAllocator){0}, &picture,
                                                                               &error)) {

@@ -7,7 +7,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Scene *scene = NULL;
     SceneMessages messages = {0};
     if (scene_parse("fuzz", (const char *)data, size, NULL, NULL, 0, &scene, &messages))
-        expect_told(&messages, scene);
+        expect_reported(&messages, scene);
     else
         expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
     scene_free(scene);

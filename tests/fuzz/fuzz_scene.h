@@ -10,11 +10,11 @@
 #include "scene/scene.h"
 
 /// A refusal says why, and where by a line or a --set.
-static inline void expect_told(const SceneMessages *messages, const Scene *scene) {
+static inline void expect_reported(const SceneMessages *messages, const Scene *scene) {
     if (!messages->count || scene)
         abort();
     for (uint32_t i = 0; i < messages->count; i++) {
-        const ScenePlace *place = &messages->items[i].place;
+        const SceneLocation *place = &messages->items[i].location;
         if (!place->set && (place->line < 1 || place->column < 1))
             abort();
     }

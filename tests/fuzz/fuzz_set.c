@@ -3,7 +3,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { SETS_MOST = 16 };
+enum { SETS_MAX = 16 };
 
 static const char *const scenes[] = {
     "sheets:\n  - grid: {size: [0.2, 0.3], cells: [20, 30]}\n",
@@ -18,20 +18,20 @@ static const char *const scenes[] = {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = malloc(size + 1);
-    const char *sets[SETS_MOST];
+    const char *sets[SETS_MAX];
     int count = 0;
     if (!text)
         abort();
     for (size_t i = 1; i < size; i++)
         text[i] = data[i] == '\n' ? 0 : (char)data[i];
     text[size] = 0;
-    for (size_t i = 1; i < size && count < SETS_MOST; i += strlen(text + i) + 1)
+    for (size_t i = 1; i < size && count < SETS_MAX; i += strlen(text + i) + 1)
         sets[count++] = text + i;
     const char *base = scenes[size ? data[0] % (sizeof scenes / sizeof *scenes) : 0];
     Scene *scene = NULL;
     SceneMessages messages = {0};
     if (scene_parse("fuzz", base, strlen(base), NULL, sets, count, &scene, &messages))
-        expect_told(&messages, scene);
+        expect_reported(&messages, scene);
     else
         expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
     scene_free(scene);

@@ -12,7 +12,7 @@
 enum { SNAPSHOTS = 4, MESHED = 3, HEADER = 56, SIZE_AT = 16, CHECKSUM_AT = 24, CHANGES = 24, STEPS = 2 };
 
 /// What a load or step may hold, so that a count that lies is noticed.
-static const size_t memory_most = (size_t)1 << 29;
+static const size_t memory_max = (size_t)1 << 29;
 
 typedef struct Saved {
     uint8_t *bytes;
@@ -45,7 +45,7 @@ static Saved make_snapshot(int which) {
 
 static void *limited_resize(void *context, void *block, size_t old_size, size_t new_size) {
     size_t *held = context;
-    if (new_size > old_size && new_size - old_size > memory_most - *held) return NULL;
+    if (new_size > old_size && new_size - old_size > memory_max - *held) return NULL;
     *held += new_size - old_size;
     if (new_size == 0) {
         free(block);

@@ -64,10 +64,10 @@ static double air_heat(const Air *air) {
     return sum * volume;
 }
 
-static double air_most(const Air *air, GasField field) {
-    double most = 0;
-    for (size_t c = 0; c < air->plan->grid.cells; c++) most = fmax(most, (double)air_turn(air)->field[field][c]);
-    return most;
+static double air_max(const Air *air, GasField field) {
+    double max = 0;
+    for (size_t c = 0; c < air->plan->grid.cells; c++) max = fmax(max, (double)air_turn(air)->field[field][c]);
+    return max;
 }
 
 /// What burnt is in the gas, as fuel or as heat, until it reaches the border.
@@ -83,7 +83,7 @@ static void heat_is_kept(void **unused) {
     }
     print_message("%.3f J brought, %.3f J there\n", brought, air_heat(&air));
     CHECK_NEAR(air_heat(&air), brought, 0.02 * brought);
-    print_message("fuel %.0f J/m3, L %.3f at most\n", air_most(&air, GAS_FUEL), air_most(&air, GAS_LIGHTNESS));
+    print_message("fuel %.0f J/m3, L %.3f at most\n", air_max(&air, GAS_FUEL), air_max(&air, GAS_LIGHTNESS));
     air_close(&air);
 }
 
@@ -108,22 +108,22 @@ static void power_is_the_real_fires(void **unused) {
 
 /// Speed up on the axis of the mean plume at a height over the middle of a steady fire of `power` W.
 static double plume_speed(double power, double height) {
-    enum { FIRST = 200, LAST = 440, PLANE_MOST = 1000 };
+    enum { FIRST = 200, LAST = 440, PLANE_MAX = 1000 };
     GasSettings settings = settings_default();
     Air air;
     air_open(&air, &settings);
-    double sum[PLANE_MOST] = {0}, most = 0;
+    double sum[PLANE_MAX] = {0}, max = 0;
     for (int step = 0; step < LAST; step++) {
         air_burn(&air, power / 72, false); // more mass than there is: it only counts here
         air_step(&air);
         SingeGas gas = gas_view(air.plan);
         uint32_t k = (uint32_t)((height - (double)gas.origin[2]) / (double)gas.cell), plane = gas.size[0] * gas.size[1];
-        assert_true(plane <= PLANE_MOST);
+        assert_true(plane <= PLANE_MAX);
         for (uint32_t c = 0; step >= FIRST && c < plane; c++) sum[c] += (double)gas.velocity[c + (size_t)plane * k][2];
     }
-    for (int c = 0; c < PLANE_MOST; c++) most = fmax(most, sum[c]);
+    for (int c = 0; c < PLANE_MAX; c++) max = fmax(max, sum[c]);
     air_close(&air);
-    return most / (LAST - FIRST);
+    return max / (LAST - FIRST);
 }
 
 /// On the axis of a plume w = 3.4 (B/z)^(1/3) with B = g Q/(rho cp Ta) (Morton, Taylor & Turner 1956 with the constants

@@ -149,7 +149,7 @@ static const float halves[] = {0, 1};
 
 /// `value` in the left quarter of the sheet, `to` in the right one, a straight line between.
 static SingeParam from_left(float value, float to) {
-    return (SingeParam){.value = value, .to = to, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, halves}};
+    return (SingeParam){.value = value, .to = to, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
 }
 
 static void even_flux(void *context, const struct SingeView *view, float *flux, float *conductance,
@@ -259,9 +259,9 @@ static void any_heat_ends_finite(void **unused) {
             rig.h = steps[s];
             double before = rig_content(&rig, 1);
             rig_step(&rig);
-            float least = fminf(starts[k], 293), most = fmaxf(starts[k], 293);
+            float min = fminf(starts[k], 293), max = fmaxf(starts[k], 293);
             for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-                if (!(rig.state.heat.temperature[i] >= least * 0.9999f && rig.state.heat.temperature[i] <= most))
+                if (!(rig.state.heat.temperature[i] >= min * 0.9999f && rig.state.heat.temperature[i] <= max))
                     fail_msg("%g K, step of %g s: %g K", (double)starts[k], (double)steps[s],
                              (double)rig.state.heat.temperature[i]);
             double change = rig_content(&rig, 1) - before, scale = fmax(fabs(rig.state.heat.heat_lost), fabs(change));
@@ -298,7 +298,7 @@ static void running_out_of_memory_is_clean(void **unused) {
     SingeValueKey keys[] = {{0, 0}, {1, 1}};
     SingePoseKey path = {.rotation = {0, 0, 0, 1}};
     SingeSourceDef picture = singe_default_source(), ball = singe_default_source();
-    picture.kind = SINGE_SOURCE_PICTURE, picture.picture = (SingePicture){2, 1, pixels};
+    picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){2, 1, pixels};
     picture.strength = keys, picture.strength_count = 2;
     ball.kind = SINGE_SOURCE_BALL, ball.path = &path, ball.path_count = 1;
     for (int what = 0; what < 3; what++)

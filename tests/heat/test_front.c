@@ -137,13 +137,13 @@ static void a_strip_takes_so_much_work(void **unused) {
     StripSetup setup = strip_setup(&material);
     SingeError error = {0};
     StripResult result = {0};
-    setup.patience = 500, setup.work_most = 60000;
+    setup.patience = 500, setup.work_max = 60000;
     assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
     assert_true(result.end == STRIP_THROUGH && result.speed > 0 && result.work > 5000 && result.work < 60000);
-    setup.work_most = 5000; // too little for paper
+    setup.work_max = 5000; // too little for paper
     assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
     assert_true(result.end == STRIP_CUT && result.speed == 0 && result.work < 5000 + 100); // a step more, at most
-    setup.work_most = 20000, setup.material.heat_share = singe_param(0);
+    setup.work_max = 20000, setup.material.heat_share = singe_param(0);
     assert_int_equal(strip_burn(&setup, &result, &error), SINGE_OK);
     assert_true(result.end == STRIP_OUT && result.speed == 0 && result.work < 10000);
     setup.material.diffusivity = singe_param(3.7e5f); // a hundred iterations a step
@@ -178,8 +178,8 @@ static void thickening_goes_by_the_means(void **unused) {
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
     for (int k = 0; k < 2; k++)
-        *params[k] = (SingeParam){.value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_PICTURE,
-                                  .picture = {2, 1, halves}};
+        *params[k] = (SingeParam){.value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_TEXTURE,
+                                  .texture = {2, 1, halves}};
     def.material.thickening = 0;
     Rig rig;
     rig_open(&rig, &def);

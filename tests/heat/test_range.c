@@ -123,21 +123,21 @@ static uint64_t check_range(const Bad *mesh, const SingeMaterialDef *material, f
     rig_open(&rig, &def);
     rig.h = h;
     for (int step = 0; step < 12; step++) {
-        float *T = rig.state.heat.temperature, least = INFINITY, most = 0;
+        float *T = rig.state.heat.temperature, min = INFINITY, max = 0;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
             if (step % 4 == 0) T[i] = rig_random(i, seed + (uint32_t)step) < 0.5f ? 300 : 1300;
         for (int k = 0; step && k < 40; k++) remove_any(&rig, &seed);
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-            if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE) least = fminf(least, T[i]), most = fmaxf(most, T[i]);
+            if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE) min = fminf(min, T[i]), max = fmaxf(max, T[i]);
         double before = rig_content(&rig, 1);
         rig_step(&rig);
         check_matrix(&rig, mesh->name);
         // what heat_tolerance allows, and rounding
-        float slack = 1.1e-5f * (most - least) + 2e-6f * most;
+        float slack = 1.1e-5f * (max - min) + 2e-6f * max;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++)
-            if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE && !(T[i] >= least - slack && T[i] <= most + slack))
+            if (rig.state.ablate.particle_flags[i] & SINGE_ALIVE && !(T[i] >= min - slack && T[i] <= max + slack))
                 fail_msg("%s, steps of %g s: %.9g K from %.9g to %.9g K", mesh->name, (double)h, (double)T[i],
-                         (double)least, (double)most);
+                         (double)min, (double)max);
         double scale = fabs(before) > 0 ? fabs(before) : 1;
         if (material->heat_operator == SINGE_HEAT_SURFACE)
             CHECK_NEAR(rig_content(&rig, 1) / scale, before / scale, 1e-5);
@@ -193,12 +193,12 @@ static void threads_do_not_matter(void **unused) {
 // --- cells of their own ----------------------------------------------------------------------------------------
 
 /// Exact for linear T in the mean: sum of c p p' = A 1, in the cell's plane.
-static void tensor(const Vec x[4], const double w[6], double t[3]) {
+static void tensor(const Float3 x[4], const double w[6], double t[3]) {
     t[0] = t[1] = t[2] = 0;
     double area = 0;
     for (int k = 0; k < 4; k++) area += (double)(x[k].x * x[(k + 1) % 4].y - x[(k + 1) % 4].x * x[k].y) / 2;
     for (int k = 0; k < 6; k++) {
-        Vec p = vec_sub(k < 4 ? x[(k + 1) % 4] : x[k - 2], x[k % 4]);
+        Float3 p = float3_sub(k < 4 ? x[(k + 1) % 4] : x[k - 2], x[k % 4]);
         t[0] += w[k] * (double)(p.x * p.x) / area, t[1] += w[k] * (double)(p.x * p.y) / area;
         t[2] += w[k] * (double)(p.y * p.y) / area;
     }
@@ -211,11 +211,11 @@ static void cells_conduct_nothing_negative(void **unused) {
     static const double alone[4] = {0};
     uint32_t exact = 0, mixed = 0, poor = 0;
     for (uint32_t n = 0; n < 20000; n++) {
-        Vec x[4];
-        double w[6], linear[6], t[3], least = 0;
+        Float3 x[4];
+        double w[6], linear[6], t[3], min = 0;
         float squeeze = powf(10, -3 * rig_random(n, 50));
         for (uint32_t k = 0; k < 4; k++)
-            x[k] = vec(rig_random(n, k), squeeze * rig_random(n, k + 4), 0);
+            x[k] = float3(rig_random(n, k), squeeze * rig_random(n, k + 4), 0);
         double turn = (double)((x[2].x - x[0].x) * (x[3].y - x[1].y) - (x[2].y - x[0].y) * (x[3].x - x[1].x));
         if (turn < 0.02 * (double)squeeze) continue;
         if (!heat_cell_linear(x, linear)) continue;
@@ -223,9 +223,9 @@ static void cells_conduct_nothing_negative(void **unused) {
         tensor(x, w, t);
         for (int k = 0; k < 6; k++) {
             if (!(w[k] > -1e-12 && w[k] < 1e7)) fail_msg("cell %u: weight %d is %g", n, k, w[k]);
-            least = fmin(least, linear[k]);
+            min = fmin(min, linear[k]);
         }
-        if (least >= 0) {
+        if (min >= 0) {
             exact++;
             for (int k = 0; k < 6; k++) assert_true(w[k] == linear[k]);
             if (hypot(t[0] - t[2], 2 * t[1]) > 2e-3 * (t[0] + t[2])) fail_msg("cell %u: %g %g %g", n, t[0], t[1], t[2]);
@@ -245,7 +245,7 @@ static void cells_conduct_nothing_negative(void **unused) {
 static void neighbours_make_up_for_a_side(void **unused) {
     (void)unused;
     // obtuse at corner 1 in both ways to split it
-    const Vec x[4] = {vec(0, 0, 0), vec(0.9f, -0.1f, 0), vec(2, 0, 0), vec(1, 0.6f, 0)};
+    const Float3 x[4] = {float3(0, 0, 0), float3(0.9f, -0.1f, 0), float3(2, 0, 0), float3(1, 0.6f, 0)};
     double linear[6], alone[6], beside[6], none[4] = {0}, across[4] = {0};
     assert_true(heat_cell_linear(x, linear));
     int lacking = 0;

@@ -193,7 +193,7 @@ static void picture_and_key_frames(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     SingeSourceDef source = singe_default_source();
-    source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){2, 2, pixels}, source.flux = 20e3f;
+    source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){2, 2, pixels}, source.flux = 20e3f;
     source.strength = keys, source.strength_count = 2;
     rig_source(&rig, &source);
     const struct { double time, strength; } times[] = {{0, 0}, {1.5, 0.5}, {2, 1}, {9, 2}};
@@ -256,7 +256,7 @@ static void a_sink_stops_at_1_kelvin(void **unused) {
         Rig rig;
         rig_open(&rig, &def);
         SingeSourceDef source = singe_default_source();
-        source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){1, 1, &white}, source.flux = fluxes[k];
+        source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){1, 1, &white}, source.flux = fluxes[k];
         rig_source(&rig, &source);
         double before = rig_content(&rig, 1);
         for (int step = 0; step < 50; step++) rig_step(&rig);
@@ -311,7 +311,7 @@ static void bad_defs_are_refused(void **unused) {
     SingeSourceDef bad[20];
     int count = 0;
     SingeSourceDef spot = ball(&MIDDLE, 1, 150, 0.01f, 0), picture = singe_default_source();
-    picture.kind = SINGE_SOURCE_PICTURE, picture.picture = (SingePicture){2, 1, good_pixels};
+    picture.kind = SINGE_SOURCE_TEXTURE, picture.texture = (SingeTexture){2, 1, good_pixels};
     bad[count] = spot, bad[count++].temperature = 0;
     bad[count] = spot, bad[count++].temperature = NAN;
     bad[count] = spot, bad[count++].conductance = -1;
@@ -324,9 +324,9 @@ static void bad_defs_are_refused(void **unused) {
     bad[count] = spot, bad[count++].path = NULL;
     bad[count] = spot, bad[count++].start = NAN;
     bad[count] = spot, bad[count++].kind = (SingeSourceKind)9;
-    bad[count] = picture, bad[count++].picture.width = 0;
-    bad[count] = picture, bad[count++].picture.values = NULL;
-    bad[count] = picture, bad[count++].picture.values = pixels;
+    bad[count] = picture, bad[count++].texture.width = 0;
+    bad[count] = picture, bad[count++].texture.values = NULL;
+    bad[count] = picture, bad[count++].texture.values = pixels;
     bad[count] = picture, bad[count++].flux = NAN;
     bad[count] = picture, bad[count++].flux = -2e15f;
     bad[count] = picture, bad[count].flux = 1e12f, bad[count].strength = strong, bad[count++].strength_count = 1;

@@ -6,28 +6,28 @@ static Text text;
 /// A ring in the plane: places and the corners that name them, from 0.
 typedef struct Shape {
     double at[400][2];
-    int corner[800], places, corners;
+    int corner[800], positions, corners;
 } Shape;
 
-static int shape_place(Shape *shape, double x, double y) {
-    shape->at[shape->places][0] = x, shape->at[shape->places][1] = y;
-    return shape->places++;
+static int shape_position(Shape *shape, double x, double y) {
+    shape->at[shape->positions][0] = x, shape->at[shape->positions][1] = y;
+    return shape->positions++;
 }
-static void shape_corner(Shape *shape, int place) { shape->corner[shape->corners++] = place; }
+static void shape_corner(Shape *shape, int position) { shape->corner[shape->corners++] = position; }
 
 static void corner_at(Shape *shape, double radius, double angle) {
-    shape_corner(shape, shape_place(shape, radius * cos(angle), radius * sin(angle)));
+    shape_corner(shape, shape_position(shape, radius * cos(angle), radius * sin(angle)));
 }
 
-static Shape shape_of(const double (*at)[2], int places, const int *corner, int corners) {
+static Shape shape_of(const double (*at)[2], int positions, const int *corner, int corners) {
     Shape shape = {0};
-    for (int i = 0; i < places; i++) shape_place(&shape, at[i][0], at[i][1]);
+    for (int i = 0; i < positions; i++) shape_position(&shape, at[i][0], at[i][1]);
     for (int i = 0; i < corners; i++) shape_corner(&shape, corner ? corner[i] : i);
     return shape;
 }
 
-#define SHAPE(places, ...) \
-    shape_of(places, (int)(sizeof places / sizeof *places), (const int[]){__VA_ARGS__}, \
+#define SHAPE(positions, ...) \
+    shape_of(positions, (int)(sizeof positions / sizeof *positions), (const int[]){__VA_ARGS__}, \
              (int)(sizeof(int[]){__VA_ARGS__} / sizeof(int)))
 
 /// The plane that shapes lie in, inclined so that no axis of the file is its normal.
@@ -37,7 +37,7 @@ static Made make_shape(const Shape *shape, MeshQuads quads) {
     MeshOptions options = mesh_default_options();
     options.quads = quads;
     text.size = 0;
-    for (int i = 0; i < shape->places; i++) {
+    for (int i = 0; i < shape->positions; i++) {
         const double *p = shape->at[i];
         text_add(&text, "v %.9g %.9g %.9g\n", p[0] * plane[0][0] + p[1] * plane[1][0],
                  p[0] * plane[0][1] + p[1] * plane[1][1], p[0] * plane[0][2] + p[1] * plane[1][2]);
@@ -112,7 +112,7 @@ static void assert_covers_but(const Shape *shape, double area, double less, cons
             sum += 0.5 * fabs(cross2(at[0], at[1], at[2]));
         }
         if (fabs(sum - area) > (1e-5 + less) * area) fail_msg("%s: area %g instead of %g", name, sum, area);
-        for (int i = 0; i < shape->places; i++)
+        for (int i = 0; i < shape->positions; i++)
             for (int k = 0; k < 2; k++) {
                 low[k] = fmin(low[k], shape->at[i][k]), high[k] = fmax(high[k], shape->at[i][k]);
             }
@@ -135,7 +135,7 @@ static void assert_refused(const Shape *shape, const char *name) {
         Made made = make_shape(shape, quads);
         if (made.result != SINGE_ERROR_MESH) fail_msg("%s is not refused", name);
         char line[40];
-        snprintf(line, sizeof line, "a.obj:%d: ", shape->places + 1);
+        snprintf(line, sizeof line, "a.obj:%d: ", shape->positions + 1);
         if (!strstr(made.error.message, line)) fail_msg("%s: %s", name, made.error.message);
     }
 }
@@ -169,16 +169,16 @@ static void holes_stay_open(void **state) {
 static void bridges_of_two_vertices_are_one(void **state) {
     (void)state;
     Shape shape = SHAPE(holes, 0, 1, 2, 3);
-    shape_corner(&shape, shape_place(&shape, 0, 0));
+    shape_corner(&shape, shape_position(&shape, 0, 0));
     shape_corner(&shape, 4), shape_corner(&shape, 7), shape_corner(&shape, 6), shape_corner(&shape, 5);
-    shape_corner(&shape, shape_place(&shape, 1, 1));
+    shape_corner(&shape, shape_position(&shape, 1, 1));
     assert_covers(&shape, 60, "a bridge of two sides");
 }
 
 static void ring_around(Shape *shape, int n, double radius, int way) {
-    int first = shape->places;
+    int first = shape->positions;
     for (int i = 0; i < n; i++)
-        shape_place(shape, radius * cos(6.283185307179586 * i / n), radius * sin(6.283185307179586 * i / n));
+        shape_position(shape, radius * cos(6.283185307179586 * i / n), radius * sin(6.283185307179586 * i / n));
     for (int i = 0; i <= n; i++) shape_corner(shape, first + (way * i + n) % n);
 }
 
@@ -208,12 +208,12 @@ static void bays_stay_open(void **state) {
     for (int teeth = 3; teeth <= 90; teeth += 29) { // a comb
         shape = (Shape){0};
         for (int i = 0; i < teeth; i++) {
-            shape_corner(&shape, shape_place(&shape, i, 1));
-            shape_corner(&shape, shape_place(&shape, i + 0.5, 9));
+            shape_corner(&shape, shape_position(&shape, i, 1));
+            shape_corner(&shape, shape_position(&shape, i + 0.5, 9));
         }
-        shape_corner(&shape, shape_place(&shape, teeth, 1));
-        shape_corner(&shape, shape_place(&shape, teeth, 0));
-        shape_corner(&shape, shape_place(&shape, 0, 0));
+        shape_corner(&shape, shape_position(&shape, teeth, 1));
+        shape_corner(&shape, shape_position(&shape, teeth, 0));
+        shape_corner(&shape, shape_position(&shape, 0, 0));
         assert_covers(&shape, fabs(area_of(&shape)), "a comb");
     }
     shape = (Shape){0}; // a spiral of two and a half rounds

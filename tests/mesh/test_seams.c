@@ -87,12 +87,12 @@ static void check_uv(const SingeSurface *surface) {
     }
 }
 
-typedef struct Place {
+typedef struct Position {
     float at[3];
     uint32_t vertex;
-} Place;
+} Position;
 
-static int by_place(const void *a, const void *b) { return memcmp(a, b, sizeof(float[3])); }
+static int by_position(const void *a, const void *b) { return memcmp(a, b, sizeof(float[3])); }
 
 typedef struct Edge {
     uint32_t low, high;
@@ -103,17 +103,17 @@ static int by_ends(const void *a, const void *b) { return memcmp(a, b, sizeof(Ed
 /// Edges that one triangle alone has once vertices at one place, to the bit, are one.
 static int open_edges(const SingeSurface *surface) {
     uint32_t vertices = surface->vertex_count, edges = 3 * surface->triangle_count;
-    Place *places = calloc(vertices, sizeof *places);
+    Position *positions = calloc(vertices, sizeof *positions);
     uint32_t *one = calloc(vertices, sizeof *one);
     Edge *edge = calloc(edges, sizeof *edge);
     for (uint32_t v = 0; v < vertices; v++) {
-        memcpy(places[v].at, surface->position[v], sizeof places[v].at);
-        places[v].vertex = v;
+        memcpy(positions[v].at, surface->position[v], sizeof positions[v].at);
+        positions[v].vertex = v;
     }
-    qsort(places, vertices, sizeof *places, by_place);
+    qsort(positions, vertices, sizeof *positions, by_position);
     for (uint32_t i = 0, number = 0; i < vertices; i++) {
-        if (i && by_place(&places[i], &places[i - 1]) != 0) number++;
-        one[places[i].vertex] = number;
+        if (i && by_position(&positions[i], &positions[i - 1]) != 0) number++;
+        one[positions[i].vertex] = number;
     }
     for (uint32_t e = 0; e < edges; e++) {
         uint32_t a = one[surface->triangles[e / 3][e % 3]], b = one[surface->triangles[e / 3][(e + 1) % 3]];
@@ -125,7 +125,7 @@ static int open_edges(const SingeSurface *surface) {
         for (size = 1; e + size < edges && by_ends(&edge[e], &edge[e + size]) == 0; size++) {}
         open += size == 1;
     }
-    free(places), free(one), free(edge);
+    free(positions), free(one), free(edge);
     return open;
 }
 

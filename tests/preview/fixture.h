@@ -44,14 +44,14 @@ static inline float mean(const uint8_t *rgb, int channel) {
 }
 
 /// One quad of a fresh sheet of half width `half` at height z, facing up; triangles as the lists ask.
-typedef struct Quad {
+typedef struct Float4 {
     float position[4][3], normal[4][3], uv[4][2], rest[4][3], temperature[4], peak[4], burn[4], rate[4];
     int32_t sheet[4];
     uint32_t triangles[2][3];
     SingeSurface surface;
-} Quad;
+} Float4;
 
-static inline void quad_make(Quad *q, float half, float z) {
+static inline void quad_make(Float4 *q, float half, float z) {
     memset(q, 0, sizeof *q);
     for (int i = 0; i < 4; i++) {
         float x = i == 1 || i == 2 ? half : -half, y = i >= 2 ? half : -half;

@@ -8,7 +8,7 @@
 enum { STRIPES = 32 };
 
 /// A sheet of black and white stripes across x, straight below the camera.
-static void striped(Quad *q, PreviewDef *def, const Image **pictures, Image *image, uint8_t texels[3 * STRIPES]) {
+static void striped(Float4 *q, PreviewDef *def, const Image **pictures, Image *image, uint8_t texels[3 * STRIPES]) {
     for (int i = 0; i < STRIPES; i++) memset(texels + 3 * i, i & 1 ? 255 : 0, 3);
     *image = (Image){.width = STRIPES, .height = 1, .rgb = texels};
     *pictures = image;
@@ -33,7 +33,7 @@ static void test_lens(void **state) {
     uint8_t texels[3 * STRIPES];
     Image image;
     const Image *pictures[1];
-    Quad q;
+    Float4 q;
     PreviewDef def;
     striped(&q, &def, pictures, &image, texels);
     draw(&def, &q.surface, 0, rgb);
@@ -63,7 +63,7 @@ static void test_lens(void **state) {
 static void test_lens_reaches(void **state) {
     (void)state;
     static uint8_t wide[BYTES], none[BYTES];
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.02f, 0.3f);
     PreviewDef def = above();
     def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0; // no shadow
@@ -85,7 +85,7 @@ static void test_shutter(void **state) {
     uint8_t texels[3 * STRIPES];
     Image image;
     const Image *pictures[1];
-    Quad q;
+    Float4 q;
     PreviewDef def;
     striped(&q, &def, pictures, &image, texels);
     draw(&def, &q.surface, 0, still);

@@ -146,7 +146,7 @@ typedef struct Burning {
 static void burning_make(Burning *b) {
     memset(b, 0, sizeof *b);
     for (int k = 0; k < WIDE; k++) {
-        Quad q;
+        Float4 q;
         quad_make(&q, 0.003f, 0);
         for (int i = 0; i < 4; i++) {
             int v = 4 * k + i;
@@ -246,7 +246,7 @@ static void test_hidden(void **state) {
     (void)state;
     static uint8_t before[BYTES], behind[BYTES], plain[BYTES];
     static Ball ball;
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.2f);
     PreviewDef def = above();
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0; // before white in the sun a flame is next to nothing
@@ -267,7 +267,7 @@ static void test_light(void **state) {
     (void)state;
     static uint8_t dark[BYTES], lit[BYTES];
     static Ball ball;
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.15f, 0.02f);
     PreviewDef def = above();
     for (int c = 0; c < 3; c++) def.sun_colour[c] = 0, def.sky_colour[c] = 0.1f;

@@ -27,7 +27,7 @@ static void test_values(void **state) {
     (void)state;
     static Kept kept;
     static int32_t piece[4] = {7, 7, 7, 7};
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.08f, 0.1f);
     for (int i = 0; i < 4; i++) q.temperature[i] = 500, q.burn[i] = 0.25f, q.sheet[i] = 2;
     q.surface.piece = piece;
@@ -58,7 +58,7 @@ static void test_values(void **state) {
 static void test_normal(void **state) {
     (void)state;
     static Kept kept;
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.08f, 0.1f);
     for (int i = 0; i < 4; i++) {
         q.position[i][2] = 0.1f + 0.5f * q.position[i][0];
@@ -74,17 +74,17 @@ static void test_normal(void **state) {
 static void test_glow(void **state) {
     (void)state;
     static Kept kept;
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.08f, 0.1f);
     for (int i = 0; i < 4; i++) q.burn[i] = i == 1 || i == 2 ? 0.9f : 0.6f, q.temperature[i] = 1100, q.rate[i] = 1;
     PreviewDef def = above();
     draw_layers(&def, &q.surface, NULL, &kept);
-    float most = 0;
+    float max = 0;
     for (int i = 0; i < W * H; i++) {
-        most = fmaxf(most, kept.glow[i][0]);
+        max = fmaxf(max, kept.glow[i][0]);
         for (int c = 0; c < 3; c++) assert_true(kept.glow[i][c] >= 0 && kept.glow[i][c] <= kept.beauty[i][c] + 1e-5f);
     }
-    assert_true(most > 0.3f);
+    assert_true(max > 0.3f);
     assert_float_equal(kept.glow[OFF][0], 0, 0);
 }
 

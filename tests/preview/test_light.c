@@ -26,7 +26,7 @@ static void ball_make(Ball *b, float x, float z) {
 }
 
 /// A sheet that stands on the table in the plane x = 0, 24 cm wide and high, printed with what is given.
-static void wall_make(Quad *q) {
+static void wall_make(Float4 *q) {
     quad_make(q, 0.12f, 0);
     for (int i = 0; i < 4; i++) {
         float across = q->position[i][0], up = q->position[i][1];
@@ -73,7 +73,7 @@ static PreviewDef at_night(void) {
 /// it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
 static void test_shadow_of_flame(void **state) {
     (void)state;
-    Quad q;
+    Float4 q;
     SingeSurface nothing = {0};
     PreviewDef def = at_night();
     float share = 0, light[3], open;
@@ -92,7 +92,7 @@ static void test_shadow_of_flame(void **state) {
 /// Seen from the other side, a sheet before a flame shines by what it lets through, and its print shows.
 static void test_lit_through(void **state) {
     (void)state;
-    Quad q;
+    Float4 q;
     uint8_t texels[2 * 1 * 3] = {255, 255, 255, 60, 60, 60};
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
@@ -113,7 +113,7 @@ static void test_lit_through(void **state) {
 }
 
 static void see_shadow(int samples, float (*beauty)[3]) {
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     def.ground = PREVIEW_GROUND_PLAIN, def.samples = samples, def.sun_angle = 0.08f;
     def.sun_direction[0] = -1, def.sun_direction[1] = 0.2f, def.sun_direction[2] = 1;

@@ -16,7 +16,7 @@ static float middle(const uint8_t *rgb, int channel) {
 static void test_white_paper(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above(); // no sheets, no pictures: white
     draw(&def, &q.surface, 0, rgb);
@@ -36,7 +36,7 @@ static void test_print_and_white(void **state) {
     Image image = {.width = 2, .height = 1, .rgb = texels};
     const Image *pictures[1] = {&image};
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
     def.pictures = pictures, def.sheet_count = 1;
@@ -49,7 +49,7 @@ static void test_print_and_white(void **state) {
 static void test_states(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     float fresh, brown, black;
     quad_make(&q, 0.1f, 0.01f);
@@ -70,7 +70,7 @@ static void test_states(void **state) {
 static void test_cold_remains(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.peak[i] = 520;
@@ -93,7 +93,7 @@ static void test_cold_remains(void **state) {
 static void test_ember(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
@@ -115,7 +115,7 @@ static void test_ash_pales(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     static float ignited[4] = {1, 1, 1, 1};
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     for (int i = 0; i < 4; i++) q.peak[i] = 1000, q.burn[i] = 1;
@@ -138,7 +138,7 @@ static void test_skies(void **state) {
     uint8_t texels[PW * PH * 3];
     for (int i = 0; i < PW * PH; i++) memset(texels + 3 * i, i % PW < PW / 2 ? 250 : 60, 3); // bright towards -x
     Image image = {.width = PW, .height = PH, .rgb = texels};
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     def.sun_colour[0] = def.sun_colour[1] = def.sun_colour[2] = 0;
@@ -197,7 +197,7 @@ static void test_char_leaf(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];
     float mass[4], charred[4], ash[4], green[3], red[4];
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     quad_make(&q, 0.1f, 0.01f);
     q.surface.mass = mass, q.surface.char_fraction = charred, q.surface.ash_fraction = ash;

@@ -96,7 +96,7 @@ static void test_picture(void **state) {
     Image image = {.width = 2, .height = 2, .rgb = texels};
     const Image *pictures[2] = {&image, NULL};
     static uint8_t rgb[BYTES];
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     PreviewDef def = above();
     def.pictures = pictures, def.sheet_count = 2;
@@ -209,7 +209,7 @@ static void test_shadow(void **state) {
     (void)state;
     static uint8_t with[BYTES], without[BYTES];
     SingeSurface nothing = {0};
-    Quad q;
+    Float4 q;
     PreviewDef def = above();
     def.sun_direction[0] = -1, def.sun_direction[1] = 0, def.sun_direction[2] = 1; // the shadow falls to +x
     quad_make(&q, 0.03f, 0.08f);
@@ -226,7 +226,7 @@ static void test_bad_vertices(void **state) {
     PreviewDef def = above();
     const float bad[] = {NAN, INFINITY, -INFINITY, 1e30f};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        Quad q;
+        Float4 q;
         quad_make(&q, 0.1f, 0.01f);
         q.position[3][1] = bad[k]; // the second triangle goes, the first stays
         q.rest[1][0] = bad[k], q.normal[1][2] = bad[k], q.uv[1][0] = bad[k];
@@ -236,7 +236,7 @@ static void test_bad_vertices(void **state) {
         assert_in_range(pixel(rgb, W / 2 + 5, H / 2 + 8)[1], 200, 252);
         assert_true(pixel(rgb, W / 2 - 8, H / 2 - 5)[1] < 190);
     }
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     q.triangles[1][2] = 0; // degenerate
     memset(q.normal, 0, sizeof q.normal);
@@ -257,7 +257,7 @@ static SingeResult draw_result(const SingeSurface *surface, double time, SingeEr
 
 static void test_bad_surface(void **state) {
     (void)state;
-    Quad q;
+    Float4 q;
     SingeError error = {0};
     quad_make(&q, 0.1f, 0.01f);
     q.triangles[1][1] = 4;
@@ -374,7 +374,7 @@ static void test_out_of_memory(void **state) {
     PreviewDef def = small();
     def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes,
         def.shape_count = 2;
-    Quad q;
+    Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;
     for (int n = 0; n < 60 && !succeeded; n++) {

@@ -11,15 +11,15 @@
 
 // ---- free networks
 
-enum { SIDE = 7, PARTICLES = SIDE * SIDE + 1, SPRINGS_MOST = 2 * SIDE * SIDE + SIDE };
+enum { SIDE = 7, PARTICLES = SIDE * SIDE + 1, SPRINGS_MAX = 2 * SIDE * SIDE + SIDE };
 
 /// A crumpled grid of springs, and a hub that is tied to a row of it: rows of all lengths, some springs not there, some
 /// particles held and some without motion.
 typedef struct Random {
-    double positions[3 * PARTICLES], inverse_masses[PARTICLES], lengths[SPRINGS_MOST], weights[SPRINGS_MOST];
-    double compliances[SPRINGS_MOST];
+    double positions[3 * PARTICLES], inverse_masses[PARTICLES], lengths[SPRINGS_MAX], weights[SPRINGS_MAX];
+    double compliances[SPRINGS_MAX];
     uint8_t held[PARTICLES];
-    uint32_t ends[SPRINGS_MOST][2];
+    uint32_t ends[SPRINGS_MAX][2];
     SingeNetworkDef def;
 } Random;
 
@@ -304,9 +304,9 @@ static void test_touches_inside_projections(void **unused) {
     SingeSimDef def = method_def(SINGE_SOLVER_PAPER);
     SingeSim *sim = swing(&def, 8, 0.2f);
     SingeColliderDef plane = singe_default_collider();
-    SingePoseKey place = test_key(0, 0, 0, -0.05f);
+    SingePoseKey position = test_key(0, 0, 0, -0.05f);
     SingeColliderId id;
-    plane.path_count = 1, plane.path = &place;
+    plane.path_count = 1, plane.path = &position;
     test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
     for (int step = 0; step < 150; step++) {
         test_steps(sim, 1);

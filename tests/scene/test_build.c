@@ -53,8 +53,8 @@ static void test_sim(void **state) {
     SingeResult result = scene_build(scene, &assets, &hooks, &sim, &messages);
     scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_OK);
-    SingeCensus census = singe_sim_census(sim);
-    assert_int_equal(census.particles, 15 + 8 + 16 + 9);
+    SingeCounts counts = singe_sim_counts(sim);
+    assert_int_equal(counts.particles, 15 + 8 + 16 + 9);
     SingeView view = singe_sim_view(sim);
     // the first grid, doubled and upright: x from -0.2 to 0.2, z from 0.9 to 1.1
     assert_true(fabsf(view.position[0][0] + 0.2f) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f &&
@@ -377,7 +377,7 @@ static void test_examples(void **state) {
 /// How far from the picture's middle the sheets reach at most, 1 being its border; infinite when behind the camera.
 static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
     const PreviewCamera *c = &scene->preview.camera;
-    double view[3], right[3], top[3], most = 0, lengths[2] = {0, 0};
+    double view[3], right[3], top[3], max = 0, lengths[2] = {0, 0};
     for (int i = 0; i < 3; i++) view[i] = (double)c->target[i] - (double)c->eye[i];
     for (int i = 0; i < 3; i++)
         right[i] = view[(i + 1) % 3] * (double)c->up[(i + 2) % 3] - view[(i + 2) % 3] * (double)c->up[(i + 1) % 3];
@@ -395,9 +395,9 @@ static double reach_in_picture(const Scene *scene, const SceneAssets *assets) {
             if (along <= 0) return INFINITY;
             along /= sqrt(lengths[0]);
             x /= sqrt(lengths[1]), y /= sqrt(lengths[0] * lengths[1]);
-            most = fmax(most, fmax(fabs(x) / (along * half * aspect), fabs(y) / (along * half)));
+            max = fmax(max, fmax(fabs(x) / (along * half * aspect), fabs(y) / (along * half)));
         }
-    return most;
+    return max;
 }
 
 // A file in millimetres whose y is up, of triangles; a pin takes the file's numbers of vertices, also of a welded one.

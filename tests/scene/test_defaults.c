@@ -12,7 +12,7 @@ static const char shortest[] =
     "    material: {mass_rate: {from: 1, to: 2, noise: {}}, measured: {}}\n"
     "sources:\n"
     "  - {kind: ball, path: [{time: 0}]}\n"
-    "  - {kind: picture, picture: flux.png, strength: [{time: 0, value: 1}]}\n"
+    "  - {kind: texture, texture: flux.png, strength: [{time: 0, value: 1}]}\n"
     "  - {kind: spot, position: [0, 0, 0]}\n"
     "colliders:\n"
     "  - {kind: plane}\n"

@@ -56,14 +56,14 @@ static char *whole(const Scene *scene) {
 static char *undisturbed; // what the scene is where nothing fails
 
 /// Reads with failures; returns whether all went well, which is when none was met.
-static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t *told) {
+static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t *reported) {
     static const char *const sets[] = {"preview.camera.eye=[0, 1, 2]", "fps=30"};
     Scene *scene = NULL;
     SceneMessages messages = {0};
     calls = 0, fail_at = at, fail_once = once;
     SingeResult result = scene_parse("t.yaml", scene_text, strlen(scene_text), NULL, sets, 2, &scene, &messages);
     fail_at = 0;
-    *told = messages.count + messages.left_out;
+    *reported = messages.count + messages.left_out;
     assert_int_equal(result == SINGE_OK, scene != NULL);
     if (scene) { // nothing of it was lost on the way
         char *dump = whole(scene);
@@ -80,14 +80,14 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
 
 /// The n-th allocation, for every n that this process makes, and for the child's after them as long as it answers so.
 static void sweep(const char *scene_text, bool once, SingeResult expected) {
-    uint32_t told;
+    uint32_t reported;
     long good_in_a_row = 0, n = 1;
     for (; good_in_a_row < 150; n++) { // libfyaml may do without a block here and there
-        SingeResult result = attempt(scene_text, n, once, &told);
+        SingeResult result = attempt(scene_text, n, once, &reported);
         if (result != expected && result != SINGE_ERROR_MEMORY)
             print_error("allocation %ld, %s: result %d\n", n, once ? "once" : "and all after", (int)result);
         assert_true(result == expected || result == SINGE_ERROR_MEMORY);
-        assert_int_equal(told == 0, result == SINGE_OK);
+        assert_int_equal(reported == 0, result == SINGE_OK);
         good_in_a_row = result == expected ? good_in_a_row + 1 : 0;
     }
     assert_true(n > 180);
@@ -95,8 +95,8 @@ static void sweep(const char *scene_text, bool once, SingeResult expected) {
 
 static void test_every_allocation(void **state) {
     (void)state;
-    uint32_t told;
-    assert_int_equal(attempt(text, 0, false, &told), SINGE_OK);
+    uint32_t reported;
+    assert_int_equal(attempt(text, 0, false, &reported), SINGE_OK);
     sweep(text, false, SINGE_OK);
     sweep(text, true, SINGE_OK);
     sweep(broken, false, SINGE_ERROR_FORMAT);

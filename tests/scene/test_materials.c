@@ -139,8 +139,8 @@ static void test_files(void **state) {
     char below[100];
     snprintf(below, sizeof below, "%s/below", folder.path);
     assert_int_equal(mkdir(below, 0700), 0);
-    folder_file(&folder, "below/deep.yaml", "base: newsprint\nmass_rate: {from: 1e-3, to: 2e-3, picture: rate.png}\n"
-                                            "thickness: {from: 1 mm, to: 2 mm, picture: t.png}\n");
+    folder_file(&folder, "below/deep.yaml", "base: newsprint\nmass_rate: {from: 1e-3, to: 2e-3, texture: rate.png}\n"
+                                            "thickness: {from: 1 mm, to: 2 mm, texture: t.png}\n");
     folder_file(&folder, "below/mine.yml", "base: deep.yaml\nname: my paper\ndrag: 2\nthickness: 3 mm\n");
     folder_file(&folder, "below/rate.png", "");
     folder_file(&folder, "below/t.png", "");
@@ -148,8 +148,8 @@ static void test_files(void **state) {
     const SceneMaterial *material = material_of(scene);
     assert_string_equal(material->name, "my paper");
     assert_true(material->def.grammage.value == 0.045f && material->def.drag.value == 2);
-    const SceneFile *rate = &material->pictures[SCENE_PARAM_SLOT(mass_rate)];
-    const SceneFile *thickness = &material->pictures[SCENE_PARAM_SLOT(thickness)];
+    const SceneFile *rate = &material->textures[SCENE_PARAM_SLOT(mass_rate)];
+    const SceneFile *thickness = &material->textures[SCENE_PARAM_SLOT(thickness)];
     assert_string_equal(rate->name, "below/rate.png");
     assert_memory_equal(rate->path, folder.path, strlen(folder.path));
     assert_true(material->def.thickness.field == SINGE_FIELD_NONE && !thickness->name); // the number took its place
@@ -183,7 +183,7 @@ static void test_secrets(void **state) {
         "&SECRET a\n",                                  "!SECRET a\n",
         "\"SECRET\n",                                   "grammage: 1\nSECRET\n",
         "weight: SECRET\n",                             "measured: {speed: [SECRET, 1]}\n",
-        "thickness: {from: 1, to: 2, picture: SECRET}\n", "ablate: SECRET\n",
+        "thickness: {from: 1, to: 2, texture: SECRET}\n", "ablate: SECRET\n",
         "'SECRET': *SECRET\n",                          "SECRET: |0\n  SECRET\n",
     };
     Folder folder = folder_make();
@@ -199,7 +199,7 @@ static void test_secrets(void **state) {
             if (strstr(message->text, "SECRET") || message->source)
                 fail_msg("%s: %s", secrets[i], message->text);
             assert_null(strstr(message->origin, "SECRET"));
-            if (message->place.line <= 0 || message->place.column <= 0)
+            if (message->location.line <= 0 || message->location.column <= 0)
                 fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
             assert_non_null(strstr(message->origin, "other.yaml:"));
         }
@@ -240,7 +240,7 @@ static void test_mistakes(void **state) {
     folder_file(in, "self.yaml", "drag: 1\nbase: self.yaml\n");
     folder_file(in, "one.yaml", "base: two.yaml\n");
     folder_file(in, "two.yaml", "base: ./one.yaml\n");
-    folder_file(in, "picture.yaml", "thickness: {from: 1, to: 2, picture: none.png}\n");
+    folder_file(in, "picture.yaml", "thickness: {from: 1, to: 2, texture: none.png}\n");
     folder_file(in, "unknown.yaml", "base: newsprnt\n");
     folder_file(in, "range.yaml", "measured: {speed: [2, 1]}\n");
     for (int i = 0; i < 20; i++) {

@@ -97,7 +97,7 @@ static void test_range_words(void **state) {
         {"wind: {seed: 4294967296}", "'4294967296' is out of range: seed must be 0 to 4294967295"},
         {"colliders: [{kind: plane, position: [0, 0, 1e9]}]",
          "'1e9' is out of range: position must be -10000 to 10000 m"},
-        {"sources: [{kind: picture, picture: x.png, strength: 1e9}]",
+        {"sources: [{kind: texture, texture: x.png, strength: 1e9}]",
          "'1e9' is out of range: strength must be 0 to 1000000"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -106,7 +106,7 @@ static void test_range_words(void **state) {
         SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
         assert_int_equal(messages.count, 1);
         assert_string_equal(messages.items[0].text, rows[i].text);
-        assert_int_equal(messages.items[0].place.line, 3);
+        assert_int_equal(messages.items[0].location.line, 3);
         scene_messages_free(&messages);
     }
 }
@@ -173,8 +173,8 @@ static void test_objects(void **state) {
     one("sources: [{kind: spot}]", "bad.yaml:3:11", "needs 'position'");
     one("sources: [{kind: spot, position: [0, 0, 0], path: []}]", "bad.yaml:3:45", "a spot has no 'path'");
     one("sources: [{kind: spot, position: [0, 0, 0], start: 2, end: 1}]", "bad.yaml:3:60", "end before its start");
-    one("sources: [{kind: picture}]", "bad.yaml:3:11", "needs 'picture'");
-    one("sources: [{kind: picture, picture: ''}]", "bad.yaml:3:36", "name of a file");
+    one("sources: [{kind: texture}]", "bad.yaml:3:11", "needs 'texture'");
+    one("sources: [{kind: texture, texture: ''}]", "bad.yaml:3:36", "name of a file");
     one("colliders: [{kind: sphere, half_size: [1, 1, 1]}]", "bad.yaml:3:28", "a sphere has no 'half_size'");
     one("colliders: [{kind: box, half_size: [1, 0, 1]}]", "bad.yaml:3:40", "half_size must be 1e-6 to 10000 m");
     one("pins: [{}]", "bad.yaml:3:8", "a pin needs 'points' or 'vertices'");
@@ -199,7 +199,7 @@ static void test_sheets(void **state) {
     one("    material: {ablate: maybe}", "bad.yaml:3:24", "true or false");
     one("    material: {mass_rate: {from: 1}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
     one("    material: {mass_rate: {from: 1, to: 2}}", "bad.yaml:3:27", "needs 'from', 'to' and one of");
-    one("    material: {mass_rate: {from: 1, to: 2, picture: a, attribute: b}}", "bad.yaml:3:27", "one of");
+    one("    material: {mass_rate: {from: 1, to: 2, texture: a, attribute: b}}", "bad.yaml:3:27", "one of");
     one("    material: {mass_rate: {from: 1, to: -2, attribute: b}}", "bad.yaml:3:41", "mass_rate must be 0 to 1e9");
     one("    material: {mass_rate: {from: 1, to: 2, attribute: b, atribute: c}}", "bad.yaml:3:58",
         "did you mean 'attribute'?");

@@ -28,11 +28,11 @@ static int count_lines(const char *text, size_t size) {
     return lines;
 }
 
-static void expect_place(const Sweep *sweep, const SceneMessage *message, const char *text) {
+static void expect_location(const Sweep *sweep, const SceneMessage *message, const char *text) {
     char origin[300];
-    const ScenePlace *place = &message->place;
-    snprintf(origin, sizeof origin, "%s:%d:%d", sweep->name, place->line, place->column);
-    bool good = place->line >= 1 && place->column >= 1 && place->line <= sweep->lines && !place->set;
+    const SceneLocation *location = &message->location;
+    snprintf(origin, sizeof origin, "%s:%d:%d", sweep->name, location->line, location->column);
+    bool good = location->line >= 1 && location->column >= 1 && location->line <= sweep->lines && !location->set;
     if (!good || strcmp(origin, message->origin) != 0)
         fail_msg("%s: %s\nin:\n%s", message->origin, message->text, text);
 }
@@ -48,8 +48,8 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
     assert_true(result == SINGE_OK || result == SINGE_ERROR_FORMAT);
     assert_int_equal(result == SINGE_OK, messages.count == 0);
     for (uint32_t i = 0; i < messages.count; i++)
-        if (!messages.items[i].place.file)
-            expect_place(sweep, &messages.items[i], text);
+        if (!messages.items[i].location.file)
+            expect_location(sweep, &messages.items[i], text);
     sweep->parsed++;
     sweep->refused += result != SINGE_OK;
     scene_messages_free(&messages);

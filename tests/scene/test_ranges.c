@@ -17,7 +17,7 @@ static const char base[] =
     "    material: {thickening: 2, diffusivity: {from: 1e-6, to: 2e-6, noise: {scale: 0.1}}}\n"
     "sources:\n"
     "  - {kind: ball, path: [{time: 0, position: [0, 0, 0]}]}\n"
-    "  - {kind: picture, picture: flux.png, strength: [{time: 0, value: 1}]}\n"
+    "  - {kind: texture, texture: flux.png, strength: [{time: 0, value: 1}]}\n"
     "  - {kind: spot, position: [0, 0, 0]}\n"
     "colliders:\n"
     "  - {kind: plane, conductance: 10, path: [{time: 0}]}\n"
@@ -102,7 +102,7 @@ static void try_value(const Walk *walk, const char *path, const char *value, boo
         print_error("--set %s must be %s\n", set, good ? "good" : "refused"), scene_messages_print(&messages, stderr);
     assert_int_equal(result, good ? SINGE_OK : SINGE_ERROR_FORMAT);
     for (uint32_t i = 0; i < messages.count; i++) {
-        assert_int_equal(messages.items[i].place.set, 1);
+        assert_int_equal(messages.items[i].location.set, 1);
         assert_non_null(strstr(messages.items[i].text, " is out of range: "));
         assert_non_null(strstr(messages.items[i].text, " to "));
         assert_int_not_equal(messages.items[i].text[strlen(messages.items[i].text) - 1], ' ');

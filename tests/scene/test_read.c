@@ -2,6 +2,7 @@
 #include "parsing.h"
 
 #include "scene/schema.h"
+#include "scene/warnings.h"
 #include "shell/sheet.h"
 
 #include <math.h>
@@ -13,18 +14,18 @@ static const char full[] =
     "sheets:\n"
     "  - name: one\n    mesh: one.obj\n    picture: \"pic \\\"x\\\".png\"\n    colour: [0.5, 1, 0]\n    scale: 0.001\n"
     "    rotate: [90, 0, 45]\n    translate: [0, 1 cm, 2 mm]\n    velocity: [1, 2, 3]\n    drop_pieces_below: 4 mm2\n"
-    "    material:\n      grammage: 60 g/m2\n      thickness: {from: 1 mm, to: 2 mm, picture: t.png}\n"
+    "    material:\n      grammage: 60 g/m2\n      thickness: {from: 1 mm, to: 2 mm, texture: t.png}\n"
     "      heat_operator: umbrella\n      mass_rate: {to: 0.02, from: 0.01, noise: {scale: 3 mm, octaves: 2, seed: "
     "7}}\n"
     "      mass_loss: {from: 0.1, to: 0.3, attribute: density}\n      ablate: off\n      thickening: 2.5\n"
-    "      weight: {red: 0.5, blue: {from: 0, to: 1, picture: w.png}}\n      compliance: {yellow: 1e-4}\n"
-    "      drag: {from: 1, to: 2, picture: d.png}\n      rate_ceiling: inf\n"
+    "      weight: {red: 0.5, blue: {from: 0, to: 1, texture: w.png}}\n      compliance: {yellow: 1e-4}\n"
+    "      drag: {from: 1, to: 2, texture: d.png}\n      rate_ceiling: inf\n"
     "  - grid: {size: [20 cm, 300 mm], cells: [4, 6]}\n"
     "sources:\n"
     "  - {kind: ball, temperature: 1300, path: [{time: 0, position: [0, 0, 1]}, {time: 2, position: [1, 0, 1]}]}\n"
     "  - {kind: ball, position: [1, 2, 3], visible: no}\n"
     "  - {kind: spot, position: [1, 2, 3], start: 1, end: 1250 ms}\n"
-    "  - {kind: picture, picture: f.png, flux: 20 kW/m2, strength: [{time: 0, value: 0}, {time: 1, value: 50 %}]}\n"
+    "  - {kind: texture, texture: f.png, flux: 20 kW/m2, strength: [{time: 0, value: 0}, {time: 1, value: 50 %}]}\n"
     "colliders:\n"
     "  - {kind: plane, friction: 0.25}\n"
     "  - {kind: box, half_size: [1, 2, 3], rotation: [0, 90, 0], position: [0, 0, 5], colour: [1, 0, 0]}\n"
@@ -53,16 +54,16 @@ static void check_full(const Scene *scene) {
     const SingeMaterialDef *material = &sheet->material.def;
     assert_true(material->grammage.value == 0.06f && material->heat_operator == SINGE_HEAT_UMBRELLA &&
                 !material->ablate);
-    assert_true(material->thickness.field == SINGE_FIELD_PICTURE && material->thickness.to == 0.002f);
-    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(thickness)].name, "t.png");
-    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].name, "w.png");
+    assert_true(material->thickness.field == SINGE_FIELD_TEXTURE && material->thickness.to == 0.002f);
+    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(thickness)].name, "t.png");
+    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(weight[SINGE_BLUE])].name, "w.png");
     assert_true(material->mass_rate.field == SINGE_FIELD_NOISE && material->mass_rate.value == 0.01f &&
                 material->mass_rate.to == 0.02f && material->mass_rate.noise.seed == 7);
     assert_string_equal(material->mass_loss.attribute, "density");
-    assert_true(material->weight[SINGE_RED].value == 0.5f && material->weight[SINGE_BLUE].field == SINGE_FIELD_PICTURE);
+    assert_true(material->weight[SINGE_RED].value == 0.5f && material->weight[SINGE_BLUE].field == SINGE_FIELD_TEXTURE);
     assert_true(material->compliance[SINGE_YELLOW].value == 1e-4f);
-    assert_true(material->drag.field == SINGE_FIELD_PICTURE && isinf(material->rate_ceiling.value));
-    assert_string_equal(sheet->material.pictures[SCENE_PARAM_SLOT(drag)].name, "d.png");
+    assert_true(material->drag.field == SINGE_FIELD_TEXTURE && isinf(material->rate_ceiling.value));
+    assert_string_equal(sheet->material.textures[SCENE_PARAM_SLOT(drag)].name, "d.png");
     assert_true(scene->sheets[1].grid.given && scene->sheets[1].grid.cells[1] == 6);
     assert_string_equal(scene->sheets[1].name, "sheet2");
 }
@@ -102,35 +103,35 @@ static void test_all_vary(void **state) {
     (void)state;
     static const char *const fields[] = {"picture: p.png", "attribute: burn", "noise: {scale: 2 mm, seed: 9}"};
     SingeMaterialDef standard = singe_default_material();
-    SceneParam place;
+    SceneParam location;
     int count = 0;
     uint64_t slots = 0;
-    for (; scene_param(count, &place); count++) {
-        assert_true(place.slot < SCENE_PARAM_SLOTS && !(slots & 1ull << place.slot));
-        slots |= 1ull << place.slot;
+    for (; scene_param(count, &location); count++) {
+        assert_true(location.slot < SCENE_PARAM_SLOTS && !(slots & 1ull << location.slot));
+        slots |= 1ull << location.slot;
         for (int f = 0; f < 3; f++) {
             char set[128];
             const char *sets[] = {set};
-            float from = strcmp(place.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
-            const char *unit = strcmp(place.key, "fibre_angle") ? "" : " rad"; // a bare angle is degrees
-            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", place.key, (double)from, unit,
+            float from = strcmp(location.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
+            const char *unit = strcmp(location.key, "fibre_angle") ? "" : " rad"; // a bare angle is degrees
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", location.key, (double)from, unit,
                      (double)to, unit, fields[f]);
             Scene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;
-            SingeParam *param = scene_param_at(&def, &place);
+            SingeParam *param = scene_param_at(&def, &location);
             assert_true(param->value == from && param->to == to);
-            assert_int_equal(param->field, SINGE_FIELD_PICTURE + f);
+            assert_int_equal(param->field, SINGE_FIELD_TEXTURE + f);
             for (size_t slot = 0; slot < SCENE_PARAM_SLOTS; slot++)
-                assert_true((material->pictures[slot].name != NULL) == (f == 0 && slot == place.slot));
-            *param = *scene_param_at(&standard, &place);
+                assert_true((material->textures[slot].name != NULL) == (f == 0 && slot == location.slot));
+            *param = *scene_param_at(&standard, &location);
             SceneParam other;
             for (int i = 0; scene_param(i, &other); i++)
                 assert_memory_equal(scene_param_at(&def, &other), scene_param_at(&standard, &other), sizeof *param);
             char *dump = dump_text(scene, SCENE_YAML);
             Scene *again = good_scene(dump, NULL, 0);
             def = again->sheets[0].material.def;
-            assert_true(scene_param_at(&def, &place)->to == to);
+            assert_true(scene_param_at(&def, &location)->to == to);
             free(dump);
             scene_free(again);
             scene_free(scene);
@@ -139,7 +140,7 @@ static void test_all_vary(void **state) {
     int known = 0;
     while (material_param(&standard, known)) known++;
     assert_int_equal(count, known); // all that the library has
-    assert_false(scene_param(count, &place));
+    assert_false(scene_param(count, &location));
 }
 
 static void test_defaults(void **state) {
@@ -325,8 +326,43 @@ static void test_solver_method(void **state) {
     }
 }
 
+static void keep_line(void *context, SingeLogLevel level, const char *line) {
+    char *lines = context;
+    if (level == SINGE_LOG_WARNING)
+        strcat(strcat(lines, line), "\n");
+}
+
+/// Names of the release before are read as their new ones, and each is reported with its line.
+static void test_renamed(void **state) {
+    (void)state;
+    static const char before[] = "sheets:\n"
+                                 "  - grid: {size: [0.2, 0.3], cells: [20, 30], relief: 1 mm}\n"
+                                 "    material: {thickness: {from: 1 mm, to: 2 mm, picture: a.png}}\n"
+                                 "sources: [{kind: picture, picture: b.png, flux: 1}]\n";
+    static const char now[] = "sheets:\n"
+                              "  - grid: {size: [0.2, 0.3], cells: [20, 30], displacement: 1 mm}\n"
+                              "    material: {thickness: {from: 1 mm, to: 2 mm, texture: a.png}}\n"
+                              "sources: [{kind: texture, texture: b.png, flux: 1}]\n";
+    Scene *old_scene = good_scene(before, NULL, 0), *new_scene = good_scene(now, NULL, 0);
+    char *old_dump = dump_text(old_scene, SCENE_YAML), *new_dump = dump_text(new_scene, SCENE_YAML), lines[2000] = "";
+    assert_string_equal(old_dump, new_dump);
+    const SingeLog log = {keep_line, lines};
+    scene_warn(new_scene, NULL, &log);
+    assert_string_equal(lines, "");
+    scene_warn(old_scene, NULL, &log);
+    assert_non_null(strstr(lines, "test.yaml:2:47: 'relief' is called 'displacement' now"));
+    assert_non_null(strstr(lines, "test.yaml:3:50: 'picture' is called 'texture' now"));
+    assert_non_null(strstr(lines, "test.yaml:4:18: 'picture' is called 'texture' now"));
+    assert_non_null(strstr(lines, "test.yaml:4:27: 'picture' is called 'texture' now"));
+    free(old_dump);
+    free(new_dump);
+    scene_free(old_scene);
+    scene_free(new_scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_renamed),
         cmocka_unit_test(test_gas),
         cmocka_unit_test(test_solver_method),
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),

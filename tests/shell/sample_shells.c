@@ -181,8 +181,8 @@ static void add_triangle(QuadMesh *mesh, const double p[3][2]) {
     for (int k = 0; k < 3; k++) {
         const double *a = p[k], *b = p[(k + 1) % 3], *c = p[(k + 2) % 3];
         uint32_t v0 = vertex_at(mesh, a[0], a[1], 0), v1 = vertex_at(mesh, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0);
-        uint32_t v2 = vertex_at(mesh, x, y, 0), v3 = vertex_at(mesh, (a[0] + c[0]) / 2, (a[1] + c[1]) / 2, 0);
-        mesh_add_cell(mesh, v0, v1, v2, v3);
+        uint32_t v2 = vertex_at(mesh, x, y, 0), float3 = vertex_at(mesh, (a[0] + c[0]) / 2, (a[1] + c[1]) / 2, 0);
+        mesh_add_cell(mesh, v0, v1, v2, float3);
     }
 }
 

@@ -12,15 +12,15 @@ static const float *centre_uv(const Square *square, uint32_t cell, float uv[2]) 
 static void test_sample(void **state) {
     (void)state;
     static const float values[] = {0, 1, 2, 3, 4, 5};
-    SingePicture picture = {3, 2, values};
+    SingeTexture picture = {3, 2, values};
     static const float expected[][3] = {
         {1.0f / 6, 0.75f, 0}, {0.5f, 0.75f, 1}, {5.0f / 6, 0.25f, 5}, {0.5f, 0.5f, 2.5f}, {0, 1, 0}, {1, 1, 2},
         {0, 0, 3}, {1, 0, 5}, {-7, 9, 0}, {9, -7, 5}, {1.0f / 3, 0.75f, 0.5f}, {1e38f, -1e38f, 5},
     };
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
-        assert_float_equal(shell_sample_picture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
-    SingePicture dot = {1, 1, values + 4};
-    assert_float_equal(shell_sample_picture(&dot, 0.3f, 0.8f), 4, 0);
+        assert_float_equal(shell_sample_texture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);
+    SingeTexture dot = {1, 1, values + 4};
+    assert_float_equal(shell_sample_texture(&dot, 0.3f, 0.8f), 4, 0);
 }
 
 // A picture that is linear in u between its two pixels.
@@ -30,23 +30,23 @@ static void test_picture(void **state) {
     Square square = square_make(8);
     static const float values[] = {0, 1};
     square.def.material.thickness =
-        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, values}};
+        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, values}};
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t i = 0; i < 81 + 64; i++) {
         float uv[2], u = i < 81 ? square.uv[i][0] : centre_uv(&square, i - 81, uv)[0];
         float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
         assert_float_equal(sheet_param(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
     }
-    assert_null(source.sheet.material.thickness.picture.values);
+    assert_null(source.sheet.material.thickness.texture.values);
     sheet_source_free(&memory, &source);
 
     square.def.uv = NULL;
     refuse(&square.def, -1, "no uv");
     square.def.uv = square.uv[0];
-    square.def.material.thickness.picture.width = 0;
+    square.def.material.thickness.texture.width = 0;
     refuse(&square.def, -1, "empty picture");
     static const float broken[] = {0, NAN};
-    square.def.material.thickness.picture = (SingePicture){2, 1, broken};
+    square.def.material.thickness.texture = (SingeTexture){2, 1, broken};
     refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
     square_free(&square);
 }

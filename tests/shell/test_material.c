@@ -137,8 +137,8 @@ static void test_all_vary(void **state) {
     square.def.attribute_count = 1, square.def.attributes = &attribute;
     SheetSource plain = evaluate(&memory, &square.def);
     const uint32_t total = 49 + 36;
-    for (int kind = SINGE_FIELD_PICTURE; kind <= SINGE_FIELD_NOISE; kind++) {
-        SingeParam param = {.value = 0.5f, .to = 0.9f, .field = (SingeFieldKind)kind, .picture = {2, 2, pixels},
+    for (int kind = SINGE_FIELD_TEXTURE; kind <= SINGE_FIELD_NOISE; kind++) {
+        SingeParam param = {.value = 0.5f, .to = 0.9f, .field = (SingeFieldKind)kind, .texture = {2, 2, pixels},
                             .attribute = "field", .noise = {0.3f, 2, 3}};
         SingeSheetDef def = square.def;
         def.material.thickness = param;
@@ -180,7 +180,7 @@ static void test_mass_varies(void **state) {
     Square square = square_make(4);
     static const float pixels[] = {0, 1};
     square.def.material.grammage =
-        (SingeParam){.value = 0.05f, .to = 0.2f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
+        (SingeParam){.value = 0.05f, .to = 0.2f, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}};
     square.def.material.specific_heat =
         (SingeParam){.value = 1000, .to = 3000, .field = SINGE_FIELD_NOISE, .noise = {0.3f, 2, 3}};
     SheetSource source = evaluate(&memory, &square.def);
@@ -223,8 +223,8 @@ static void test_stated_for_a_grammage(void **state) {
     Square square = square_make(4);
     static const float pixels[] = {0, 1};
     SingeMaterialDef *m = &square.def.material;
-    m->grammage = (SingeParam){.value = 0.02f, .to = 0.08f, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
-    m->specific_heat = (SingeParam){.value = 1000, .to = 2000, .field = SINGE_FIELD_PICTURE, .picture = {2, 1, pixels}};
+    m->grammage = (SingeParam){.value = 0.02f, .to = 0.08f, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}};
+    m->specific_heat = (SingeParam){.value = 1000, .to = 2000, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, pixels}};
     m->heat_of_combustion = singe_param(16e6f), m->heat_share = singe_param(0.25f);
     for (int scaled = 0; scaled < 2; scaled++) {
         m->reference_grammage = scaled ? 0.04f : 0;

@@ -81,10 +81,10 @@ static SingeResult scene_sources(Scene *scene) {
     def.end = 0.1f;
     SCENE_TRY(singe_sim_add_source(sim, &def, &scene->spot));
     def = singe_default_source();
-    def.kind = SINGE_SOURCE_PICTURE;
+    def.kind = SINGE_SOURCE_TEXTURE;
     const float grey[4] = {0, 0.5f, 1, 0};
     const SingeValueKey strength[] = {{0, 0}, {0.05f, 1}, {0.2f, 0.2f}};
-    def.picture = (SingePicture){2, 2, grey};
+    def.texture = (SingeTexture){2, 2, grey};
     def.strength_count = 3, def.strength = strength;
     def.flux = 40e3f;
     SCENE_TRY(singe_sim_add_source(sim, &def, &scene->picture));

@@ -93,7 +93,7 @@ static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 
         SingeSourceDef def = singe_default_source();                          \
         def.kind = (kind_);                                                   \
         def.path_count = 1, def.path = &key;                                  \
-        def.picture = (SingePicture){1, 1, &grey};                            \
+        def.texture = (SingeTexture){1, 1, &grey};                            \
         SingeSourceId id = {1, 1};                                            \
         change;                                                               \
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &def, &id)); \
@@ -119,13 +119,13 @@ static void bad_sources(void **state) {
     SOURCE_BAD(SINGE_SOURCE_SPOT, (keys[1].time = 1, def.path = keys, def.path_count = 2));
     SOURCE_BAD(SINGE_SOURCE_SPOT, def.start = NAN);
     SOURCE_BAD(SINGE_SOURCE_SPOT, def.end = NAN);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.width = 0);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.height = -1);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.values = NULL);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.picture.values = &nan_grey);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.flux = NAN);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, def.strength_count = 2);
-    SOURCE_BAD(SINGE_SOURCE_PICTURE, (def.strength_count = 2, def.strength = strengths));
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.width = 0);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.height = -1);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.values = NULL);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.texture.values = &nan_grey);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.flux = NAN);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, def.strength_count = 2);
+    SOURCE_BAD(SINGE_SOURCE_TEXTURE, (def.strength_count = 2, def.strength = strengths));
     SOURCE_BAD((SingeSourceKind)17, (void)0);
     SOURCE_BAD((SingeSourceKind)-1, (void)0);
     test_steps(sim, 2);
@@ -217,8 +217,8 @@ static void older_defs(void **state) {
     SingeSourceDef source = singe_default_source();
     SingeSourceId source_id;
     source.path_count = 1, source.path = &key;
-    source.struct_size = offsetof(SingeSourceDef, picture);
-    source.picture.width = -1, source.callback = (SingeFluxFn *)1;
+    source.struct_size = offsetof(SingeSourceDef, texture);
+    source.texture.width = -1, source.callback = (SingeFluxFn *)1;
     test_ok(sim, singe_sim_add_source(sim, &source, &source_id));
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
@@ -325,7 +325,7 @@ static void defs_are_copied(void **state) {
         SingeSourceId id;
         def.kind = SINGE_SOURCE_BALL, def.path_count = 2, def.path = keys;
         test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
-        def.kind = SINGE_SOURCE_PICTURE, def.picture = (SingePicture){2, 2, grey};
+        def.kind = SINGE_SOURCE_TEXTURE, def.texture = (SingeTexture){2, 2, grey};
         test_ok(b, singe_sim_add_source(i ? b : a, &def, &id));
         if (i == 0) continue;
         memset(keys, 0xFF, sizeof keys);

@@ -189,7 +189,7 @@ static void failed_calls_can_be_repeated(void **state) {
     SingeSourceDef source = singe_default_source();
     SingeSourceId source_id;
     const float grey = 1;
-    source.kind = SINGE_SOURCE_PICTURE, source.picture = (SingePicture){1, 1, &grey};
+    source.kind = SINGE_SOURCE_TEXTURE, source.texture = (SingeTexture){1, 1, &grey};
     SingeColliderDef collider = singe_default_collider();
     SingeColliderId collider_id;
     collider.path_count = 1, collider.path = &key;

@@ -157,13 +157,13 @@ static void particles_are_numbered_as_documented(void **state) {
     memcpy(still, view.position[12], sizeof still);
     test_steps(sim, 5);
     assert_memory_equal(view.position[12], still, sizeof still);
-    SingeCensus census = singe_sim_census(sim);
-    assert_int_equal(census.particles, 23);
-    assert_int_equal(census.cells, 7);
-    assert_int_equal(census.springs[SINGE_RED], 28);
-    assert_int_equal(census.springs[SINGE_YELLOW], 14);
-    assert_int_equal(census.springs[SINGE_BLUE], 17 + 4);
-    assert_int_equal(census.springs[SINGE_GREEN], 7);
+    SingeCounts counts = singe_sim_counts(sim);
+    assert_int_equal(counts.particles, 23);
+    assert_int_equal(counts.cells, 7);
+    assert_int_equal(counts.springs[SINGE_RED], 28);
+    assert_int_equal(counts.springs[SINGE_YELLOW], 14);
+    assert_int_equal(counts.springs[SINGE_BLUE], 17 + 4);
+    assert_int_equal(counts.springs[SINGE_GREEN], 7);
     singe_sim_destroy(sim);
     test_mesh_free(&first);
     test_mesh_free(&second);
@@ -228,8 +228,8 @@ static void the_log_hears_of_what_begins_inside(void **state) {
         test_ok(sim, singe_sim_add_collider(sim, &plane, &id));
         test_steps(sim, 2);
         assert_int_equal(heard.lines[SINGE_LOG_WARNING], deep);
-        const char *told = "100 % of the sheets begin inside it, up to 0.0051 m";
-        if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], told));
+        const char *reported = "100 % of the sheets begin inside it, up to 0.0051 m";
+        if (deep) assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], reported));
         singe_sim_destroy(sim);
     }
 }
@@ -288,7 +288,7 @@ static void every_byte_is_counted_and_freed(void **state) {
     SingeSimDef def = scene_def();
     def.allocator = test_allocator(&hook);
     Scene scene = scene_make(&def, 8);
-    assert_int_equal(singe_sim_census(scene.sim).memory, hook.bytes);
+    assert_int_equal(singe_sim_counts(scene.sim).memory, hook.bytes);
     test_steps(scene.sim, 3);
     SingeSurface surface = {0};
     size_t before = hook.bytes;
@@ -296,7 +296,7 @@ static void every_byte_is_counted_and_freed(void **state) {
     assert_true(surface.triangle_count > 0);
     singe_surface_free(&surface);
     assert_int_equal(hook.bytes, before);
-    assert_int_equal(singe_sim_census(scene.sim).memory, hook.bytes);
+    assert_int_equal(singe_sim_counts(scene.sim).memory, hook.bytes);
     singe_sim_destroy(scene.sim);
     assert_int_equal(hook.blocks, 0);
     assert_int_equal(hook.bytes, 0);

@@ -273,7 +273,7 @@ POKE(source_kind, sim->sources.items[0].def.kind = (SingeSourceKind)7)
 POKE(source_path, sim->sources.items[0].path.keys[1].time = sim->sources.items[0].path.keys[0].time)
 POKE(source_place, sim->sources.items[0].path.keys[1].position[0] = NAN)
 POKE(source_turn, sim->sources.items[0].path.keys[1].rotation[3] = 3)
-POKE(source_picture, sim->sources.items[2].picture[3] = INFINITY)
+POKE(source_picture, sim->sources.items[2].texture[3] = INFINITY)
 POKE(source_generation, sim->sources.items[0].generation = sim->next_generation)
 POKE(collider_radius, sim->colliders.items[1].def.radius = NAN)
 POKE(collider_sides, sim->colliders.items[1].def.sides = (SingeContactSides)5)
@@ -325,10 +325,10 @@ POKE(attach_source, sim->dynamics->attachments.source[0][0] = sim->shell.vertex_
 POKE(attach_gap, sim->dynamics->attachments.source[0][0] = SHELL_NONE)
 POKE(attach_length, sim->dynamics->attachments.length[VERTEX][0] = NAN)
 POKE(attach_goal, sim->dynamics->attachments.goal[VERTEX][0] = -1)
-POKE(touch_place, sim->dynamics->touch->place[VERTEX][0] = NAN)
-POKE(touch_speed, sim->dynamics->touch->speed[VERTEX][0] = INFINITY)
-POKE(touch_alive, sim->dynamics->touch->alive[1] = 0)
-POKE(touch_tangled, sim->dynamics->touch->tangled[1] = 9)
+POKE(collision_place, sim->dynamics->collision->position[VERTEX][0] = NAN)
+POKE(collision_speed, sim->dynamics->collision->speed[VERTEX][0] = INFINITY)
+POKE(collision_alive, sim->dynamics->collision->alive[1] = 0)
+POKE(initial_crossing, sim->dynamics->collision->intersecting[1] = 9)
 POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = NAN)
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 
@@ -348,8 +348,8 @@ static void impossible_numbers(void **state) {
         ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),
         ROW(spring_gone), ROW(spring_spare), ROW(degree), ROW(piece_none), ROW(piece_far), ROW(piece_other),
         ROW(pieces_to_come), ROW(piece_count), ROW(line_force), ROW(split_count), ROW(split), ROW(attach_source),
-        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(touch_place), ROW(touch_speed), ROW(touch_alive),
-        ROW(touch_tangled), ROW(gas_field), ROW(gas_air)};
+        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_place), ROW(collision_speed), ROW(collision_alive),
+        ROW(initial_crossing), ROW(gas_field), ROW(gas_air)};
 #undef ROW
     SingeSimDef def = scene_def();
     def.contact.enabled = def.solver.tearing = def.solver.creases = true;

@@ -54,7 +54,7 @@ static void bad_cells_burn_and_stay_above_the_air(void **state) {
 }
 
 /// Steps so short that a float hardly notices what they bring: said, not hidden.
-static void ledgers_that_do_not_close_are_told(void **state) {
+static void ledgers_that_do_not_close_are_reported(void **state) {
     (void)state;
     SingeSimDef def = scene_def();
     def.pace = 1e-6f;
@@ -206,7 +206,7 @@ static void a_front_runs_along_a_strip(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ledgers_close),
-        cmocka_unit_test(ledgers_that_do_not_close_are_told),
+        cmocka_unit_test(ledgers_that_do_not_close_are_reported),
         cmocka_unit_test(bad_cells_burn_and_stay_above_the_air),
         cmocka_unit_test(a_front_runs_along_a_strip),
         cmocka_unit_test(combustion_is_eta_times_mass),

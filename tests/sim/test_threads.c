@@ -5,9 +5,9 @@
 #include <string.h>
 
 #ifdef SINGE_THREADS_ONLY
-enum { CELLS = 20, STEPS = 24, THREADS_MOST = 4 };
+enum { CELLS = 20, STEPS = 24, THREADS_MAX = 4 };
 #else
-enum { CELLS = 44, STEPS = 40, THREADS_MOST = 8 };
+enum { CELLS = 44, STEPS = 40, THREADS_MAX = 8 };
 #endif
 
 static TestBytes run(SingeSimDef def) {
@@ -62,7 +62,7 @@ static void any_number_of_threads(void **state) {
     (void)state;
     SingeSimDef def = scene_def();
     TestBytes expected = run(def);
-    for (int threads = 2; threads <= THREADS_MOST; threads += threads < 4 ? 1 : 4) {
+    for (int threads = 2; threads <= THREADS_MAX; threads += threads < 4 ? 1 : 4) {
         def.thread_count = threads;
         char what[16] = "n threads";
         what[0] = (char)('0' + threads);

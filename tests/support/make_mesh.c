@@ -19,9 +19,9 @@ static void mesh_vertex(TestMesh *mesh, uint32_t v, double x, double y, double z
     t[0] = (float)u, t[1] = (float)w;
 }
 
-static void mesh_cell(TestMesh *mesh, uint32_t c, uint32_t v0, uint32_t v1, uint32_t v2, uint32_t v3) {
+static void mesh_cell(TestMesh *mesh, uint32_t c, uint32_t v0, uint32_t v1, uint32_t v2, uint32_t float3) {
     uint32_t *cell = mesh->cells + 4 * (size_t)c;
-    cell[0] = v0, cell[1] = v1, cell[2] = v2, cell[3] = v3;
+    cell[0] = v0, cell[1] = v1, cell[2] = v2, cell[3] = float3;
 }
 
 TestMesh test_grid(uint32_t nx, uint32_t ny, float dx, float dy) {

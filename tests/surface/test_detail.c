@@ -89,9 +89,9 @@ static void linear_fields_are_exact(void **unused) {
         set_linear_fields(d, levels[k]);
         draw_fine(d);
         expect_linear_fields(d, levels[k], 1e-4);
-        double least = 1;
-        for (uint32_t v = 0; v < s->vertex_count; v++) least = fmin(least, value_at(levels[k], s->position[v]));
-        assert_float_equal(least, 0, 2e-6); // cut at the level, wherever that is
+        double min = 1;
+        for (uint32_t v = 0; v < s->vertex_count; v++) min = fmin(min, value_at(levels[k], s->position[v]));
+        assert_float_equal(min, 0, 2e-6); // cut at the level, wherever that is
         drawing_free(d);
     }
 }
@@ -119,22 +119,22 @@ static void bent_sheets_are_drawn_round(void **unused) {
     drawing_free(d);
 }
 
-static Vec doubled_normal(const SingeSurface *s, uint32_t t) {
-    Vec p = vec_load(s->position[s->triangles[t][0]]), q = vec_load(s->position[s->triangles[t][1]]);
-    return vec_cross(vec_sub(q, p), vec_sub(vec_load(s->position[s->triangles[t][2]]), p));
+static Float3 doubled_normal(const SingeSurface *s, uint32_t t) {
+    Float3 p = float3_load(s->position[s->triangles[t][0]]), q = float3_load(s->position[s->triangles[t][1]]);
+    return float3_cross(float3_sub(q, p), float3_sub(float3_load(s->position[s->triangles[t][2]]), p));
 }
 
 /// Far from the origin floats lie 0.5 um apart, wherever the level cuts fine sides.
 static void no_triangle_is_lost_to_rounding(void **unused) {
     (void)unused;
-    const Vec normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
+    const Float3 normal = {-0.36f, 0.48f, 0.8f}, along = {0.8f, 0.6f, 0}, up = {-0.48f, 0.64f, -0.6f};
     for (uint32_t seed = 0; seed < 12; seed++) {
         Drawing *d = fine_drawing(12, 9, 2.5e-3f, 4e-4f, seed % 3 ? 1e-3f : 0);
         set_random_levels(d, seed);
         for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
             const float *rest = d->sheet->shell.rest_position[v];
-            Vec p = vec_mad(vec_mad(vec(5, -6, -7), along, rest[0]), up, rest[1]);
-            vec_store(d->sheet->state.dynamics.position[v], p);
+            Float3 p = float3_mad(float3_mad(float3(5, -6, -7), along, rest[0]), up, rest[1]);
+            float3_store(d->sheet->state.dynamics.position[v], p);
         }
         draw_fine(d);
         const SingeSurface *s = &d->surface;
@@ -143,10 +143,10 @@ static void no_triangle_is_lost_to_rounding(void **unused) {
             float longest = 0;
             for (int i = 0; i < 3; i++) {
                 const uint32_t *at = s->triangles[t];
-                Vec side = vec_sub(vec_load(s->position[at[(i + 1) % 3]]), vec_load(s->position[at[i]]));
-                longest = fmaxf(longest, vec_length(side));
+                Float3 side = float3_sub(float3_load(s->position[at[(i + 1) % 3]]), float3_load(s->position[at[i]]));
+                longest = fmaxf(longest, float3_length(side));
             }
-            thinnest = fminf(thinnest, fabsf(vec_dot(doubled_normal(s, t), normal)) / longest);
+            thinnest = fminf(thinnest, fabsf(float3_dot(doubled_normal(s, t), normal)) / longest);
         }
         assert_true(s->fine_triangle_count > 500);
         assert_true(thinnest > 5e-6f);
@@ -154,7 +154,7 @@ static void no_triangle_is_lost_to_rounding(void **unused) {
     }
 }
 
-/// However crumpled the sheet is, its fine triangles face as they would on flat cells, and leave these by `leaves_most`.
+/// However crumpled the sheet is, its fine triangles face as they would on flat cells, and leave these by `bulge_max`.
 static void crumpled_sheets_are_not_turned_over(void **unused) {
     (void)unused;
     for (uint32_t seed = 0; seed < 8; seed++) {
@@ -169,22 +169,22 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
             memcpy(straight->sheet->state.dynamics.position[v], p, 3 * sizeof *p);
         }
         set_random_levels(round, seed), set_random_levels(straight, seed);
-        straight->detail.room = room, round->detail.leaves_most = seed & 1 ? 0.06f : 0;
+        straight->detail.room = room, round->detail.bulge_max = seed & 1 ? 0.06f : 0;
         draw_fine(round), draw_fine(straight);
         const SingeSurface *s = &round->surface, *plain = &straight->surface;
         assert_int_equal(s->triangle_count, plain->triangle_count);
         for (uint32_t t = 0; t < s->triangle_count; t++) {
-            assert_true(vec_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
+            assert_true(float3_dot(doubled_normal(s, t), doubled_normal(plain, t)) > 0);
             for (int i = 0; i < 3; i++) { // no step between triangles
                 uint32_t a = s->triangles[t][i], b = s->triangles[t][(i + 1) % 3];
-                Vec side = vec_sub(vec_load(s->position[b]), vec_load(s->position[a]));
-                Vec was = vec_sub(vec_load(plain->position[b]), vec_load(plain->position[a]));
-                assert_true(vec_length(vec_sub(side, was)) < 0.9f * vec_length(was));
+                Float3 side = float3_sub(float3_load(s->position[b]), float3_load(s->position[a]));
+                Float3 was = float3_sub(float3_load(plain->position[b]), float3_load(plain->position[a]));
+                assert_true(float3_length(float3_sub(side, was)) < 0.9f * float3_length(was));
             }
         }
         float farthest = 0;
         for (uint32_t v = 0; v < s->vertex_count; v++)
-            farthest = fmaxf(farthest, vec_length(vec_sub(vec_load(s->position[v]), vec_load(plain->position[v]))));
+            farthest = fmaxf(farthest, float3_length(float3_sub(float3_load(s->position[v]), float3_load(plain->position[v]))));
         assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
         drawing_free(round), drawing_free(straight);
     }
@@ -208,7 +208,7 @@ static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
 }
 
 /// The level cuts either lip otherwise; what is drawn of the one ends before the other.
-static void lips_at_one_place_are_drawn_apart(void **unused) {
+static void tear_edges_at_one_point_are_drawn_apart(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     for (uint32_t seed = 0; seed < 6; seed++) {
@@ -256,9 +256,9 @@ static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
     for (uint32_t t = 0; t < d->surface.triangle_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t a = d->surface.triangles[t][i], b = d->surface.triangles[t][(i + 1) % 3];
-            Vec now = vec_sub(vec_load(d->surface.position[b]), vec_load(d->surface.position[a]));
-            Vec rest = vec_sub(vec_load(d->surface.rest_position[b]), vec_load(d->surface.rest_position[a]));
-            assert_true(vec_length(now) < 2 * vec_length(rest));
+            Float3 now = float3_sub(float3_load(d->surface.position[b]), float3_load(d->surface.position[a]));
+            Float3 rest = float3_sub(float3_load(d->surface.rest_position[b]), float3_load(d->surface.rest_position[a]));
+            assert_true(float3_length(now) < 2 * float3_length(rest));
         }
     drawing_free(d);
 }
@@ -294,11 +294,11 @@ static void threads_draw_the_same(void **unused) {
 }
 
 /// A place of the sheet at a fraction of its cells.
-static FinePlace place_at(uint32_t n, uint32_t cells) {
-    FinePlace place = {random_hash(n, 1, 0, 0) % cells, (uint8_t)(random_hash(n, 2, 0, 0) & 3), {0}};
+static FineLocation location_at(uint32_t n, uint32_t cells) {
+    FineLocation location = {random_hash(n, 1, 0, 0) % cells, (uint8_t)(random_hash(n, 2, 0, 0) & 3), {0}};
     float x = random_unit(random_hash(n, 3, 0, 0)), y = (1 - x) * random_unit(random_hash(n, 4, 0, 0));
-    place.weight[0] = x, place.weight[1] = y, place.weight[2] = 1 - x - y;
-    return place;
+    location.weight[0] = x, location.weight[1] = y, location.weight[2] = 1 - x - y;
+    return location;
 }
 
 /// A walk ends where it would in the plane, across cells that are turned against each other.
@@ -307,17 +307,17 @@ static void walks_cross_cells(void **unused) {
     Drawing *d = fine_drawing(5, 4, 1, 0.3f, 0);
     const Shell *shell = &d->sheet->shell;
     for (uint32_t n = 0; n < 2000; n++) {
-        FinePlace from = place_at(n, shell->cell_count);
+        FineLocation from = location_at(n, shell->cell_count);
         float x = random_unit(random_hash(n, 5, 0, 0)) - 0.5f, y = random_unit(random_hash(n, 6, 0, 0)) - 0.5f;
-        FinePlace to = fine_walk(shell, from, x, y);
+        FineLocation to = fine_walk(shell, from, x, y);
         float at[2][2] = {{0}};
         for (int k = 0; k < 2; k++) {
-            const FinePlace *place = k ? &to : &from;
-            const uint32_t *c = shell->cells[place->cell];
+            const FineLocation *location = k ? &to : &from;
+            const uint32_t *c = shell->cells[location->cell];
             for (int i = 0; i < 2; i++)
-                at[k][i] = place->weight[0] * shell->rest_position[c[place->side]][i] +
-                           place->weight[1] * shell->rest_position[c[(place->side + 1) & 3]][i] +
-                           place->weight[2] * shell->rest_position[shell_centre(shell, place->cell)][i];
+                at[k][i] = location->weight[0] * shell->rest_position[c[location->side]][i] +
+                           location->weight[1] * shell->rest_position[c[(location->side + 1) & 3]][i] +
+                           location->weight[2] * shell->rest_position[shell_centre(shell, location->cell)][i];
         }
         assert_float_equal(at[1][0], fminf(fmaxf(at[0][0] + x, 0), 5), 1e-5);
         assert_float_equal(at[1][1], fminf(fmaxf(at[0][1] + y, 0), 4), 1e-5);
@@ -356,7 +356,7 @@ int main(void) {
         cmocka_unit_test(bent_sheets_are_drawn_round),
         cmocka_unit_test(no_triangle_is_lost_to_rounding),
         cmocka_unit_test(crumpled_sheets_are_not_turned_over),
-        cmocka_unit_test(lips_at_one_place_are_drawn_apart),
+        cmocka_unit_test(tear_edges_at_one_point_are_drawn_apart),
         cmocka_unit_test(what_a_lost_corner_pulls_apart_is_left_out),
         cmocka_unit_test(whole_sheets_are_drawn_coarsely),
         cmocka_unit_test(threads_draw_the_same),

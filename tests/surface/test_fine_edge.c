@@ -34,7 +34,7 @@ static void add_directions(const SingeSurface *s, double length[DIRECTIONS]) {
 
 /// The largest share of a direction over the mean, over a whole fire.
 static double preference(Drawing *d, bool fine) {
-    double length[DIRECTIONS] = {0}, sum = 0, most = 0;
+    double length[DIRECTIONS] = {0}, sum = 0, max = 0;
     for (int step = 0; step < 12; step++) {
         burn_rings(d, 0.004f + 0.0023f * (float)step);
         ablate(d);
@@ -42,8 +42,8 @@ static double preference(Drawing *d, bool fine) {
         else draw_coarse(d);
         add_directions(&d->surface, length);
     }
-    for (int k = 0; k < DIRECTIONS; k++) sum += length[k], most = fmax(most, length[k]);
-    return most * DIRECTIONS / sum;
+    for (int k = 0; k < DIRECTIONS; k++) sum += length[k], max = fmax(max, length[k]);
+    return max * DIRECTIONS / sum;
 }
 
 static void no_direction_is_preferred(void **unused) {
@@ -130,7 +130,7 @@ static void edges_are_eaten_by_a_length(void **unused) {
 }
 
 /// Whether a place of the raster within `reach` of (x, y) is covered, or is not, as wanted.
-static bool near_a_place_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
+static bool near_a_location_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
     for (int j = y - reach; j <= y + reach; j++)
         for (int i = x - reach; i <= x + reach; i++)
             if (i >= 0 && j >= 0 && i < size && j < size && (i - x) * (i - x) + (j - y) * (j - y) <= reach * reach &&
@@ -155,7 +155,7 @@ static void edges_stay_within_a_cell(void **unused) {
         for (int k = 0; k < SIZE * SIZE; k++) {
             if (coarse[k] == fine[k]) continue;
             missing += coarse[k];
-            assert_true(near_a_place_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
+            assert_true(near_a_location_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
         }
     }
     assert_true(missing > 1000);

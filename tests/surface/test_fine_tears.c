@@ -19,19 +19,19 @@ static bool any_cross(const BurningSheet *b) {
 }
 
 /// Where the middle lip would go if nothing were in its way: a little towards the mean of its cells' corners.
-static Vec mean_way(const BurningSheet *b, uint32_t vertex) {
+static Float3 mean_displacement(const BurningSheet *b, uint32_t vertex) {
     const Shell *shell = &b->shell;
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
-    Vec place = vec_load(b->state.dynamics.position[MIDDLE]), sum = {0, 0, 0};
+    Float3 location = float3_load(b->state.dynamics.position[MIDDLE]), sum = {0, 0, 0};
     for (uint32_t f = first; f < last; f++)
         for (int i = 0; i < 4; i++) {
             uint32_t corner = shell->cells[shell->fan[f]][i];
-            sum = vec_add(sum, corner == vertex ? place : vec_load(b->state.dynamics.position[corner]));
+            sum = float3_add(sum, corner == vertex ? location : float3_load(b->state.dynamics.position[corner]));
         }
-    return vec_sub(vec_scale(sum, 0.25f / (float)(last - first)), place);
+    return float3_sub(float3_scale(sum, 0.25f / (float)(last - first)), location);
 }
 
-static void lips_do_not_cross(void **unused) {
+static void tear_edges_do_not_cross(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();
     uint32_t random = 3, torn = 0, otherwise = 0;
@@ -39,21 +39,21 @@ static void lips_do_not_cross(void **unused) {
         BurningSheet *b = burning_spare_sheets(1, 2, 2, 1, &material, 0, 6);
         for (uint32_t v = 0; v < 9; v++)
             for (int k = 0; k < 3; k++) b->state.dynamics.position[v][k] += 3 * any(&random);
-        Vec before = vec_load(b->state.dynamics.position[MIDDLE]);
+        Float3 before = float3_load(b->state.dynamics.position[MIDDLE]);
         ShellSplit split = {.vertex = MIDDLE, .cells = trial % 2 ? 3 : 5};
         Fan fan;
         SplitResult result;
         split_fan(&b->shell, MIDDLE, &fan);
         if (!any_cross(b) && split_is_possible(&b->shell, &fan, &split)) {
             tear_split(&b->shell, &b->state, &fan, &split, &result);
-            Vec after = vec_load(b->state.dynamics.position[MIDDLE]);
-            vec_store(b->state.dynamics.position[MIDDLE], before);
-            Vec way = vec_sub(vec_mad(before, mean_way(b, MIDDLE), 0.002f), after);
-            vec_store(b->state.dynamics.position[MIDDLE], after);
-            otherwise += vec_length(way) > 1e-5f;
+            Float3 after = float3_load(b->state.dynamics.position[MIDDLE]);
+            float3_store(b->state.dynamics.position[MIDDLE], before);
+            Float3 displacement = float3_sub(float3_mad(before, mean_displacement(b, MIDDLE), 0.002f), after);
+            float3_store(b->state.dynamics.position[MIDDLE], after);
+            otherwise += float3_length(displacement) > 1e-5f;
             torn++;
             assert_false(any_cross(b));
-            assert_true(vec_length(vec_sub(after, vec_load(b->state.dynamics.position[result.spare]))) > 1e-4f);
+            assert_true(float3_length(float3_sub(after, float3_load(b->state.dynamics.position[result.spare]))) > 1e-4f);
         }
         burning_sheet_free(b);
     }
@@ -61,6 +61,6 @@ static void lips_do_not_cross(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lips_do_not_cross)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(tear_edges_do_not_cross)};
     return cmocka_run_group_tests_name("tear_lips", tests, NULL, NULL);
 }

@@ -23,15 +23,15 @@ static void bend(Bent *b, float size) {
     }
 }
 
-/// The arrays of fine_place, as ablate_surface_fine lays them out.
-static void place(Bent *b) {
+/// The arrays of fine_position, as ablate_surface_fine lays them out.
+static void location(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
     *fine = (Fine){.plan = b->plan, .shell = &b->shell, .state = &b->state, .memory = &b->memory,
-                   .leaves_most = INFINITY};
+                   .bulge_max = INFINITY};
     assert_non_null(NEW(&b->memory, fine->sheets, b->shell.sheet_count));
     assert_non_null(NEW(&b->memory, fine->normal, b->shell.particle_count));
-    assert_non_null(NEW(&b->memory, fine->share, corners)), assert_non_null(NEW(&b->memory, fine->most, corners));
+    assert_non_null(NEW(&b->memory, fine->share, corners)), assert_non_null(NEW(&b->memory, fine->max, corners));
     assert_non_null(NEW(&b->memory, fine->corner, corners)), assert_non_null(NEW(&b->memory, fine->sound, cells));
     assert_non_null(NEW(&b->memory, fine->regular, corners));
     assert_non_null(NEW(&b->memory, fine->valence, corners)), assert_non_null(NEW(&b->memory, fine->inner, cells));
@@ -39,7 +39,7 @@ static void place(Bent *b) {
     assert_non_null(NEW(&b->memory, fine->limit, corners)), assert_non_null(NEW(&b->memory, fine->shift, corners));
     assert_non_null(NEW(&b->memory, fine->bent, cells));
     fine->sheets[0].splits = 4;
-    fine_place(fine);
+    fine_position(fine);
 }
 
 static Bent *bent(QuadMesh mesh, float size) {
@@ -51,7 +51,7 @@ static Bent *bent(QuadMesh mesh, float size) {
     assert_int_equal(ablate_plan_create(&b->memory, &b->shell, &b->plan), SINGE_OK);
     mesh_release(&mesh);
     bend(b, size);
-    place(b);
+    location(b);
     return b;
 }
 
@@ -59,7 +59,7 @@ static void bent_free(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
     FREE(&b->memory, fine->sheets, b->shell.sheet_count), FREE(&b->memory, fine->normal, b->shell.particle_count);
-    FREE(&b->memory, fine->share, corners), FREE(&b->memory, fine->most, corners);
+    FREE(&b->memory, fine->share, corners), FREE(&b->memory, fine->max, corners);
     FREE(&b->memory, fine->corner, corners), FREE(&b->memory, fine->sound, cells);
     FREE(&b->memory, fine->valence, corners), FREE(&b->memory, fine->regular, corners);
     FREE(&b->memory, fine->inner, cells);
@@ -85,23 +85,23 @@ static void at_side(const Fine *fine, uint32_t cell, uint32_t blue, float along,
     FinePatch patch = fine_patch(fine, cell);
     int side = side_with(shell, cell, blue);
     bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[cell][side];
-    FinePlace place = {cell, (uint8_t)side, {forwards ? 1 - along : along, forwards ? along : 1 - along, 0}};
-    fine_place_at(fine, &patch, &place, position, normal);
+    FineLocation location = {cell, (uint8_t)side, {forwards ? 1 - along : along, forwards ? along : 1 - along, 0}};
+    fine_position_at(fine, &patch, &location, position, normal);
 }
 
-static Vec flat_normal(const Fine *fine, uint32_t cell, int side) {
+static Float3 flat_normal(const Fine *fine, uint32_t cell, int side) {
     const uint32_t *at = fine->shell->cells[cell];
-    Vec sum = {0, 0, 0};
-    for (int i = 0; i < 4; i++) sum = vec_mad(sum, vec_load(fine->corner[at[i]]), 0.25f);
-    return vec_unit(vec_cross(vec_sub(vec_load(fine->corner[at[side]]), sum),
-                              vec_sub(vec_load(fine->corner[at[(side + 1) & 3]]), sum)));
+    Float3 sum = {0, 0, 0};
+    for (int i = 0; i < 4; i++) sum = float3_mad(sum, float3_load(fine->corner[at[i]]), 0.25f);
+    return float3_unit(float3_cross(float3_sub(float3_load(fine->corner[at[side]]), sum),
+                              float3_sub(float3_load(fine->corner[at[(side + 1) & 3]]), sum)));
 }
 
-static float between(Vec a, Vec b) { return atan2f(vec_length(vec_cross(a, b)), vec_dot(a, b)) * 180 / pi; }
+static float between(Float3 a, Float3 b) { return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)) * 180 / pi; }
 
 /// The largest differences across sides: of places, and of normals in degrees, root mean square, drawn and of flat cells.
 typedef struct Steps {
-    float place;
+    float location;
     double drawn, flat;
 } Steps;
 
@@ -115,9 +115,9 @@ static Steps steps_of(const Bent *b) {
             for (float along = 0.125f; along < 1; along += 0.125f, count++) {
                 float p[2][3], n[2][3];
                 at_side(&b->fine, c, blue, along, p[0], n[0]), at_side(&b->fine, other, blue, along, p[1], n[1]);
-                steps.place = fmaxf(steps.place, vec_length(vec_sub(vec_load(p[0]), vec_load(p[1]))));
-                steps.drawn += pow((double)between(vec_load(n[0]), vec_load(n[1])), 2);
-                Vec flat = flat_normal(&b->fine, other, side_with(&b->shell, other, blue));
+                steps.location = fmaxf(steps.location, float3_length(float3_sub(float3_load(p[0]), float3_load(p[1]))));
+                steps.drawn += pow((double)between(float3_load(n[0]), float3_load(n[1])), 2);
+                Float3 flat = flat_normal(&b->fine, other, side_with(&b->shell, other, blue));
                 steps.flat += pow((double)between(flat_normal(&b->fine, c, i), flat), 2);
             }
         }
@@ -130,7 +130,7 @@ static Steps steps_of(const Bent *b) {
 /// (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
 static void cells_agree_on_their_sides(void **unused) {
     (void)unused;
-    const struct { const char *name; QuadMesh mesh; float size; double most; } meshes[] = {
+    const struct { const char *name; QuadMesh mesh; float size; double max; } meshes[] = {
         {"grid", mesh_grid(14, 11, 1, 1), 1, 0.5}, {"three cells", mesh_polygon(3, 6), 1 / 6.0f, 0.5},
         {"five cells", mesh_polygon(5, 6), 1 / 6.0f, 0.5}, {"ell", mesh_ell(6), 1, 0.5},
     };
@@ -138,9 +138,9 @@ static void cells_agree_on_their_sides(void **unused) {
         Bent *b = bent(meshes[k].mesh, meshes[k].size);
         Steps steps = steps_of(b);
         print_message("%s: places %.2g of a cell apart, normals %.3f degrees, flat %.2f\n", meshes[k].name,
-                      (double)(steps.place / meshes[k].size), steps.drawn, steps.flat);
-        assert_true(steps.place < 1e-4f * meshes[k].size);
-        assert_true(steps.drawn < meshes[k].most && steps.flat > 3);
+                      (double)(steps.location / meshes[k].size), steps.drawn, steps.flat);
+        assert_true(steps.location < 1e-4f * meshes[k].size);
+        assert_true(steps.drawn < meshes[k].max && steps.flat > 3);
         bent_free(b);
     }
 }

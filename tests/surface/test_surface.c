@@ -213,7 +213,7 @@ static void crumpled_normals_are_unit(void **unused) {
     for (uint32_t k = 1; k < 4; k++) memcpy(position[corners[k]], position[corners[0]], 16); // a cell in one point
     draw_coarse(d);
     for (uint32_t v = 0; v < d->surface.vertex_count; v++)
-        assert_float_equal(vec_length(vec_load(d->surface.normal[v])), 1, 1e-5);
+        assert_float_equal(float3_length(float3_load(d->surface.normal[v])), 1, 1e-5);
     drawing_free(d);
 }
 

@@ -87,8 +87,8 @@ static void check_surface(SingeSim *sim) {
             edges[3 * t + (uint32_t)k] = (Edge){a < b ? a : b, a < b ? b : a};
             float square = 0;
             for (int d = 0; d < 3; d++) {
-                float way = surface.position[a][d] - surface.position[b][d];
-                square += way * way;
+                float displacement = surface.position[a][d] - surface.position[b][d];
+                square += displacement * displacement;
             }
             assert_true(sqrtf(square) < 2.5f * side);
         }
@@ -191,11 +191,11 @@ static void tubes_tear_around(void **unused) {
 
 /// The lips of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how far
 /// their middle leaves the weak line, root mean square.
-typedef struct Lips {
-    double apart, wanders, least, area;
-} Lips;
+typedef struct TearEdges {
+    double apart, wanders, min, area;
+} TearEdges;
 
-static Lips drawn_lips(float raggedness) {
+static TearEdges drawn_tear_edges(float raggedness) {
     enum { ROWS = 6 * ACROSS };
     SingeSimDef def = pull_def();
     def.surface_detail = 0.4e-3f, def.surface_raggedness = raggedness;
@@ -207,11 +207,11 @@ static Lips drawn_lips(float raggedness) {
     test_ok(sim, singe_sim_surface(sim, &surface));
     float left[ROWS], right[ROWS];
     for (int r = 0; r < ROWS; r++) left[r] = -INFINITY, right[r] = INFINITY;
-    Lips lips = {0, 0, INFINITY, 0};
+    TearEdges tear_edges = {0, 0, INFINITY, 0};
     for (uint32_t t = 0; t < surface.triangle_count; t++) {
         const float *p[3];
         for (int i = 0; i < 3; i++) p[i] = surface.rest_position[surface.triangles[t][i]];
-        lips.area += 0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+        tear_edges.area += 0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
                                     (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
         for (int i = 0; i < 3; i++) {
             int row = (int)(p[i][1] / side * 6);
@@ -223,24 +223,24 @@ static Lips drawn_lips(float raggedness) {
     for (int r = 2; r < ROWS - 2; r++) {
         double apart = ((double)right[r] - (double)left[r]) / (double)side;
         double middle = 0.5 * ((double)right[r] + (double)left[r]) / (double)side - WEAK;
-        lips.apart += apart / (ROWS - 4), lips.wanders += middle * middle / (ROWS - 4);
-        lips.least = fmin(lips.least, apart);
+        tear_edges.apart += apart / (ROWS - 4), tear_edges.wanders += middle * middle / (ROWS - 4);
+        tear_edges.min = fmin(tear_edges.min, apart);
     }
-    lips.wanders = sqrt(lips.wanders);
+    tear_edges.wanders = sqrt(tear_edges.wanders);
     singe_surface_free(&surface);
     singe_sim_destroy(sim);
-    return lips;
+    return tear_edges;
 }
 
-static void lips_wander_and_fit(void **unused) {
+static void tear_edges_wander_and_fit(void **unused) {
     (void)unused;
     const double whole = (double)(ALONG * side * ACROSS * side);
-    Lips smooth = drawn_lips(0), ragged = drawn_lips(2e-3f);
+    TearEdges smooth = drawn_tear_edges(0), ragged = drawn_tear_edges(2e-3f);
     print_message("lips %.3f sides apart, %.3f to the side; ragged ones %.3f (%.3f at least) and %.3f\n", smooth.apart,
-                  smooth.wanders, ragged.apart, ragged.least, ragged.wanders);
+                  smooth.wanders, ragged.apart, ragged.min, ragged.wanders);
     assert_true(smooth.apart > 0.15 && smooth.apart < 0.4);
     assert_true(ragged.apart > 0.15 && ragged.apart < 0.5); // as far as smooth ones: they fit
-    assert_true(ragged.least > 0);
+    assert_true(ragged.min > 0);
     assert_true(ragged.wanders > smooth.wanders + 0.05);
     assert_true(ragged.area < whole && ragged.area > whole - 0.5 * (double)side * ACROSS * (double)side);
 }
@@ -533,7 +533,7 @@ int main(void) {
         cmocka_unit_test(pulled_apart_it_tears_at_its_weakest_line),
         cmocka_unit_test(uniform_sheets_tear_too),
         cmocka_unit_test(tubes_tear_around),
-        cmocka_unit_test(lips_wander_and_fit),
+        cmocka_unit_test(tear_edges_wander_and_fit),
         cmocka_unit_test(without_tearing_it_stays_whole),
         cmocka_unit_test(same_bytes_and_from_a_snapshot),
         cmocka_unit_test(failed_steps_leave_it_as_it_was),

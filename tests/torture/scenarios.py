@@ -25,7 +25,7 @@ sheets:
     material: {base: newsprint, strength: 1e-4}
   - mesh: square.obj
     translate: [0, 8 cm, 5 cm]
-    material: {thickness: {from: 0.5 mm, to: 1 mm, picture: dots.png}}
+    material: {thickness: {from: 0.5 mm, to: 1 mm, texture: dots.png}}
 pins:
   - sheet: 0
     points: [[-2 cm, 0, 7 cm], [2 cm, 0, 7 cm]]
@@ -142,8 +142,8 @@ def stats_rows(data):
 
 def record_fields(data):
     record = json.loads(data)
-    # census and drawn: of the sheets as the run began, or went on, to burn them
-    for key in ("seconds", "started", "resumed_from", "threads", "scene_folder", "drawn", "census"):
+    # counts and drawn: of the sheets as the run began, or went on, to burn them
+    for key in ("seconds", "started", "resumed_from", "threads", "scene_folder", "drawn", "counts"):
         record.pop(key, None)
     return record
 

@@ -130,7 +130,7 @@ static double segment(const double a[3], const double b[3]) {
 }
 
 double triangles_distance(const Triangles *mesh, const float at[3]) {
-    double least = INFINITY, angle = 0;
+    double min = INFINITY, angle = 0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         double p[3][3], n[3], length[3];
         for (int c = 0; c < 3; c++)
@@ -148,14 +148,14 @@ double triangles_distance(const Triangles *mesh, const float at[3]) {
             for (int i = 0; i < 3; i++)
                 cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
             over = over && dot(cross, n) >= 0;
-            least = fmin(least, segment(a, b));
+            min = fmin(min, segment(a, b));
             length[c] = sqrt(dot(a, a));
         }
-        if (over) least = fmin(least, height * height / dot(n, n));
+        if (over) min = fmin(min, height * height / dot(n, n));
         triple = height;
         // Van Oosterom and Strackee 1983
         angle += 2 * atan2(triple, length[0] * length[1] * length[2] + dot(p[0], p[1]) * length[2] +
                                        dot(p[1], p[2]) * length[0] + dot(p[2], p[0]) * length[1]);
     }
-    return angle > 6.2831853 ? -sqrt(least) : sqrt(least);
+    return angle > 6.2831853 ? -sqrt(min) : sqrt(min);
 }

@@ -20,13 +20,13 @@ static SingeColliderDef make(SingeColliderKind kind) {
     return def;
 }
 
-static float distance_at(const SingeColliderDef *def, Vec p, Vec *normal) {
+static float distance_at(const SingeColliderDef *def, Float3 p, Float3 *normal) {
     Collider collider = {.def = *def};
     return collider_distance(&collider, p, INFINITY, normal);
 }
 
-static double distance(const SingeColliderDef *def, Vec p) {
-    Vec normal;
+static double distance(const SingeColliderDef *def, Float3 p) {
+    Float3 normal;
     return (double)distance_at(def, p, &normal);
 }
 
@@ -37,13 +37,13 @@ static void normals_are_gradients(void **state) {
         SingeColliderDef def = make((SingeColliderKind)kind);
         int checked = 0;
         for (int i = 0; i < 5000; i++) {
-            Vec p = vec(any(3), any(3), any(3)), normal;
+            Float3 p = float3(any(3), any(3), any(3)), normal;
             double d = (double)distance_at(&def, p, &normal);
-            assert_true(isfinite(d) && fabsf(vec_length(normal) - 1) < 1e-5f);
+            assert_true(isfinite(d) && fabsf(float3_length(normal) - 1) < 1e-5f);
             double gradient[3] = {
-                (distance(&def, vec(p.x + e, p.y, p.z)) - distance(&def, vec(p.x - e, p.y, p.z))) / (2 * (double)e),
-                (distance(&def, vec(p.x, p.y + e, p.z)) - distance(&def, vec(p.x, p.y - e, p.z))) / (2 * (double)e),
-                (distance(&def, vec(p.x, p.y, p.z + e)) - distance(&def, vec(p.x, p.y, p.z - e))) / (2 * (double)e),
+                (distance(&def, float3(p.x + e, p.y, p.z)) - distance(&def, float3(p.x - e, p.y, p.z))) / (2 * (double)e),
+                (distance(&def, float3(p.x, p.y + e, p.z)) - distance(&def, float3(p.x, p.y - e, p.z))) / (2 * (double)e),
+                (distance(&def, float3(p.x, p.y, p.z + e)) - distance(&def, float3(p.x, p.y, p.z - e))) / (2 * (double)e),
             };
             double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
             if (length < 0.99) continue; // on the medial axis
@@ -54,49 +54,49 @@ static void normals_are_gradients(void **state) {
                 fail_msg("kind %d at (%g, %g, %g): the normal is off by %g", kind, (double)p.x, (double)p.y,
                          (double)p.z, off);
             // one step of the distance along the normal ends on the surface
-            Vec surface = vec_mad(p, normal, -(float)d);
+            Float3 surface = float3_mad(p, normal, -(float)d);
             assert_true(fabs(distance(&def, surface)) < 1e-5);
         }
         assert_true(checked > 4800);
     }
 }
 
-static void expect(SingeColliderKind kind, Vec p, float d, Vec n) {
+static void expect(SingeColliderKind kind, Float3 p, float d, Float3 n) {
     SingeColliderDef def = make(kind);
-    Vec normal;
+    Float3 normal;
     float found = distance_at(&def, p, &normal);
-    if (fabsf(found - d) > 1e-6f || vec_length(vec_sub(normal, n)) > 1e-6f)
+    if (fabsf(found - d) > 1e-6f || float3_length(float3_sub(normal, n)) > 1e-6f)
         fail_msg("kind %d: %g (%g, %g, %g)", (int)kind, (double)found, (double)normal.x, (double)normal.y,
                  (double)normal.z);
 }
 
 static void hand_values(void **state) {
     (void)state;
-    expect(SINGE_COLLIDER_PLANE, vec(5, -7, 0.25f), 0.25f, vec(0, 0, 1));
-    expect(SINGE_COLLIDER_PLANE, vec(5, -7, -2), -2, vec(0, 0, 1));
-    expect(SINGE_COLLIDER_SPHERE, vec(0, -1, 0), 0.3f, vec(0, -1, 0));
-    expect(SINGE_COLLIDER_SPHERE, vec(0.1f, 0, 0), -0.6f, vec(1, 0, 0));
-    expect(SINGE_COLLIDER_SPHERE, vec(0, 0, 0), -0.7f, vec(0, 0, 1));
-    expect(SINGE_COLLIDER_BOX, vec(0.75f, 0, 0), 0.25f, vec(1, 0, 0));
-    expect(SINGE_COLLIDER_BOX, vec(0, -0.9f, 0), -0.1f, vec(0, -1, 0));
-    expect(SINGE_COLLIDER_BOX, vec(-0.45f, 0.5f, 1), -0.05f, vec(-1, 0, 0));
-    expect(SINGE_COLLIDER_BOX, vec(3.5f, 5, 0), 5, vec(0.6f, 0.8f, 0));
-    expect(SINGE_COLLIDER_BOX, vec(0.5f + 1, -1 - 2, 1.5f + 2), 3, vec(1 / 3.0f, -2 / 3.0f, 2 / 3.0f));
-    expect(SINGE_COLLIDER_CAPSULE, vec(1, 0, 0.9f), 0.3f, vec(1, 0, 0));
-    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0, 2), 0.3f, vec(0, 0, 1));
-    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0, -2), 0.3f, vec(0, 0, -1));
-    expect(SINGE_COLLIDER_CAPSULE, vec(0, 0.6f, 1.8f), 0.3f, vec(0, 0.6f, 0.8f));
+    expect(SINGE_COLLIDER_PLANE, float3(5, -7, 0.25f), 0.25f, float3(0, 0, 1));
+    expect(SINGE_COLLIDER_PLANE, float3(5, -7, -2), -2, float3(0, 0, 1));
+    expect(SINGE_COLLIDER_SPHERE, float3(0, -1, 0), 0.3f, float3(0, -1, 0));
+    expect(SINGE_COLLIDER_SPHERE, float3(0.1f, 0, 0), -0.6f, float3(1, 0, 0));
+    expect(SINGE_COLLIDER_SPHERE, float3(0, 0, 0), -0.7f, float3(0, 0, 1));
+    expect(SINGE_COLLIDER_BOX, float3(0.75f, 0, 0), 0.25f, float3(1, 0, 0));
+    expect(SINGE_COLLIDER_BOX, float3(0, -0.9f, 0), -0.1f, float3(0, -1, 0));
+    expect(SINGE_COLLIDER_BOX, float3(-0.45f, 0.5f, 1), -0.05f, float3(-1, 0, 0));
+    expect(SINGE_COLLIDER_BOX, float3(3.5f, 5, 0), 5, float3(0.6f, 0.8f, 0));
+    expect(SINGE_COLLIDER_BOX, float3(0.5f + 1, -1 - 2, 1.5f + 2), 3, float3(1 / 3.0f, -2 / 3.0f, 2 / 3.0f));
+    expect(SINGE_COLLIDER_CAPSULE, float3(1, 0, 0.9f), 0.3f, float3(1, 0, 0));
+    expect(SINGE_COLLIDER_CAPSULE, float3(0, 0, 2), 0.3f, float3(0, 0, 1));
+    expect(SINGE_COLLIDER_CAPSULE, float3(0, 0, -2), 0.3f, float3(0, 0, -1));
+    expect(SINGE_COLLIDER_CAPSULE, float3(0, 0.6f, 1.8f), 0.3f, float3(0, 0.6f, 0.8f));
 }
 
 static void surfaces_are_round_inside(void **state) {
     (void)state;
     SingeColliderDef def = make(SINGE_COLLIDER_BOX);
-    Vec normal;
-    assert_true(distance_at(&def, vec(0.5f, 1, 1.5f), &normal) == 0); // a corner
-    assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+    Float3 normal;
+    assert_true(distance_at(&def, float3(0.5f, 1, 1.5f), &normal) == 0); // a corner
+    assert_true(fabsf(float3_length(normal) - 1) < 1e-6f);
     def = make(SINGE_COLLIDER_CAPSULE);
-    assert_true(distance_at(&def, vec(0, 0, 0.3f), &normal) == -0.7f); // on the axis
-    assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+    assert_true(distance_at(&def, float3(0, 0, 0.3f), &normal) == -0.7f); // on the axis
+    assert_true(fabsf(float3_length(normal) - 1) < 1e-6f);
 }
 
 typedef void Spoil(SingeColliderDef *def);

@@ -30,30 +30,30 @@ static void set(Fixture *f, uint32_t count, const SingePoseKey *keys) {
     assert_int_equal(path_set(&f->path, &f->memory, count, keys, "owner", &f->error), SINGE_OK);
 }
 
-static void near_vec(Vec a, float x, float y, float z) { assert_true(vec_length(vec_sub(a, vec(x, y, z))) < 1e-5f); }
+static void near_float3(Float3 a, float x, float y, float z) { assert_true(float3_length(float3_sub(a, float3(x, y, z))) < 1e-5f); }
 
 static void positions_are_linear_and_held(void **state) {
     Fixture *f = *state;
     SingePoseKey keys[] = {test_key(1, 0, 0, 0), test_key(2, 2, 4, -6), test_key(4, 2, 0, -6)};
     set(f, 3, keys);
-    near_vec(path_pose(&f->path, -100).position, 0, 0, 0);
-    near_vec(path_pose(&f->path, 1).position, 0, 0, 0);
-    near_vec(path_pose(&f->path, 1.25).position, 0.5f, 1, -1.5f);
-    near_vec(path_pose(&f->path, 2).position, 2, 4, -6);
-    near_vec(path_pose(&f->path, 3).position, 2, 2, -6);
-    near_vec(path_pose(&f->path, 4).position, 2, 0, -6);
-    near_vec(path_pose(&f->path, 1e9).position, 2, 0, -6);
+    near_float3(path_pose(&f->path, -100).position, 0, 0, 0);
+    near_float3(path_pose(&f->path, 1).position, 0, 0, 0);
+    near_float3(path_pose(&f->path, 1.25).position, 0.5f, 1, -1.5f);
+    near_float3(path_pose(&f->path, 2).position, 2, 4, -6);
+    near_float3(path_pose(&f->path, 3).position, 2, 2, -6);
+    near_float3(path_pose(&f->path, 4).position, 2, 0, -6);
+    near_float3(path_pose(&f->path, 1e9).position, 2, 0, -6);
 }
 
 static void one_key_and_none(void **state) {
     Fixture *f = *state;
-    near_vec(path_pose(&f->path, 3).position, 0, 0, 0);
+    near_float3(path_pose(&f->path, 3).position, 0, 0, 0);
     assert_true(path_pose(&f->path, 3).rotation[3] == 1);
     set(f, 0, NULL);
-    near_vec(path_pose(&f->path, 3).position, 0, 0, 0);
+    near_float3(path_pose(&f->path, 3).position, 0, 0, 0);
     SingePoseKey key = test_key(5, 1, 2, 3);
     set(f, 1, &key);
-    for (int t = 0; t < 10; t++) near_vec(path_pose(&f->path, t).position, 1, 2, 3);
+    for (int t = 0; t < 10; t++) near_float3(path_pose(&f->path, t).position, 1, 2, 3);
 }
 
 static void rotations_stay_unit_and_go_the_short_way(void **state) {
@@ -67,16 +67,16 @@ static void rotations_stay_unit_and_go_the_short_way(void **state) {
         Pose pose = path_pose(&f->path, i / 100.0);
         const float *q = pose.rotation;
         assert_true(fabsf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-5f);
-        Vec x = quat_rotate(q, vec(1, 0, 0));
+        Float3 x = quat_rotate(q, float3(1, 0, 0));
         float angle = atan2f(x.y, x.x);
         assert_true(angle > angle_before - 1e-6f);                          // never turns back
         assert_true(fabsf(angle - 1.57079633f * (float)i / 100) < 0.03f);   // near the even turn
         angle_before = angle;
     }
-    Vec x = quat_rotate(path_pose(&f->path, 0.5).rotation, vec(1, 0, 0));
-    near_vec(x, s, s, 0);
-    x = quat_rotate(path_pose(&f->path, 1).rotation, vec(1, 0, 0));
-    near_vec(x, 0, 1, 0);
+    Float3 x = quat_rotate(path_pose(&f->path, 0.5).rotation, float3(1, 0, 0));
+    near_float3(x, s, s, 0);
+    x = quat_rotate(path_pose(&f->path, 1).rotation, float3(1, 0, 0));
+    near_float3(x, 0, 1, 0);
 }
 
 static void huge_and_tiny_rotations_are_normalised(void **state) {
@@ -92,10 +92,10 @@ static void poses_invert(void **state) {
     SingePoseKey key = {0, {1, -2, 3}, {0.1f, -0.4f, 0.3f, 0.8f}};
     set(f, 1, &key);
     Pose pose = path_pose(&f->path, 0);
-    Vec p = vec(0.3f, -0.7f, 1.1f), world = pose_apply(&pose, p);
-    near_vec(pose_unapply(&pose, world), p.x, p.y, p.z);
-    assert_true(fabsf(vec_length(vec_sub(world, pose.position)) - vec_length(p)) < 1e-5f);
-    near_vec(pose_apply(&pose, vec(0, 0, 0)), 1, -2, 3);
+    Float3 p = float3(0.3f, -0.7f, 1.1f), world = pose_apply(&pose, p);
+    near_float3(pose_unapply(&pose, world), p.x, p.y, p.z);
+    assert_true(fabsf(float3_length(float3_sub(world, pose.position)) - float3_length(p)) < 1e-5f);
+    near_float3(pose_apply(&pose, float3(0, 0, 0)), 1, -2, 3);
 }
 
 static void refused(Fixture *f, uint32_t count, const SingePoseKey *keys, int64_t element) {
@@ -126,7 +126,7 @@ static void bad_keys_are_refused(void **state) {
     BAD(bad[2].rotation[3] = INFINITY, 2);
     BAD(bad[1].rotation[3] = 0, 1);
 #undef BAD
-    near_vec(path_pose(&f->path, 1.5).position, 1.5f, 0, 0);
+    near_float3(path_pose(&f->path, 1.5).position, 1.5f, 0, 0);
 }
 
 static void out_of_memory(void **state) {
@@ -135,7 +135,7 @@ static void out_of_memory(void **state) {
     set(f, 2, keys);
     f->hook.fail_at = f->hook.calls + 1;
     assert_int_equal(path_set(&f->path, &f->memory, 1, keys, "owner", &f->error), SINGE_ERROR_MEMORY);
-    near_vec(path_pose(&f->path, 0).position, 7, 0, 0);
+    near_float3(path_pose(&f->path, 0).position, 7, 0, 0);
 }
 
 int main(void) {

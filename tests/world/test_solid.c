@@ -42,15 +42,15 @@ static int compare(const Triangles *mesh, const char *name, int count, float siz
             for (int i = 0; i < 3; i++) p[i] = v[i] + 0.05f * p[i] * any(0, 1);
         }
         double expected = triangles_distance(mesh, p);
-        Vec normal, at = vec_load(p);
+        Float3 normal, at = float3_load(p);
         float found = collider_distance(&collider, at, INFINITY, &normal);
         inside += found < 0;
         worst = fmax(worst, fabs((double)found - expected));
         if (fabs((double)found - expected) > 1e-6 * (double)size)
             fail_msg("%s at (%g, %g, %g): %g, not %g", name, (double)p[0], (double)p[1], (double)p[2], (double)found,
                      expected);
-        assert_true(fabsf(vec_length(normal) - 1) < 1e-4f);
-        Vec foot = vec_mad(at, normal, -found), other; // one distance along the normal lies on the surface
+        assert_true(fabsf(float3_length(normal) - 1) < 1e-4f);
+        Float3 foot = float3_mad(at, normal, -found), other; // one distance along the normal lies on the surface
         if (fabsf(found) > 1e-4f * size)
             assert_true(fabsf(collider_distance(&collider, foot, INFINITY, &other)) < 1e-5f * size);
         float limit = any(0, 0.2f) * size, near = collider_distance(&collider, at, limit, &normal);
@@ -96,7 +96,7 @@ static void four_triangles_are_enough(void **unused) {
 }
 
 /// Every box of its tree would be near such a place.
-static void places_that_are_none_are_far(void **unused) {
+static void positions_that_are_none_are_far(void **unused) {
     (void)unused;
     Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
     Memory memory = memory_make((SingeAllocator){0});
@@ -106,10 +106,10 @@ static void places_that_are_none_are_far(void **unused) {
         float p[3] = {0.01f, 0.01f, 0.01f};
         p[k % 3] = none[k / 3 % 3];
         if (k >= 9) p[(k + 1) % 3] = none[k / 9];
-        Vec normal;
-        assert_true(isinf(collider_distance(&collider, vec_load(p), INFINITY, &normal)));
-        assert_true(isinf(collider_distance(&collider, vec_load(p), 0.01f, &normal)));
-        assert_true(fabsf(vec_length(normal) - 1) < 1e-6f);
+        Float3 normal;
+        assert_true(isinf(collider_distance(&collider, float3_load(p), INFINITY, &normal)));
+        assert_true(isinf(collider_distance(&collider, float3_load(p), 0.01f, &normal)));
+        assert_true(fabsf(float3_length(normal) - 1) < 1e-6f);
     }
     collider_free(&memory, &collider);
     triangles_free(&mesh);
@@ -127,10 +127,10 @@ static void inside_out_is_turned(void **unused) {
         corner[0] = corner[1], corner[1] = swap;
     }
     collider = make_mesh(&memory, &mesh);
-    Vec normal;
+    Float3 normal;
     assert_true(collider.mesh.turned);
-    assert_true(collider_distance(&collider, vec(0, 0, 0.02f), INFINITY, &normal) < 0);
-    assert_true(collider_distance(&collider, vec(0, 0, 0.08f), INFINITY, &normal) > 0 && normal.z > 0.9f);
+    assert_true(collider_distance(&collider, float3(0, 0, 0.02f), INFINITY, &normal) < 0);
+    assert_true(collider_distance(&collider, float3(0, 0, 0.08f), INFINITY, &normal) > 0 && normal.z > 0.9f);
     collider_free(&memory, &collider);
     triangles_free(&mesh);
 }
@@ -245,14 +245,14 @@ static void heights_are_those_of_their_triangles(void **unused) {
         float p[3] = {any(-0.16f, 0.16f), any(-0.12f, 0.12f), 0}, off = k % 3 ? 0.002f : 0.06f;
         p[2] = hill(p[0], p[1]) + any(-off, off);
         double expected = triangles_distance(&mesh, p);
-        Vec normal, at = vec_load(p);
+        Float3 normal, at = float3_load(p);
         float found = collider_distance(&collider, at, INFINITY, &normal);
         inside += found < 0;
         worst = fmax(worst, fabs((double)found - expected));
         if (fabs((double)found - expected) > 1e-6)
             fail_msg("at (%g, %g, %g): %g, not %g", (double)p[0], (double)p[1], (double)p[2], (double)found, expected);
         if (fabsf(found) > 1e-4f) {
-            Vec foot = vec_mad(at, normal, -found), other;
+            Float3 foot = float3_mad(at, normal, -found), other;
             float rest = collider_distance(&collider, foot, INFINITY, &other);
             if (fabsf(rest) > 1e-6f)
                 fail_msg("at (%g, %g, %g): %g, and %g at the foot", (double)p[0], (double)p[1], (double)p[2],
@@ -305,17 +305,17 @@ static double seconds(void) {
 /// Nanoseconds for a distance at points up to `off` from the surface, with a limit of 2 mm.
 static double cost(const Collider *collider, const Triangles *mesh, float off) {
     enum { COUNT = 10000 };
-    static Vec points[COUNT];
+    static Float3 points[COUNT];
     for (int k = 0; k < COUNT; k++) {
         const uint32_t *t = mesh->triangles + 3 * (size_t)(any(0, 0.9999f) * (float)mesh->triangle_count);
-        Vec a = vec_load(mesh->vertices + 3 * (size_t)t[0]), b = vec_load(mesh->vertices + 3 * (size_t)t[1]);
-        points[k] = vec_add(vec_mad(a, vec_sub(b, a), any(0, 1)), vec(any(-off, off), any(-off, off), any(-off, off)));
+        Float3 a = float3_load(mesh->vertices + 3 * (size_t)t[0]), b = float3_load(mesh->vertices + 3 * (size_t)t[1]);
+        points[k] = float3_add(float3_mad(a, float3_sub(b, a), any(0, 1)), float3(any(-off, off), any(-off, off), any(-off, off)));
     }
     float sum = 0;
     double best = INFINITY;
     for (int repeat = 0; repeat < 7; repeat++) {
         double start = seconds();
-        Vec normal;
+        Float3 normal;
         for (int k = 0; k < COUNT; k++) sum += collider_distance(collider, points[k], 0.002f, &normal) + normal.x;
         best = fmin(best, seconds() - start);
     }
@@ -345,7 +345,7 @@ int main(void) {
         cmocka_unit_test(distances_are_those_of_all_triangles), cmocka_unit_test(four_triangles_are_enough),
         cmocka_unit_test(inside_out_is_turned),                 cmocka_unit_test(bad_meshes_are_refused_by_number),
         cmocka_unit_test(heights_are_those_of_their_triangles), cmocka_unit_test(bad_heights_are_refused),
-        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(places_that_are_none_are_far),
+        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(positions_that_are_none_are_far),
     };
     return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }

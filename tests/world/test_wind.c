@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-static Vec at(const SingeWindDef *def, int i) {
-    return wind_velocity(def, vec((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037);
+static Float3 at(const SingeWindDef *def, int i) {
+    return wind_velocity(def, float3((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037);
 }
 
 static void no_gust_is_uniform(void **state) {
@@ -14,7 +14,7 @@ static void no_gust_is_uniform(void **state) {
     SingeWindDef def = singe_default_wind();
     def.velocity[0] = 1, def.velocity[1] = -2, def.velocity[2] = 0.5f;
     for (int i = 0; i < 100; i++) {
-        Vec v = at(&def, i);
+        Float3 v = at(&def, i);
         assert_true(v.x == 1 && v.y == -2 && v.z == 0.5f);
     }
 }
@@ -27,7 +27,7 @@ static void mean_and_bound(void **state) {
     enum { COUNT = 50000 };
     double mean[3] = {0}, square = 0;
     for (int i = 0; i < COUNT; i++) {
-        Vec v = at(&def, i);
+        Float3 v = at(&def, i);
         assert_true(fabsf(v.x - 3) <= 2 && fabsf(v.y) <= 2 && fabsf(v.z) <= 2);
         mean[0] += (double)v.x / COUNT, mean[1] += (double)v.y / COUNT, mean[2] += (double)v.z / COUNT;
         square += (double)(v.y * v.y) / COUNT;
@@ -43,7 +43,7 @@ static void seeded(void **state) {
     SingeWindDef b = a;
     int equal = 0;
     for (int i = 0; i < 1000; i++) {
-        Vec v = at(&a, i), w = at(&b, i);
+        Float3 v = at(&a, i), w = at(&b, i);
         assert_memory_equal(&v, &w, sizeof v);
     }
     b.seed++;
@@ -57,11 +57,11 @@ static void smooth_in_time_and_space(void **state) {
     def.gust = 1;
     for (int i = 0; i < 2000; i++) {
         double time = i * 0.013;
-        Vec p = vec((float)i * 0.01f, 0.2f, 0.3f), v = wind_velocity(&def, p, time);
+        Float3 p = float3((float)i * 0.01f, 0.2f, 0.3f), v = wind_velocity(&def, p, time);
         // slopes: the noise's is 2 * 15/8 per lattice cell and direction
-        Vec later = wind_velocity(&def, p, time + 1e-3), there = wind_velocity(&def, vec(p.x + 1e-3f, p.y, p.z), time);
-        assert_true(vec_length(vec_sub(later, v)) < 1.75f * 3.75f * 1.8f * 1e-3f / def.gust_time + 1e-4f);
-        assert_true(vec_length(vec_sub(there, v)) < 1.75f * 3.75f * 1e-3f / def.gust_size + 1e-4f);
+        Float3 later = wind_velocity(&def, p, time + 1e-3), there = wind_velocity(&def, float3(p.x + 1e-3f, p.y, p.z), time);
+        assert_true(float3_length(float3_sub(later, v)) < 1.75f * 3.75f * 1.8f * 1e-3f / def.gust_time + 1e-4f);
+        assert_true(float3_length(float3_sub(there, v)) < 1.75f * 3.75f * 1e-3f / def.gust_size + 1e-4f);
     }
 }
 

@@ -57,13 +57,13 @@ static inline float *keep_at(const Group *group, uint32_t row, int what) {
 
 static inline Quads group_quads(const Group *group, uint32_t k) {
     uint32_t first = group->beside[k];
-    if (first != STRAND_APART) return quads_beside(group->first_beside + first, group->stride);
+    if (first != STRAND_GATHERED) return quads_beside(group->first_beside + first, group->stride);
     return quads_apart(group->position, group->node + (size_t)k * STRAND_LANES);
 }
 
 static inline void group_put(const Group *group, uint32_t k, const Quads *quads) {
     uint32_t first = group->beside[k];
-    if (first != STRAND_APART)
+    if (first != STRAND_GATHERED)
         quads_put_beside(group->first_beside + first, group->stride, quads);
     else
         quads_put_apart(group->position, group->node + (size_t)k * STRAND_LANES, quads);

@@ -21,7 +21,7 @@ enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
 #define STRAND_YIELD 0.5f
 
 /// In StrandSet.beside: the particles of the row are anywhere.
-#define STRAND_APART UINT32_MAX
+#define STRAND_GATHERED UINT32_MAX
 
 /// Lanes that are solved together.
 typedef struct StrandGroup {
@@ -41,7 +41,7 @@ typedef struct StrandSet {
     uint32_t *family_first;
     uint32_t *strand_slot; ///< [strands] slot of the strand's first spring; spring k lies k rows further
     uint32_t *node;        ///< [row_count STRAND_LANES] four times the particle's number
-    uint32_t *beside;      ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_APART
+    uint32_t *beside;      ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
     float *length;         ///< [row_count STRAND_LANES] m, targets
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N

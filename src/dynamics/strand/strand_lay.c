@@ -71,18 +71,18 @@ static bool lay_list(Lay *lay, uint32_t family, bool ring) {
 }
 
 /// The longest length with a strand that is at most `most`; 0 for none. Forgets what has been laid meanwhile.
-static uint32_t lay_longest(Lay *lay, uint32_t most) {
-    uint32_t found = most;
+static uint32_t lay_longest(Lay *lay, uint32_t max) {
+    uint32_t found = max;
     while (found > 0) {
         while (lay->head[found] != SHELL_NONE && lay_is_laid(lay, lay->head[found]))
             lay->head[found] = lay->next[lay->head[found]];
         if (lay->head[found] != SHELL_NONE) break;
         found = lay->below[found];
     }
-    while (most > found) {
-        uint32_t next = lay->below[most];
-        lay->below[most] = found;
-        most = next;
+    while (max > found) {
+        uint32_t next = lay->below[max];
+        lay->below[max] = found;
+        max = next;
     }
     return found;
 }
@@ -294,7 +294,7 @@ static void lay_family(Lay *lay, uint32_t family) {
     lay->set->family_first[family + 1] = lay->set->group_count;
 }
 
-static size_t lay_frame_most(const SpringSet *springs) {
+static size_t lay_frame_max(const SpringSet *springs) {
     return (size_t)springs->longest + 1 + 2 * (LAY_MARGIN + springs->longest / 32);
 }
 
@@ -304,8 +304,8 @@ static bool lay_create(Memory *memory, Lay *lay) {
     return NEW(memory, lay->head, lengths) && NEW(memory, lay->below, lengths) &&
            NEW(memory, lay->next, springs->strand_count) && NEW(memory, lay->tried, springs->strand_count) &&
            NEW(memory, lay->laid, springs->strand_count) && NEW(memory, lay->owner, lay->particle_count) &&
-           NEW(memory, lay->index, lay->particle_count) && NEW(memory, lay->left, lay_frame_most(springs)) &&
-           NEW(memory, lay->right, lay_frame_most(springs));
+           NEW(memory, lay->index, lay->particle_count) && NEW(memory, lay->left, lay_frame_max(springs)) &&
+           NEW(memory, lay->right, lay_frame_max(springs));
 }
 
 static void lay_free(Memory *memory, Lay *lay) {
@@ -317,8 +317,8 @@ static void lay_free(Memory *memory, Lay *lay) {
     FREE(memory, lay->laid, springs->strand_count);
     FREE(memory, lay->owner, lay->particle_count);
     FREE(memory, lay->index, lay->particle_count);
-    FREE(memory, lay->left, lay_frame_most(springs));
-    FREE(memory, lay->right, lay_frame_most(springs));
+    FREE(memory, lay->left, lay_frame_max(springs));
+    FREE(memory, lay->right, lay_frame_max(springs));
 }
 
 bool strand_lay(Memory *memory, const SpringSet *springs, uint32_t particle_count, StrandSet *set) {

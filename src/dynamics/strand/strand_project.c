@@ -19,13 +19,13 @@ enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 static void strands_comply(const Shell *shell, SingeColour colour, float h, float regularisation, StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
-    Firmness firmness;
-    firmness_begin(shell, colour, h, regularisation, &firmness);
+    Stiffness stiffness;
+    stiffness_begin(shell, colour, h, regularisation, &stiffness);
     set->compliance_all = 0;
     for (uint32_t s = 0; s < set->strand_count; s++) {
         float *slot = set->compliance + set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
-            *slot = firmness_compliance(&firmness, k);
+            *slot = stiffness_compliance(&stiffness, k);
             if (s == 0 && k == 0) set->compliance_all = *slot;
             if (*slot != set->compliance_all) set->compliance_all = -1;
         }

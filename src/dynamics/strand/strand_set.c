@@ -26,7 +26,7 @@ static void set_write_beside(StrandSet *set, const StrandGroup *group) {
         const uint32_t *node = set->node + (size_t)row * STRAND_LANES;
         set->beside[row] = node[0];
         for (uint32_t c = 0; c < group->width; c++)
-            if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->beside[row] = STRAND_APART;
+            if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->beside[row] = STRAND_GATHERED;
     }
 }
 

@@ -76,8 +76,8 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
 /// x += (x - anchor) factor.
 static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
     __m256 a = _mm256_setr_ps(anchor[0], anchor[1], anchor[2], 0, anchor[0], anchor[1], anchor[2], 0);
-    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
-    for (int e = 0; e < 4; e++) x->at[e] = _mm256_blend_ps(_mm256_add_ps(x->at[e], way.at[e]), x->at[e], 0x88);
+    Quads from = {{a, a, a, a}}, displacement = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm256_blend_ps(_mm256_add_ps(x->at[e], displacement.at[e]), x->at[e], 0x88);
 }
 
 #define ATTACH_HOLD attach_hold_v3

@@ -81,8 +81,8 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
 /// x += (x - anchor) factor.
 static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
     __m512 a = _mm512_broadcast_f32x4(_mm_setr_ps(anchor[0], anchor[1], anchor[2], 0));
-    Quads from = {{a, a, a, a}}, way = quads_push(&from, x, factor);
-    for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], way.at[e]);
+    Quads from = {{a, a, a, a}}, displacement = quads_push(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], displacement.at[e]);
 }
 
 #define ATTACH_HOLD attach_hold_v4
