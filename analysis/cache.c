@@ -33,7 +33,7 @@ static bool is_named(const PlyProperty *property, const char *name) {
 }
 
 /// Where the promised properties are in a vertex.
-static SingeResult offset_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
+static SingeResult find_columns(const Ply *ply, const PlyElement *vertices, CacheFrame *frame) {
     for (size_t i = 0; i < vertices->property_count; i++) {
         const PlyProperty *property = &ply->header.properties[vertices->first_property + i];
         if (property->is_list) return ply_refuse(ply, SINGE_ERROR_FORMAT, "a vertex of a cache has no lists");
@@ -70,7 +70,7 @@ static SingeResult check_header(const Ply *ply, CacheFrame *frame) {
         !text_word_is(list->name, list->name_end, "vertex_indices"))
         return ply_refuse(ply, SINGE_ERROR_FORMAT, "not a cache: its faces are no \"list uchar int vertex_indices\"");
     frame->vertex_count = vertices->count, frame->triangle_count = faces->count;
-    TRY(offset_columns(ply, vertices, frame));
+    TRY(find_columns(ply, vertices, frame));
     read_time(ply, frame);
     const uint64_t needed = (uint64_t)frame->row * vertices->count + (uint64_t)FACE_SIZE * faces->count;
     const uint64_t actual = (uint64_t)(ply->text.end - ply->text.at);

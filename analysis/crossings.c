@@ -59,7 +59,7 @@ static Box triangle_box(const Tree *tree, uint32_t triangle) {
 }
 
 /// Spreads the low 21 bits to every third.
-static uint64_t spread(uint64_t bits) {
+static uint64_t crossings_spread(uint64_t bits) {
     bits = (bits | bits << 32) & 0x001f00000000ffffu;
     bits = (bits | bits << 16) & 0x001f0000ff0000ffu;
     bits = (bits | bits << 8) & 0x100f00f00f00f00fu;
@@ -71,7 +71,7 @@ static uint64_t morton_position(const Box *box, const Box *all, double scale) {
     uint64_t position = 0;
     for (int k = 0; k < 3; k++) {
         double centroid = 0.5 * ((double)box->low[k] + (double)box->high[k]);
-        position |= spread((uint64_t)((centroid - (double)all->low[k]) * scale)) << k;
+        position |= crossings_spread((uint64_t)((centroid - (double)all->low[k]) * scale)) << k;
     }
     return position;
 }

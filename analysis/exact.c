@@ -25,7 +25,7 @@ typedef struct Expansion {
     double parts[PARTS]; ///< ascending in magnitude, none 0
 } Expansion;
 
-static void add(Expansion *sum, double term) {
+static void exact_add(Expansion *sum, double term) {
     int kept = 0;
     for (int i = 0; i < sum->count; i++) {
         const double part = sum->parts[i], whole = term + part;
@@ -51,8 +51,8 @@ static double high_half(double x) {
 /// Adds p q r, of at most 26 bits each.
 static void add_product(Expansion *sum, double p, double q, double r) {
     const double pq = p * q, high = high_half(pq);
-    add(sum, high * r);
-    add(sum, (pq - high) * r);
+    exact_add(sum, high * r);
+    exact_add(sum, (pq - high) * r);
 }
 
 /// Adds sign |a b c| of coordinates of at most 26 bits.
@@ -112,8 +112,8 @@ static int orient2_slowly(const float a[3], const float b[3], const float c[3], 
     Expansion sum = {0};
     const float *pairs[3][2] = {{a, b}, {b, c}, {c, a}};
     for (int i = 0; i < 3; i++) {
-        add(&sum, (double)pairs[i][0][x] * (double)pairs[i][1][y]);
-        add(&sum, -(double)pairs[i][0][y] * (double)pairs[i][1][x]);
+        exact_add(&sum, (double)pairs[i][0][x] * (double)pairs[i][1][y]);
+        exact_add(&sum, -(double)pairs[i][0][y] * (double)pairs[i][1][x]);
     }
     return expansion_sign(&sum);
 }

@@ -88,7 +88,7 @@ static uint32_t keep_sound(const CacheFrame *frame, uint32_t *sound, Findings *f
     return count;
 }
 
-static double distance(const float a[3], const float b[3]) {
+static double findings_distance(const float a[3], const float b[3]) {
     double sum = 0;
     for (int k = 0; k < 3; k++) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
     return sqrt(sum);
@@ -100,9 +100,9 @@ static double rest_gap(const CacheFrame *frame, uint32_t a, uint32_t b, double *
     double gap = (double)INFINITY;
     *side = 0;
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) gap = fmin(gap, distance(frame->rest[s[i]], frame->rest[t[k]]));
-        *side = fmax(*side, distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
-        *side = fmax(*side, distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+        for (int k = 0; k < 3; k++) gap = fmin(gap, findings_distance(frame->rest[s[i]], frame->rest[t[k]]));
+        *side = fmax(*side, findings_distance(frame->rest[s[i]], frame->rest[s[(i + 1) % 3]]));
+        *side = fmax(*side, findings_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
     return gap;
 }
@@ -215,7 +215,7 @@ static void normal_of(const float a[3], const float b[3], const float c[3], doub
 }
 
 /// Cosine between the triangles of an edge, both wound as the first says.
-static double bend(float (*const at)[3], const Side *one, const Side *other) {
+static double findings_bend(float (*const at)[3], const Side *one, const Side *other) {
     double m[3], n[3], mn = 0, mm = 0, nn = 0;
     normal_of(at[one->low], at[one->high], at[one->opposite], m);
     normal_of(at[other->high], at[other->low], at[other->opposite], n);
@@ -249,15 +249,15 @@ static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t coun
         findings_add(findings, FAULT_WINDING, "triangles %u and %u run the same way along edge %u-%u",
                      sides[0].triangle, sides[1].triangle, low, high);
     if (!has_rest(frame, sides)) return;
-    const double length = distance(frame->position[low], frame->position[high]);
-    const double rest = distance(frame->rest[low], frame->rest[high]);
+    const double length = findings_distance(frame->position[low], frame->position[high]);
+    const double rest = findings_distance(frame->rest[low], frame->rest[high]);
     const double shortest = length - rounding(frame->position[low], frame->position[high]);
     const double longest = rest + rounding(frame->rest[low], frame->rest[high]);
     if (shortest > findings->stretch * longest)
         findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low, high,
                      sides->triangle, 1e3 * length, 1e3 * rest);
-    if (count == 2 && has_rest(frame, &sides[1]) && bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
-        bend(frame->rest, &sides[0], &sides[1]) > 0)
+    if (count == 2 && has_rest(frame, &sides[1]) && findings_bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
+        findings_bend(frame->rest, &sides[0], &sides[1]) > 0)
         findings->folded++;
 }
 

@@ -64,7 +64,7 @@ static Side side_of(const Hinges *hinges, uint32_t triangle, uint8_t corner) {
     return (Side){{q, p}, {to, from}, triangle, corner};
 }
 
-static void join(Hinges *hinges, const Side *a, const Side *b) {
+static void hinges_join(Hinges *hinges, const Side *a, const Side *b) {
     hinges->across[a->triangle][a->corner] = b->triangle;
     hinges->across[b->triangle][b->corner] = a->triangle;
     hinges->far[a->triangle][a->corner] = (uint8_t)((b->corner + 2) % 3);
@@ -72,15 +72,15 @@ static void join(Hinges *hinges, const Side *a, const Side *b) {
 }
 
 /// Joins the triangles of edges at one place: two of the same vertices, then two that have nobody else, as at a seam.
-static void join_position(Hinges *hinges, const Side *sides, size_t count) {
+static void join_at(Hinges *hinges, const Side *sides, size_t count) {
     const Side *alone[2];
     size_t loose = 0;
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && is_same_edge(&sides[i], &sides[end]);) end++;
-        if (end - i == 2) join(hinges, &sides[i], &sides[i + 1]);
+        if (end - i == 2) hinges_join(hinges, &sides[i], &sides[i + 1]);
         if (end - i == 1 && loose++ < 2) alone[loose - 1] = &sides[i];
     }
-    if (loose == 2) join(hinges, alone[0], alone[1]);
+    if (loose == 2) hinges_join(hinges, alone[0], alone[1]);
 }
 
 static bool join_all(Hinges *hinges) {
@@ -92,7 +92,7 @@ static bool join_all(Hinges *hinges) {
     qsort(sides, count, sizeof *sides, by_position);
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && compare_positions(&sides[i], &sides[end]) == 0;) end++;
-        join_position(hinges, &sides[i], end - i);
+        join_at(hinges, &sides[i], end - i);
     }
     free(sides);
     return true;

@@ -10,7 +10,7 @@
 /// crosses slides, and is left alone until it has parted.
 static const float reach_of_side = 2;
 
-static float distance(const float *a, const float *b) {
+static float initial_distance(const float *a, const float *b) {
     return sqrtf((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
@@ -25,7 +25,7 @@ static InitialTriangle position_of(const CacheFrame *frame, uint32_t triangle) {
     memcpy(&entry.sheet, &bits, sizeof entry.sheet);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) entry.at[k] += frame->rest[t[i]][k] / 3;
-        entry.reach = fmaxf(entry.reach, reach_of_side * distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+        entry.reach = fmaxf(entry.reach, reach_of_side * initial_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
     return entry;
 }
@@ -79,7 +79,7 @@ static bool is_near(const Initial *initial, const InitialTriangle *entry) {
     }
     for (; from < initial->count && initial->triangles[from].at[0] <= entry->at[0] + initial->reach; from++) {
         const InitialTriangle *other = &initial->triangles[from];
-        if (other->sheet == entry->sheet && distance(other->at, entry->at) <= other->reach) return true;
+        if (other->sheet == entry->sheet && initial_distance(other->at, entry->at) <= other->reach) return true;
     }
     return false;
 }

@@ -15,14 +15,14 @@ typedef struct Plane {
     double origin[3], e1[3], e2[3];
 } Plane;
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double rest_raster_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static void cross(const double *a, const double *b, double *c) {
+static void rest_raster_cross(const double *a, const double *b, double *c) {
     for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static bool unit(double *a) {
-    double length = sqrt(dot(a, a));
+static bool rest_raster_unit(double *a) {
+    double length = sqrt(rest_raster_dot(a, a));
     if (!(length > 0)) return false;
     for (int k = 0; k < 3; k++) a[k] /= length;
     return true;
@@ -40,7 +40,7 @@ static RestTriangle rest_triangle(const SingeSurface *surface, const uint32_t *t
         triangle.a[k] = (double)surface->rest_position[t[1]][k] - origin;
         triangle.b[k] = (double)surface->rest_position[t[2]][k] - origin;
     }
-    cross(triangle.a, triangle.b, triangle.normal);
+    rest_raster_cross(triangle.a, triangle.b, triangle.normal);
     return triangle;
 }
 
@@ -53,8 +53,8 @@ static void add_along_u(const SingeSurface *surface, const uint32_t *t, const Re
     }
     double turn = u[0] * v[1] - u[1] * v[0], d[3];
     for (int k = 0; k < 3; k++) d[k] = (v[1] * triangle->a[k] - v[0] * triangle->b[k]) * (turn < 0 ? -1 : 1);
-    if (turn == 0 || !unit(d)) return;
-    for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(dot(triangle->normal, triangle->normal));
+    if (turn == 0 || !rest_raster_unit(d)) return;
+    for (int k = 0; k < 3; k++) along[k] += d[k] * sqrt(rest_raster_dot(triangle->normal, triangle->normal));
 }
 
 /// Axes of the sheet's plane, turned; the origin is left at a point of the sheet.
@@ -68,15 +68,15 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
         add_along_u(surface, t, &triangle, along);
         for (int k = 0; k < 3; k++) plane->origin[k] = (double)surface->rest_position[t[0]][k];
     }
-    if (!unit(normal)) return false;
-    double lift = dot(along, normal);
+    if (!rest_raster_unit(normal)) return false;
+    double lift = rest_raster_dot(along, normal);
     for (int k = 0; k < 3; k++) along[k] -= lift * normal[k];
-    if (!unit(along)) { // no uv: the axis of space that lies flattest
+    if (!rest_raster_unit(along)) { // no uv: the axis of space that lies flattest
         int axis = fabs(normal[0]) < 0.9 ? 0 : 1;
         for (int k = 0; k < 3; k++) along[k] = (k == axis) - normal[axis] * normal[k];
-        unit(along);
+        rest_raster_unit(along);
     }
-    cross(normal, along, across);
+    rest_raster_cross(normal, along, across);
     for (int k = 0; k < 3; k++) {
         plane->e1[k] = cos(turned) * along[k] + sin(turned) * across[k];
         plane->e2[k] = cos(turned) * across[k] - sin(turned) * along[k];
@@ -84,10 +84,10 @@ static bool find_plane(const SingeSurface *surface, int32_t sheet, Plane *plane)
     return true;
 }
 
-static void position(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
+static void rest_raster_position(const SingeSurface *surface, const Plane *plane, uint32_t v, double *x, double *y) {
     double d[3];
     for (int k = 0; k < 3; k++) d[k] = (double)surface->rest_position[v][k] - plane->origin[k];
-    *x = dot(d, plane->e1), *y = dot(d, plane->e2);
+    *x = rest_raster_dot(d, plane->e1), *y = rest_raster_dot(d, plane->e2);
 }
 
 /// Moves the origin to the lower corner of what the sheet covers and sets the size.
@@ -95,7 +95,7 @@ static void fit(const SingeSurface *surface, int32_t sheet, double spacing, Plan
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, at[2];
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         if (surface->sheet[v] != sheet) continue;
-        position(surface, plane, v, &at[0], &at[1]);
+        rest_raster_position(surface, plane, v, &at[0], &at[1]);
         for (int k = 0; k < 2; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
     }
     double side = fmax(high[0] - low[0], high[1] - low[1]);
@@ -113,7 +113,7 @@ static void set_pixel(const SingeSurface *surface, const uint32_t *t, const doub
         burn += weight[i] * (double)surface->burn[t[i]];
         unlit += weight[i] * (surface->time_ignited[t[i]] < 0);
     }
-    if (!unit(normal)) return;
+    if (!rest_raster_unit(normal)) return;
     for (int k = 0; k < 3; k++) raster->normal[k][p] = (float)normal[k];
     raster->cover[p] = 1, raster->burn[p] = (float)burn, raster->unlit[p] = unlit > 0.99;
 }
@@ -121,7 +121,7 @@ static void set_pixel(const SingeSurface *surface, const uint32_t *t, const doub
 static void fill_triangle(const SingeSurface *surface, const Plane *plane, const uint32_t *t, RestRaster *raster) {
     double x[3], y[3];
     for (int i = 0; i < 3; i++) {
-        position(surface, plane, t[i], &x[i], &y[i]);
+        rest_raster_position(surface, plane, t[i], &x[i], &y[i]);
         x[i] /= raster->spacing, y[i] /= raster->spacing;
     }
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -165,7 +165,7 @@ void rest_raster_free(RestRaster *raster) {
 enum { REACH_MAX = 64 };
 
 /// One pass along rows (step 1) or columns (step width) of `count` lines of `length` pixels.
-static void blur(const float *from, float *to, int lines, int line_step, int length, int step, const float *kernel,
+static void rest_raster_blur(const float *from, float *to, int lines, int line_step, int length, int step, const float *kernel,
                  int reach) {
     for (int line = 0; line < lines; line++)
         for (int i = 0; i < length; i++) {
@@ -191,10 +191,10 @@ void rest_raster_smooth(const RestRaster *raster, const float *field, double dev
     for (int k = 1; k <= reach; k++) total += 2 * exp(-0.5 * k * k / (pixel * pixel));
     for (int k = 0; k <= reach; k++) kernel[k] = (float)(exp(-0.5 * k * k / (pixel * pixel)) / total);
     for (size_t p = 0; p < pixels; p++) covered[p] = field[p] * raster->cover[p];
-    blur(covered, scratch, height, width, width, 1, kernel, reach);
-    blur(scratch, smooth, width, 1, height, width, kernel, reach);
-    blur(raster->cover, scratch, height, width, width, 1, kernel, reach);
-    blur(scratch, weight, width, 1, height, width, kernel, reach);
+    rest_raster_blur(covered, scratch, height, width, width, 1, kernel, reach);
+    rest_raster_blur(scratch, smooth, width, 1, height, width, kernel, reach);
+    rest_raster_blur(raster->cover, scratch, height, width, width, 1, kernel, reach);
+    rest_raster_blur(scratch, weight, width, 1, height, width, kernel, reach);
     for (size_t p = 0; p < pixels; p++) smooth[p] = weight[p] > 0 ? smooth[p] / weight[p] : 0;
 }
 

@@ -22,14 +22,14 @@ enum { SAMPLES_A_SIDE_MAX = 64 };
 
 // ---- vectors
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double rim_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static void cross(const double *a, const double *b, double *c) {
+static void rim_cross(const double *a, const double *b, double *c) {
     for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static bool unit(double *a) {
-    double length = sqrt(dot(a, a));
+static bool rim_unit(double *a) {
+    double length = sqrt(rim_dot(a, a));
     if (!(length > 0)) return false;
     for (int k = 0; k < 3; k++) a[k] /= length;
     return true;
@@ -42,17 +42,17 @@ static void twice_area(float (*position)[3], const uint32_t *t, double *normal) 
         a[k] = (double)position[t[1]][k] - (double)position[t[0]][k];
         b[k] = (double)position[t[2]][k] - (double)position[t[0]][k];
     }
-    cross(a, b, normal);
+    rim_cross(a, b, normal);
 }
 
 static double area_of(float (*position)[3], const uint32_t *t) {
     double normal[3];
     twice_area(position, t, normal);
-    return 0.5 * sqrt(dot(normal, normal));
+    return 0.5 * sqrt(rim_dot(normal, normal));
 }
 
 static double degrees_between(const double *a, const double *b) {
-    double c = dot(a, b);
+    double c = rim_dot(a, b);
     return acos(c < -1 ? -1 : c > 1 ? 1 : c) * 180 / acos(-1);
 }
 
@@ -113,7 +113,7 @@ static bool find_plane(Piece *piece) {
         total += area;
     }
     for (int k = 0; k < 3 && total > 0; k++) piece->origin[k] /= total;
-    return total > 0 && unit(piece->normal);
+    return total > 0 && rim_unit(piece->normal);
 }
 
 // ---- samples
@@ -205,7 +205,7 @@ static bool sample_at(const SingeSurface *surface, const uint32_t *t, const doub
             sample->normal[k] += weight[i] * (double)surface->normal[t[i]][k];
         }
     }
-    return unit(sample->normal);
+    return rim_unit(sample->normal);
 }
 
 /// Cuts a triangle into n by n like itself, and takes the centre of each.
@@ -230,7 +230,7 @@ static void add_curl(Work *work) {
     for (size_t i = 0; i < work->inland_count; i++) {
         const Inland *inland = &work->inland[i];
         const double *normal = work->points.normal[inland->nearest];
-        if (!(dot(normal, normal) > 0)) continue;
+        if (!(rim_dot(normal, normal) > 0)) continue;
         double angle = degrees_between(inland->normal, normal);
         work->rim->curl[angle_bin(angle)] += inland->area;
         work->rim->curl_max = fmax(work->rim->curl_max, angle);

@@ -15,7 +15,7 @@ static const float burnt_min = 0.4f;
 
 enum { GRID_SIDE_MAX = 128 };
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double rim_points_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // ---- open edges
 
@@ -113,7 +113,7 @@ static int steps_along(const SingeSurface *surface, const Edge *edge) {
     return steps < 1 ? 1 : steps > 1000 ? 1000 : (int)steps;
 }
 
-static void position_points(const SingeSurface *surface, const Edge *edges, size_t count, RimPoints *points) {
+static void fill_points(const SingeSurface *surface, const Edge *edges, size_t count, RimPoints *points) {
     for (size_t e = 0; e < count; e++) {
         const int steps = steps_along(surface, &edges[e]);
         for (int i = 0; i < steps; i++, points->count++)
@@ -177,7 +177,7 @@ bool rim_points_make(const SingeSurface *surface, int32_t piece, RimPoints *poin
         points->near = calloc(count, sizeof *points->near);
         points->normal = calloc(count, sizeof *points->normal);
         good = points->position && points->near && points->normal;
-        if (good) position_points(surface, edges, edge_count, points);
+        if (good) fill_points(surface, edges, edge_count, points);
         good = good && sort_points(points);
     }
     free(edges);
@@ -201,7 +201,7 @@ static void look_at_ring(const RimPoints *points, const double *position, const 
                 size_t c = cell_at(points, at);
                 for (uint32_t i = points->first[c]; i < points->first[c + 1]; i++) {
                     const double *point = points->position[points->order[i]];
-                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]}, found = dot(d, d);
+                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]}, found = rim_points_dot(d, d);
                     if (found < *square) *square = found, *nearest = points->order[i];
                 }
             }
@@ -232,7 +232,7 @@ static void add_near(RimPoints *points, size_t p, size_t cell, double reach) {
     for (uint32_t i = points->first[cell]; i < points->first[cell + 1]; i++) {
         const double *at = points->position[p], *other = points->position[points->order[i]];
         double d[3] = {other[0] - at[0], other[1] - at[1], other[2] - at[2]};
-        if (dot(d, d) > reach * reach) continue;
+        if (rim_points_dot(d, d) > reach * reach) continue;
         for (int k = 0; k < 3; k++) points->normal[p][k] += points->near[points->order[i]][k];
     }
 }
@@ -249,7 +249,7 @@ void rim_points_normals(RimPoints *points, double reach) {
         for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
             for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
                 for (at[0] = low[0]; at[0] <= high[0]; at[0]++) add_near(points, p, cell_at(points, at), reach);
-        double length = sqrt(dot(points->normal[p], points->normal[p]));
+        double length = sqrt(rim_points_dot(points->normal[p], points->normal[p]));
         for (int k = 0; k < 3 && length > 0; k++) points->normal[p][k] /= length;
     }
 }

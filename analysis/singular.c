@@ -12,15 +12,15 @@
 
 enum { SWEEPS = 60 };
 
-static double dot(const double *a, const double *b, size_t n) {
+static double singular_dot(const double *a, const double *b, size_t n) {
     double sum = 0;
     for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
     return sum;
 }
 
 /// True when they were not orthogonal.
-static bool turn(double *a, double *b, size_t n, double floor) {
-    double p = dot(a, a, n), q = dot(b, b, n), r = dot(a, b, n);
+static bool singular_turn(double *a, double *b, size_t n, double floor) {
+    double p = singular_dot(a, a, n), q = singular_dot(b, b, n), r = singular_dot(a, b, n);
     if (fabs(r) <= 1e-15 * sqrt(p * q) || (p <= floor && q <= floor)) return false;
     double z = (q - p) / (2 * r), t = copysign(1, z) / (fabs(z) + sqrt(1 + z * z));
     double c = 1 / sqrt(1 + t * t), s = c * t;
@@ -50,9 +50,9 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
         turned = false;
         for (size_t i = 0; i + 1 < count; i++)
             for (size_t j = i + 1; j < count; j++)
-                if (turn(vectors + i * length, vectors + j * length, length, floor)) turned = true;
+                if (singular_turn(vectors + i * length, vectors + j * length, length, floor)) turned = true;
     }
-    for (size_t i = 0; i < count; i++) values[i] = sqrt(dot(vectors + i * length, vectors + i * length, length));
+    for (size_t i = 0; i < count; i++) values[i] = sqrt(singular_dot(vectors + i * length, vectors + i * length, length));
     qsort(values, count, sizeof *values, descending);
     free(vectors);
     return 0;

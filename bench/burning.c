@@ -19,7 +19,7 @@ static SingeResult add_colliders(SingeSim *sim) {
     return singe_sim_add_collider(sim, &sphere, &id);
 }
 
-static SingeResult fill(SingeSim *sim, const BenchOptions *options, double springs) {
+static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, double springs) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId sheet_id;
     sheet.material.mass_rate.field = SINGE_FIELD_NOISE;
@@ -54,7 +54,7 @@ SingeResult burning_build(const BenchOptions *options, const SingeAllocator *all
     if (allocator) def.allocator = *allocator;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = fill(*sim, options, springs);
+    result = burning_fill(*sim, options, springs);
     if (!result) return SINGE_OK;
     *error = *singe_sim_error(*sim);
     error->code = result;

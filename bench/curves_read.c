@@ -23,7 +23,7 @@ void curves_add_paper(Curves *curves) {
 enum { COLUMNS_MAX = 64, LINE_MAX_LENGTH = 4096 };
 
 /// Splits a line at its commas, in place. Quotes are not known: the tables need none.
-static int split(char *line, char **fields) {
+static int curves_read_split(char *line, char **fields) {
     int count = 0;
     line[strcspn(line, "\r\n")] = 0;
     while (count < COLUMNS_MAX) {
@@ -35,13 +35,13 @@ static int split(char *line, char **fields) {
     return count;
 }
 
-static int find(char **fields, int count, const char *name) {
+static int curves_read_find(char **fields, int count, const char *name) {
     for (int i = 0; i < count; i++)
         if (strcmp(fields[i], name) == 0) return i;
     return -1;
 }
 
-static SingeResult fail(SingeError *error, SingeResult code, const char *path, int line, const char *what) {
+static SingeResult curves_read_fail(SingeError *error, SingeResult code, const char *path, int line, const char *what) {
     *error = (SingeError){.code = code, .element = line};
     if (line > 0) snprintf(error->message, sizeof error->message, "%s:%d: %s", path, line, what);
     else snprintf(error->message, sizeof error->message, "%s: %s", path, what);
@@ -79,14 +79,14 @@ static SingeResult read_row(Curves *curves, int first, char **fields, int count,
                             int line, SingeError *error) {
     char *springs_end, *ms_end, name[80];
     if (columns->springs >= count || columns->ms >= count || columns->solver >= count || columns->threads >= count)
-        return fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
+        return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
     double springs = strtod(fields[columns->springs], &springs_end), ms = strtod(fields[columns->ms], &ms_end);
     if (*springs_end || *ms_end || !(springs > 0) || !(ms > 0) || !isfinite(springs) || !isfinite(ms))
-        return fail(error, SINGE_ERROR_FORMAT, path, line, "springs and step_ms must be numbers above 0");
+        return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "springs and step_ms must be numbers above 0");
     name_curve(name, sizeof name, fields, columns, path);
     Curve *curve = curve_named(curves, first, name);
     if (!curve || curve->count == CURVE_POINTS_MAX)
-        return fail(error, SINGE_ERROR_LIMIT, path, line, "more curves or points than can be drawn");
+        return curves_read_fail(error, SINGE_ERROR_LIMIT, path, line, "more curves or points than can be drawn");
     curve->springs[curve->count] = springs, curve->ms[curve->count++] = ms;
     return SINGE_OK;
 }
@@ -97,25 +97,25 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
     const int first = curves->count;
     for (int line = 1; fgets(text, sizeof text, file); line++) {
         if (text[0] == '#' || text[0] == '\n') continue;
-        int count = split(text, fields);
+        int count = curves_read_split(text, fields);
         if (columns.springs >= 0) {
             SingeResult result = read_row(curves, first, fields, count, &columns, path, line, error);
             if (result) return result;
             continue;
         }
-        columns = (Columns){find(fields, count, "springs"), find(fields, count, "step_ms"), find(fields, count, "solver"),
-                        find(fields, count, "threads")};
+        columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"), curves_read_find(fields, count, "solver"),
+                        curves_read_find(fields, count, "threads")};
         if (columns.springs < 0 || columns.ms < 0)
-            return fail(error, SINGE_ERROR_FORMAT, path, line, "needs columns springs and step_ms");
+            return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "needs columns springs and step_ms");
     }
-    return curves->count > first ? SINGE_OK : fail(error, SINGE_ERROR_FORMAT, path, 0, "holds no rows");
+    return curves->count > first ? SINGE_OK : curves_read_fail(error, SINGE_ERROR_FORMAT, path, 0, "holds no rows");
 }
 
 SingeResult curves_read(Curves *curves, const char *path, SingeError *error) {
     FILE *file = fopen(path, "r");
-    if (!file) return fail(error, SINGE_ERROR_FORMAT, path, 0, strerror(errno));
+    if (!file) return curves_read_fail(error, SINGE_ERROR_FORMAT, path, 0, strerror(errno));
     SingeResult result = read_lines(curves, file, path, error);
-    if (!result && ferror(file)) result = fail(error, SINGE_ERROR_FORMAT, path, 0, "cannot be read");
+    if (!result && ferror(file)) result = curves_read_fail(error, SINGE_ERROR_FORMAT, path, 0, "cannot be read");
     fclose(file);
     return result;
 }

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-static double distance(const float *a, const float *b) {
+static double geometry_distance(const float *a, const float *b) {
     double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
     return sqrt(x * x + y * y + z * z);
 }
@@ -97,9 +97,9 @@ double geometry_inverted(const SingeView *view) {
 double geometry_reach(const SingeView *view, const float *position) {
     double max = 0;
     for (uint32_t i = 0; i < view->vertex_count; i++) {
-        double rest = distance(view->rest_position[i], position);
+        double rest = geometry_distance(view->rest_position[i], position);
         if (rest < 0.2) continue;
-        double ratio = distance(view->position[i], position) / rest;
+        double ratio = geometry_distance(view->position[i], position) / rest;
         if (!(ratio <= max)) max = ratio; // NaN stays
     }
     return max;

@@ -92,7 +92,7 @@ static SingeResult pins_add(SingeSim *sim, const BenchSetup *setup, SingeSheetId
     return SINGE_OK;
 }
 
-static SingeResult fill(SingeSim *sim, const BenchSetup *setup) {
+static SingeResult hung_sheet_fill(SingeSim *sim, const BenchSetup *setup) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
     sheet_inert(&sheet.material);
@@ -120,7 +120,7 @@ SingeResult sheet_build(const BenchSetup *setup, SingeSim **sim, SingeError *err
     def.solver = setup->solver;
     SingeResult result = singe_sim_create(&def, sim, error);
     if (result) return result;
-    result = fill(*sim, setup);
+    result = hung_sheet_fill(*sim, setup);
     if (!result) return SINGE_OK;
     *error = *singe_sim_error(*sim);
     error->code = result;

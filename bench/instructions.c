@@ -33,7 +33,7 @@ static SingeResult add_sheet(SingeSim *sim, SingeSheetId *id) {
     return singe_sim_add_sheet(sim, &def, id);
 }
 
-static SingeResult build(SingeSim *sim) {
+static SingeResult instructions_build(SingeSim *sim) {
     SingeSheetId sheet;
     TRY(add_sheet(sim, &sheet));
     TRY(singe_sim_commit(sim));
@@ -80,7 +80,7 @@ int main(void) {
         fprintf(stderr, "singe_bench_instructions: %s\n", error.message);
         return 1;
     }
-    SingeResult result = build(sim);
+    SingeResult result = instructions_build(sim);
     if (!result) result = steps(sim);
     SingeStats stats = singe_sim_stats(sim);
     if (result) fprintf(stderr, "singe_bench_instructions: %s\n", singe_sim_error(sim)->message);

@@ -49,7 +49,7 @@ typedef struct Comparison {
 
 static const char *state_name(BenchState state) { return state == BENCH_SWING ? "swing" : "shrink"; }
 
-static SingeResult follow(const Comparison *c, const BenchSetup *setup, int frames, double budget, Outcome *outcome) {
+static SingeResult compare_follow(const Comparison *c, const BenchSetup *setup, int frames, double budget, Outcome *outcome) {
     Trajectory *t = trajectory_run(setup, frames, STEPS, budget, c->error);
     if (!t) return c->error->code;
     *outcome = (Outcome){.frames = t->frames, .step_ms = t->dynamics_ms / STEPS, .fall = t->fall_end};
@@ -73,7 +73,7 @@ static const char *verdict(const Outcome *ours, const Outcome *paper) {
     return edges && all ? "edges and all" : edges ? "edges" : all ? "all" : "no";
 }
 
-static SingeResult add(const Comparison *c, const BenchSetup *setup, double springs, const Outcome *outcome,
+static SingeResult compare_add(const Comparison *c, const BenchSetup *setup, double springs, const Outcome *outcome,
                        const Outcome *paper) {
     const SingeSolverDef *solver = &setup->solver;
     BenchValue row[COLUMNS] = {
@@ -108,14 +108,14 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
     static const int substeps[] = {1, 2, 3, 6, 12, 24};
     BenchSetup setup = method_setup(c, state, springs, SINGE_SOLVER_PAPER);
     Outcome paper, ours;
-    SingeResult result = follow(c, &setup, c->frames, c->budget, &paper);
-    if (!result) result = add(c, &setup, springs, &paper, &paper);
+    SingeResult result = compare_follow(c, &setup, c->frames, c->budget, &paper);
+    if (!result) result = compare_add(c, &setup, springs, &paper, &paper);
     double best_edges = 0, best_all = 0;
     setup = method_setup(c, state, springs, SINGE_SOLVER_STRAND);
     for (size_t i = 0; i < sizeof substeps / sizeof *substeps && !result; i++) {
         setup.solver.substeps = substeps[i];
-        result = follow(c, &setup, paper.frames, INFINITY, &ours);
-        if (!result) result = add(c, &setup, springs, &ours, &paper);
+        result = compare_follow(c, &setup, paper.frames, INFINITY, &ours);
+        if (!result) result = compare_add(c, &setup, springs, &ours, &paper);
         if (!result && no_more(&ours.blue, &paper.blue)) best_edges = fmax(best_edges, paper.step_ms / ours.step_ms);
         if (!result && no_more(&ours.all, &paper.all)) best_all = fmax(best_all, paper.step_ms / ours.step_ms);
     }

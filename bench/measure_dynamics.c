@@ -74,7 +74,7 @@ static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Pea
     return added ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-static SingeResult measure(const BenchOptions *options, BenchSetup *setup, double springs, const Peaks *peaks,
+static SingeResult dynamics_measure(const BenchOptions *options, BenchSetup *setup, double springs, const Peaks *peaks,
                            BenchTable *table, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
@@ -99,6 +99,6 @@ SingeResult bench_dynamics(const BenchOptions *options, BenchTable *table, Singe
     peaks_tell(&peaks, table);
     SingeResult result = SINGE_OK;
     for (int i = 0; i < springs.count && !result; i++)
-        result = measure(options, &setup, springs.values[i], &peaks, table, error);
+        result = dynamics_measure(options, &setup, springs.values[i], &peaks, table, error);
     return result;
 }

@@ -88,7 +88,7 @@ static SingeResult run_steps(SingeSim *sim, Fold *fold, double seconds) {
     return result;
 }
 
-static SingeResult fill(SingeSim *sim, Fold *fold) {
+static SingeResult fold_fill(SingeSim *sim, Fold *fold) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
     SingePinId left, right;
@@ -114,7 +114,7 @@ static SingeResult fill(SingeSim *sim, Fold *fold) {
     return SINGE_OK;
 }
 
-static SingeResult run(const BenchOptions *options, Fold *fold, bool creases, SingeError *error) {
+static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool creases, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     SingeSim *sim;
     def.thread_count = options->threads, def.instructions = options->instructions;
@@ -125,7 +125,7 @@ static SingeResult run(const BenchOptions *options, Fold *fold, bool creases, Si
     fold->inverted = 0;
     SingeResult result = singe_sim_create(&def, &sim, error);
     if (result) return result;
-    result = fill(sim, fold);
+    result = fold_fill(sim, fold);
     if (result) *error = *singe_sim_error(sim), error->code = result;
     singe_sim_destroy(sim);
     return result;
@@ -147,9 +147,9 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
         if (options->quick && setting == 3) continue;
         Fold fold = {.angle = (towards ? 1 : -1) * bends[bend] * pi / 180, .cell = cells[setting],
                      .step = 1 / steps[setting]};
-        result = run(options, &fold, false, error);
+        result = fold_run(options, &fold, false, error);
         double elastic = fold.left;
-        if (!result) result = run(options, &fold, true, error);
+        if (!result) result = fold_run(options, &fold, true, error);
         BenchValue row[COLUMNS] = {
             [SIDE] = bench_text(towards ? "centres" : "corners"), [BENT] = bench_number(bends[bend]),
             [CELL] = bench_number(1e3 * fold.cell),               [STEP] = bench_number(1e3 * fold.step),

@@ -125,7 +125,7 @@ static SingeResult add_solids(SingeSim *sim, bool closed) {
     return result ? result : singe_sim_add_collider(sim, &def, &id);
 }
 
-static SingeResult build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
+static SingeResult heap_build(const BenchOptions *options, int cells, bool closed, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads;
     def.contact.enabled = true;
@@ -142,7 +142,7 @@ static SingeResult build(const BenchOptions *options, int cells, bool closed, Si
     return result;
 }
 
-static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
+static void heap_fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
                  int frames) {
     SingeTimers t = singe_sim_timers(sim);
     SingeCounts counts = singe_sim_counts(sim);
@@ -173,12 +173,12 @@ static void fill(BenchValue *row, const BenchOptions *options, const SingeSim *s
     row[SPEED] = bench_number(stats.speed_rms_unburnt);
 }
 
-static SingeResult measure(const BenchOptions *options, int cells, bool closed, BenchTable *table, SingeError *error) {
+static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table, SingeError *error) {
     SingeSim *sim;
     double frame_ms[ROOM];
     double time = options->time > 0 ? options->time : closed ? collapse_seconds : seconds;
     int frames = (int)fmin(ROOM, fmax(1, 24 * time));
-    if (build(options, cells, closed, &sim, error)) return error->code;
+    if (heap_build(options, cells, closed, &sim, error)) return error->code;
     SingeResult result = SINGE_OK;
     for (int f = 0; f < frames && !result; f++) {
         double begun = machine_clock();
@@ -187,7 +187,7 @@ static SingeResult measure(const BenchOptions *options, int cells, bool closed, 
     }
     BenchValue row[COLUMNS] = {0};
     if (result) *error = *singe_sim_error(sim);
-    else fill(row, options, sim, cells, frame_ms, frames);
+    else heap_fill(row, options, sim, cells, frame_ms, frames);
     if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     singe_sim_destroy(sim);
     return result;
@@ -198,7 +198,7 @@ SingeResult bench_heap(const BenchOptions *options, BenchTable *table, SingeErro
     SingeResult result = SINGE_OK;
     *table = table_begin("heap", columns, COLUMNS, table->text);
     for (int i = 0; i < cells.count && !result; i++)
-        result = measure(options, (int)cells.values[i], false, table, error);
+        result = heap_measure(options, (int)cells.values[i], false, table, error);
     return result;
 }
 
@@ -207,6 +207,6 @@ SingeResult bench_collapse(const BenchOptions *options, BenchTable *table, Singe
     SingeResult result = SINGE_OK;
     *table = table_begin("collapse", columns, COLUMNS, table->text);
     for (int i = 0; i < cells.count && !result; i++)
-        result = measure(options, (int)cells.values[i], true, table, error);
+        result = heap_measure(options, (int)cells.values[i], true, table, error);
     return result;
 }

@@ -52,7 +52,7 @@ static const Setting settings[] = {
     {"base", 1, 1, 1}, {"h x 2", 2, 1, 1}, {"h / 2", 0.5, 1, 1}, {"substeps x 2", 1, 2, 1}, {"s / 2", 1, 1, 2},
 };
 
-static SingeResult settle(const BenchSetup *setup, double seconds, SingeSim **sim, SingeError *error) {
+static SingeResult look_settle(const BenchSetup *setup, double seconds, SingeSim **sim, SingeError *error) {
     SingeResult result = sheet_build(setup, sim, error);
     for (double t = 0; !result && t < seconds; t += (double)setup->time_step) {
         result = singe_sim_step(*sim);
@@ -128,13 +128,13 @@ static void read_wrinkles(Look *look, const SingeView *view, int cells, double l
     look->height = sqrt(square);
 }
 
-static SingeResult observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
+static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
                            SingeError *error) {
     SingeSim *sim = NULL;
     double seconds = options->time > 0 ? options->time : options->quick ? 0.5 : 3;
     setup.state = state;
     setup.approach = state == BENCH_HANG ? 0.1f : 0;
-    SingeResult result = settle(&setup, seconds, &sim, error);
+    SingeResult result = look_settle(&setup, seconds, &sim, error);
     if (!result) {
         SingeView view = singe_sim_view(sim);
         if (state == BENCH_HANG) read_rest(look, &view, setup.cells, 0.5); // an upright sheet of 1 m
@@ -185,8 +185,8 @@ SingeResult bench_look(const BenchOptions *options, BenchTable *table, SingeErro
         setup.thickness = (float)thickness.values[0], setup.damping = 3;
         setup.time_step *= (float)setting->step;
         setup.solver.substeps = (int)fmax(1, setup.solver.substeps * setting->substeps);
-        result = observe(options, setup, BENCH_HANG, &looks[i], error);
-        if (!result) result = observe(options, setup, BENCH_SHRINK, &looks[i], error);
+        result = look_observe(options, setup, BENCH_HANG, &looks[i], error);
+        if (!result) result = look_observe(options, setup, BENCH_SHRINK, &looks[i], error);
         if (!result && !add_row(table, setting->name, &looks[i], &looks[0])) result = SINGE_ERROR_MEMORY;
     }
     free(looks);

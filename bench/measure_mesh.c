@@ -56,7 +56,7 @@ static void plane_free(Plane *plane) {
     free(plane->twin);
 }
 
-static void position_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
+static void plane_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
     for (uint32_t j = 0; j <= n; j++)
         for (uint32_t i = 0; i <= n; i++) {
             float x = (float)i, y = (float)j, *p = plane->position[j * (n + 1) + i];
@@ -69,7 +69,7 @@ static void position_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t
         }
 }
 
-static void position_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
+static void plane_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
     for (uint32_t c = 0; c < n * n; c++) {
         uint32_t i = c % n, j = c / n, at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1,
                                                (j + 1) * (n + 1) + i};
@@ -84,8 +84,8 @@ static void position_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_
 
 // ---- Delaunay triangles by flips (Lawson 1977)
 
-static uint32_t next3(uint32_t h) { return h - h % 3 + (h + 1) % 3; }
-static uint32_t last3(uint32_t h) { return h - h % 3 + (h + 2) % 3; }
+static uint32_t mesh_next3(uint32_t h) { return h - h % 3 + (h + 1) % 3; }
+static uint32_t mesh_last3(uint32_t h) { return h - h % 3 + (h + 2) % 3; }
 static uint32_t *corner_of(Plane *plane, uint32_t h) { return &plane->corner[h / 3][h % 3]; }
 
 static int compare_sides(const void *a, const void *b) { return memcmp(a, b, 2 * sizeof(uint32_t)); }
@@ -95,7 +95,7 @@ static bool find_twins(Plane *plane) {
     uint32_t (*side)[3] = malloc(sides * sizeof *side);
     if (!side) return false;
     for (uint32_t h = 0; h < sides; h++) {
-        uint32_t a = *corner_of(plane, h), b = *corner_of(plane, next3(h));
+        uint32_t a = *corner_of(plane, h), b = *corner_of(plane, mesh_next3(h));
         side[h][0] = a < b ? a : b, side[h][1] = a < b ? b : a, side[h][2] = h;
         plane->twin[h] = UINT32_MAX;
     }
@@ -119,7 +119,7 @@ static bool in_circle(const float *a, const float *b, const float *c, const floa
                m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) > 1e-18;
 }
 
-static void join(Plane *plane, uint32_t h, uint32_t twin) {
+static void mesh_join_halves(Plane *plane, uint32_t h, uint32_t twin) {
     plane->twin[h] = twin;
     if (twin != UINT32_MAX) plane->twin[twin] = h;
 }
@@ -127,16 +127,16 @@ static void join(Plane *plane, uint32_t h, uint32_t twin) {
 static bool flip(Plane *plane, uint32_t h) {
     uint32_t g = plane->twin[h];
     if (g == UINT32_MAX || g < h) return false;
-    uint32_t a = *corner_of(plane, h), b = *corner_of(plane, next3(h)), c = *corner_of(plane, last3(h));
-    uint32_t d = *corner_of(plane, last3(g)), t = 3 * (h / 3), s = 3 * (g / 3);
+    uint32_t a = *corner_of(plane, h), b = *corner_of(plane, mesh_next3(h)), c = *corner_of(plane, mesh_last3(h));
+    uint32_t d = *corner_of(plane, mesh_last3(g)), t = 3 * (h / 3), s = 3 * (g / 3);
     if (!in_circle(plane->position[a], plane->position[b], plane->position[c], plane->position[d])) return false;
-    const uint32_t outer[4] = {plane->twin[last3(h)], plane->twin[next3(g)], plane->twin[last3(g)],
-                               plane->twin[next3(h)]};
+    const uint32_t outer[4] = {plane->twin[mesh_last3(h)], plane->twin[mesh_next3(g)], plane->twin[mesh_last3(g)],
+                               plane->twin[mesh_next3(h)]};
     const uint32_t first[3] = {c, a, d}, second[3] = {d, b, c};
     memcpy(plane->corner[t / 3], first, sizeof first);
     memcpy(plane->corner[s / 3], second, sizeof second);
-    join(plane, t, outer[0]), join(plane, t + 1, outer[1]), join(plane, s, outer[2]), join(plane, s + 1, outer[3]);
-    join(plane, t + 2, s + 2);
+    mesh_join_halves(plane, t, outer[0]), mesh_join_halves(plane, t + 1, outer[1]), mesh_join_halves(plane, s, outer[2]), mesh_join_halves(plane, s + 1, outer[3]);
+    mesh_join_halves(plane, t + 2, s + 2);
     return true;
 }
 
@@ -182,8 +182,8 @@ static bool plane_make(Triangles kind, uint32_t n, Plane *plane) {
     plane->corner = malloc(plane->triangle_count * sizeof *plane->corner);
     plane->twin = malloc(3 * (size_t)plane->triangle_count * sizeof *plane->twin);
     if (!plane->position || !plane->corner || !plane->twin) return false;
-    position_vertices(plane, kind, n, &state);
-    position_triangles(plane, kind, n, &state);
+    plane_vertices(plane, kind, n, &state);
+    plane_triangles(plane, kind, n, &state);
     if (kind == SHUFFLED) return shuffle(plane, &state);
     return kind != DELAUNAY || make_delaunay(plane);
 }
@@ -244,7 +244,7 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, 
     return table_add(table, row);
 }
 
-static SingeResult measure(BenchSetup setup, Triangles kind, MeshQuads quads, int frames, BenchTable *table,
+static SingeResult mesh_measure(BenchSetup setup, Triangles kind, MeshQuads quads, int frames, BenchTable *table,
                            SingeError *error) {
     Plane plane;
     Mesh mesh = {0};
@@ -280,9 +280,9 @@ SingeResult bench_mesh(const BenchOptions *options, BenchTable *table, SingeErro
     for (int c = 0; c < cells.count && !result; c++) {
         setup.cells = (int)cells.values[c];
         for (int kind = 0; kind < TRIANGLES && !result; kind++)
-            result = measure(setup, (Triangles)kind, MESH_QUADS_PAIR, frames, table, error);
+            result = mesh_measure(setup, (Triangles)kind, MESH_QUADS_PAIR, frames, table, error);
         for (int kind = EQUILATERAL; kind < TRIANGLES && !result && !options->quick; kind++)
-            result = measure(setup, (Triangles)kind, MESH_QUADS_SPLIT, frames, table, error);
+            result = mesh_measure(setup, (Triangles)kind, MESH_QUADS_SPLIT, frames, table, error);
     }
     return result;
 }

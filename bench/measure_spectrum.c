@@ -200,7 +200,7 @@ static void read_lines(const SingeView *view, const Strip *strip, Spectrum *spec
         if (read_line(view, strip, z, line)) add_line(spectrum, line);
 }
 
-static SingeResult observe(const BenchOptions *options, int setting, uint32_t seed, Spectrum *spectrum,
+static SingeResult spectrum_observe(const BenchOptions *options, int setting, uint32_t seed, Spectrum *spectrum,
                            SingeError *error) {
     const double cells = settings[setting].cells, step = settings[setting].step;
     const Strip strip = {(int)(ACROSS * cells), (int)(UP * cells), width / (ACROSS * cells)};
@@ -236,7 +236,7 @@ static double centre(const Spectrum *spectrum, double exponent) {
 
 static double peak(const Spectrum *spectrum) { return centre(spectrum, 2); }
 
-static void tell(BenchTable *table, const Spectrum *spectra) {
+static void spectrum_tell(BenchTable *table, const Spectrum *spectra) {
     const double base = peak(&spectra[0]), degrees = 180 / acos(-1);
     for (int i = 0; i < SETTINGS; i++) {
         table_fact(table, settings[i].peak, 1e3 * peak(&spectra[i]));
@@ -246,7 +246,7 @@ static void tell(BenchTable *table, const Spectrum *spectra) {
     }
 }
 
-static SingeResult fill(BenchTable *table, const Spectrum *spectra) {
+static SingeResult spectrum_fill(BenchTable *table, const Spectrum *spectra) {
     for (int band = 0; band < BANDS; band++) {
         BenchValue row[COLUMNS] = {[WAVE] = bench_number(1e3 * band_wave(band))};
         for (int i = 0; i < SETTINGS; i++) {
@@ -266,8 +266,8 @@ SingeResult bench_spectrum(const BenchOptions *options, BenchTable *table, Singe
     *table = table_begin("spectrum", columns, COLUMNS, table->text);
     for (int i = 0; i < SETTINGS && !result; i++)
         for (uint32_t seed = 0; seed < seeds && !result; seed++)
-            result = observe(options, i, seed, &spectra[i], error);
+            result = spectrum_observe(options, i, seed, &spectra[i], error);
     if (result) return result;
-    tell(table, spectra);
-    return fill(table, spectra);
+    spectrum_tell(table, spectra);
+    return spectrum_fill(table, spectra);
 }

@@ -63,7 +63,7 @@ typedef struct Cases {
 
 static double larger(double max, double value) { return value <= max ? max : value; } // NaN stays
 
-static void sample(Case *c, const SingeSim *sim, double energy_start, Strain *strain) {
+static void stability_sample(Case *c, const SingeSim *sim, double energy_start, Strain *strain) {
     SingeView view = singe_sim_view(sim);
     const float corners[2][3] = {{0, 0, 1}, {0, 0, 0}};
     strain_add(strain, &view, SINGE_BLUE);
@@ -73,7 +73,7 @@ static void sample(Case *c, const SingeSim *sim, double energy_start, Strain *st
     c->finite = c->finite && strain->finite && isfinite(c->speed) && isfinite(c->reach);
 }
 
-static void follow(Case *c, SingeSim *sim, Strain *strain) {
+static void stability_follow(Case *c, SingeSim *sim, Strain *strain) {
     const double h = (double)c->setup.time_step;
     const int steps = (int)ceil(c->seconds / h), every = h < 0.015 ? (int)(0.015 / h) : 1;
     SingeView view = singe_sim_view(sim);
@@ -82,7 +82,7 @@ static void follow(Case *c, SingeSim *sim, Strain *strain) {
     for (int step = 1; step <= steps && c->finite; step++) {
         if (singe_sim_step(sim)) c->finite = false;
         else c->inverted = larger(c->inverted, geometry_inverted(&view));
-        if (c->finite && (step % every == 0 || step == steps)) sample(c, sim, energy, strain);
+        if (c->finite && (step % every == 0 || step == steps)) stability_sample(c, sim, energy, strain);
     }
     view = singe_sim_view(sim);
     double shrunk = c->setup.state == BENCH_SHRINK ? (double)c->setup.shrink : 1;
@@ -91,20 +91,20 @@ static void follow(Case *c, SingeSim *sim, Strain *strain) {
     c->strain = strain_percent(strain);
 }
 
-static void run(void *context, int i) {
+static void stability_run(void *context, int i) {
     Case *c = &((Cases *)context)->list[i];
     SingeSim *sim = NULL;
     Strain *strain = malloc(sizeof *strain);
     c->failed = strain ? sheet_build(&c->setup, &sim, &c->error) : SINGE_ERROR_MEMORY;
     if (!c->failed) {
         strain_clear(strain);
-        follow(c, sim, strain);
+        stability_follow(c, sim, strain);
     }
     singe_sim_destroy(sim);
     free(strain);
 }
 
-static const char *judge(const Case *c) {
+static const char *stability_judge(const Case *c) {
     double energy_limit = c->setup.state == BENCH_SWING ? 0.5 : 10;
     if (!c->finite) return "NaN";
     if (c->energy_gain > energy_limit || c->speed > speed_limit) return "exploded";
@@ -121,7 +121,7 @@ static void done(void *context, int i) {
         [CELLS] = bench_number(c->setup.cells),
         [RATIO] = bench_number(c->t_over_s),
         [STEP] = bench_number(1e3 * (double)c->setup.time_step),
-        [RESULT] = bench_text(judge(c)),
+        [RESULT] = bench_text(stability_judge(c)),
         [STRAIN] = bench_number(c->strain.number[0]),
         [P99] = bench_number(c->strain.number[1]),
         [SPEED] = bench_number(c->speed),
@@ -136,7 +136,7 @@ static void done(void *context, int i) {
 
 enum { CELLS_MAX = BENCH_LIST_MAX, RATIOS_MAX = 6, STEPS_MAX = 5 };
 
-static void fill(Cases *cases, const BenchOptions *options) {
+static void stability_fill(Cases *cases, const BenchOptions *options) {
     static const double all_cells[] = {20, 50, 100, 200}, all_ratios[] = {0.05, 0.2, 0.5, 0.7, 1, 2.5};
     static const double all_steps[] = {1, 2, 4, 8, 16}, few_ratios[] = {0.05, 0.7, 2.5}, few_steps[] = {4, 16};
     const bool quick = options->quick;
@@ -167,8 +167,8 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
               "speed > 100 m/s. stretched: reach > 1.5. crumpled: gyration < 0.35 of a flat sheet's, or folded > 0.25\n"
               "of the edges.\n",
               table->text);
-    fill(&cases, options);
-    workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), run, done, &cases);
+    stability_fill(&cases, options);
+    workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), stability_run, done, &cases);
     for (int i = 0; i < cases.count && !result; i++)
         if (cases.list[i].failed) result = cases.list[i].failed, *error = cases.list[i].error;
     if (!result && cases.full_table) result = SINGE_ERROR_MEMORY;

@@ -81,7 +81,7 @@ static void fill_stage(BenchValue *row, int stage, const BenchOptions *options, 
 
 /// Holds the step against the limit of the reference machine, where a slower machine has as much more time as the
 /// yardstick takes longer there.
-static SingeResult judge(const BenchOptions *options, const Timing *timing, BenchTable *table, SingeError *error) {
+static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table, SingeError *error) {
     double step = timing_median(timing, TIMED_SCALED), limit = options->limit_ms;
     double slowness = fmax(1, timing_median(timing, TIMED_YARDSTICK) / timing_yardstick_reference());
     if (limit <= 0) return SINGE_OK;
@@ -95,7 +95,7 @@ static SingeResult judge(const BenchOptions *options, const Timing *timing, Benc
 }
 
 /// `stage` is one of the stages, or TIMED_STEP for a row of them all.
-static SingeResult measure(const BenchOptions *options, int stage, double springs, Yardstick *yardstick,
+static SingeResult stages_measure(const BenchOptions *options, int stage, double springs, Yardstick *yardstick,
                            BenchTable *table, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
@@ -109,7 +109,7 @@ static SingeResult measure(const BenchOptions *options, int stage, double spring
     } else {
         if (stage == TIMED_STEP) fill_step(row, options, sim, &timing);
         else fill_stage(row, stage, options, sim, &timing);
-        result = table_add(table, row) ? judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
+        result = table_add(table, row) ? stages_judge(options, &timing, table, error) : SINGE_ERROR_MEMORY;
     }
     timing_free(&timing);
     singe_sim_destroy(sim);
@@ -127,7 +127,7 @@ SingeResult bench_step(const BenchOptions *options, BenchTable *table, SingeErro
         for (int l = 0; l < limits.count && !result; l++) {
             BenchOptions limited = *options;
             limited.curvature = (BenchList){.count = 1, .values = {limits.values[l]}};
-            result = measure(&limited, TIMED_STEP, springs.values[i], yardstick, table, error);
+            result = stages_measure(&limited, TIMED_STEP, springs.values[i], yardstick, table, error);
         }
     yardstick_destroy(yardstick);
     return result;
@@ -139,7 +139,7 @@ static SingeResult bench_stage(const char *name, int stage, const BenchOptions *
     SingeResult result = SINGE_OK;
     *table = table_begin(name, stage_columns, STAGE_COLUMNS, table->text);
     for (int i = 0; i < springs.count && !result; i++)
-        result = measure(options, stage, springs.values[i], NULL, table, error);
+        result = stages_measure(options, stage, springs.values[i], NULL, table, error);
     return result;
 }
 

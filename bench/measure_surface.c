@@ -35,7 +35,7 @@ static SingeResult time_drawings(SingeSim *sim, SingeSurface *surface, double *w
     return SINGE_OK;
 }
 
-static SingeResult measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
+static SingeResult surface_measure(const BenchOptions *options, double springs, BenchTable *table, SingeError *error) {
     SingeSim *sim;
     SingeSurface surface = {0};
     double wall = 0, cpu = 0;
@@ -72,7 +72,7 @@ SingeResult bench_surface(const BenchOptions *options, BenchTable *table, SingeE
         for (size_t k = 0; k < sizeof details / sizeof *details && !result; k++) {
             BenchOptions with = *options;
             with.detail = details[k];
-            result = measure(&with, springs.values[i], table, error);
+            result = surface_measure(&with, springs.values[i], table, error);
         }
     return result;
 }

@@ -63,7 +63,7 @@ static SingeResult add_absent(BenchTable *table, const BenchSetup *setup) {
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-static SingeResult measure(const BenchOptions *options, const BenchSetup *setup, BenchTable *table, Reference *plain,
+static SingeResult width_measure(const BenchOptions *options, const BenchSetup *setup, BenchTable *table, Reference *plain,
                            SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
@@ -90,7 +90,7 @@ SingeResult bench_width(const BenchOptions *options, BenchTable *table, SingeErr
         setup.cells = options_cells(springs.values[i]);
         for (int set = SINGE_INSTRUCTIONS_PLAIN; set <= SINGE_INSTRUCTIONS_X86_V4 && !result; set++) {
             setup.instructions = (SingeInstructions)set;
-            result = measure(options, &setup, table, &plain, error);
+            result = width_measure(options, &setup, table, &plain, error);
         }
     }
     return result;

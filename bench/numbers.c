@@ -9,13 +9,13 @@ double numbers_mean(const double *numbers, int count) {
     return count ? sum / count : NAN;
 }
 
-static int ascending(const void *a, const void *b) {
+static int numbers_ascending(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 double numbers_median(double *numbers, int count) {
     if (count == 0) return NAN;
-    qsort(numbers, (size_t)count, sizeof *numbers, ascending);
+    qsort(numbers, (size_t)count, sizeof *numbers, numbers_ascending);
     return 0.5 * (numbers[(count - 1) / 2] + numbers[count / 2]);
 }

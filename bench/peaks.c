@@ -32,7 +32,7 @@ static void triad(float *restrict a, const float *restrict b, const float *restr
     for (size_t i = 0; i < count; i++) a[i] = b[i] + 0.5f * c[i];
 }
 
-static double work(const Worker *worker, long rounds) {
+static double peaks_work(const Worker *worker, long rounds) {
     if (!worker->elements) return fma_run(1000 * rounds);
     const size_t n = worker->elements;
     for (long round = 0; round < rounds; round++)
@@ -45,7 +45,7 @@ static void *worker_run(void *context) {
     long rounds = 1;
     for (size_t i = 0; i < 3 * worker->elements; i++) worker->arrays[i] = 1;
     for (int trial = 0; trial < TRIALS;) {
-        double begun = machine_clock(), done = work(worker, rounds), taken = machine_clock() - begun;
+        double begun = machine_clock(), done = peaks_work(worker, rounds), taken = machine_clock() - begun;
         if (taken < worker->seconds && rounds < 1L << 30) {
             rounds *= 2; // too short to be measured
             continue;

@@ -22,7 +22,7 @@ double timing_springs(const SingeSim *sim) {
     return springs;
 }
 
-static bool allocate(Timing *timing, int steps) {
+static bool timing_allocate(Timing *timing, int steps) {
     bool good = true;
     *timing = (Timing){.steps = steps};
     for (int what = 0; what < TIMED_COUNT; what++) {
@@ -32,7 +32,7 @@ static bool allocate(Timing *timing, int steps) {
     return good;
 }
 
-static void note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after, double yardstick_ms) {
+static void timing_note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after, double yardstick_ms) {
     double total = 0;
     for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) {
         timing->ms[stage][step] = 1e3 * (after->seconds[stage] - before->seconds[stage]);
@@ -60,7 +60,7 @@ static SingeTimers difference(SingeTimers after, const SingeTimers *before) {
 }
 
 SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, int warm_up, int steps) {
-    if (!allocate(timing, steps)) return SINGE_ERROR_MEMORY;
+    if (!timing_allocate(timing, steps)) return SINGE_ERROR_MEMORY;
     SingeTimers first = singe_sim_timers(sim);
     for (int step = -warm_up; step < steps; step++) {
         double yardstick_ms = yardstick ? yardstick_run(yardstick) : 0;
@@ -69,7 +69,7 @@ SingeResult timing_measure(Timing *timing, SingeSim *sim, Yardstick *yardstick, 
         SingeResult result = singe_sim_step(sim);
         if (result) return result;
         SingeTimers after = singe_sim_timers(sim);
-        if (step >= 0) note(timing, step, &before, &after, yardstick_ms);
+        if (step >= 0) timing_note(timing, step, &before, &after, yardstick_ms);
     }
     timing->total = difference(singe_sim_timers(sim), &first);
     for (int what = 0; what < TIMED_COUNT; what++) numbers_median(timing->ms[what], steps); // sorts

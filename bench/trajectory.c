@@ -9,7 +9,7 @@
 
 static const int marks[TRAJECTORY_MARKS] = {8, 12, 16}; // frames
 
-static void sample(Trajectory *trajectory, const SingeSim *sim, double height_start) {
+static void trajectory_sample(Trajectory *trajectory, const SingeSim *sim, double height_start) {
     SingeView view = singe_sim_view(sim);
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         strain_add(&trajectory->strain[colour], &view, (SingeColour)colour);
@@ -24,7 +24,7 @@ static void sample(Trajectory *trajectory, const SingeSim *sim, double height_st
 }
 
 /// Runs the frames until one fails or the time is over.
-static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps, double budget) {
+static void trajectory_follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps, double budget) {
     const double until = machine_clock() + budget;
     SingeView start = singe_sim_view(sim);
     double height = geometry_height(&start);
@@ -38,7 +38,7 @@ static void follow(Trajectory *trajectory, SingeSim *sim, int frames, int steps,
             looked += machine_cpu_clock() - look;
         }
         trajectory->cpu_ms[trajectory->frames++] = 1e3 * (machine_cpu_clock() - begun - looked);
-        if (!trajectory->diverged) sample(trajectory, sim, height);
+        if (!trajectory->diverged) trajectory_sample(trajectory, sim, height);
     }
     SingeTimers timers = singe_sim_timers(sim);
     trajectory->dynamics_ms = 1e3 * timers.seconds[SINGE_STAGE_DYNAMICS] / trajectory->frames;
@@ -59,7 +59,7 @@ Trajectory *trajectory_run(const BenchSetup *setup, int frames, int steps, doubl
         for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) strain_clear(&trajectory->strain[colour]);
         for (int m = 0; m < TRAJECTORY_MARKS; m++) trajectory->fall[m] = NAN;
         trajectory->strand_length = singe_sim_counts(sim).mean_strand_length;
-        follow(trajectory, sim, frames, steps, budget);
+        trajectory_follow(trajectory, sim, frames, steps, budget);
     }
     singe_sim_destroy(sim);
     return trajectory;

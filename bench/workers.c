@@ -15,7 +15,7 @@ typedef struct Workers {
     void *context;
 } Workers;
 
-static void *work(void *argument) {
+static void *workers_work(void *argument) {
     Workers *w = argument;
     pthread_mutex_lock(&w->lock);
     while (w->next < w->count) {
@@ -42,8 +42,8 @@ void workers_run(int count, int threads, void (*run)(void *context, int i), void
     }
     pthread_mutex_init(&w.lock, NULL);
     if (threads > THREADS_MAX) threads = THREADS_MAX;
-    for (int t = 1; t < threads; t++) started[t] = pthread_create(&ids[t], NULL, work, &w) == 0;
-    work(&w);
+    for (int t = 1; t < threads; t++) started[t] = pthread_create(&ids[t], NULL, workers_work, &w) == 0;
+    workers_work(&w);
     for (int t = 1; t < threads; t++)
         if (started[t]) pthread_join(ids[t], NULL);
     pthread_mutex_destroy(&w.lock);

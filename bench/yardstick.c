@@ -36,7 +36,7 @@ Yardstick *yardstick_create(void) {
 }
 
 /// The same places before every run: the same work, and no numbers so small that they slow it.
-static void particles_position(float (*position)[4]) {
+static void particles_lay_out(float (*position)[4]) {
     for (uint32_t i = 0; i < PARTICLES; i++) {
         float *x = position[i];
         x[0] = (float)(i % SIDE), x[1] = (float)(i / SIDE), x[2] = 0.1f * (float)(i * 7 % 11), x[3] = 1;
@@ -76,7 +76,7 @@ static void chain_solve(float (*position)[4], Link *links, int count) {
 double yardstick_run(Yardstick *yardstick) {
     struct timespec start, end;
     clock_gettime(CLOCK_MONOTONIC, &start);
-    particles_position(yardstick->position);
+    particles_lay_out(yardstick->position);
     for (int pass = 0; pass < PASSES; pass++)
         for (int first = 0; first < LINKS; first += SIDE - 1)
             chain_solve(yardstick->position, yardstick->links + first, SIDE - 1);

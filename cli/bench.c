@@ -87,7 +87,7 @@ static const struct {
 
 enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
 
-static void help(void) {
+static void bench_help(void) {
     printf("usage: singe bench MEASUREMENT [options]\n\nmeasurements:\n");
     for (int i = 0; i < MEASUREMENTS; i++) printf("  %-16s %s\n", measurements[i].name, measurements[i].summary);
     printf("  %-16s %s\n", "plot", "Draws cost against springs of tables written with --csv.");
@@ -106,7 +106,7 @@ static ExitCode write_csv(Console *console, const char *path, const BenchTable *
 /// A refused argument is the user's, all else went wrong on the way.
 static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
 
-static ExitCode measure(int m, const BenchRequest *request) {
+static ExitCode bench_measure(int m, const BenchRequest *request) {
     Console console = console_make(false);
     BenchTable table = {.text = request->json ? NULL : stdout};
     SingeError error = {.element = -1};
@@ -125,7 +125,7 @@ static ExitCode measure(int m, const BenchRequest *request) {
 }
 
 /// The measurement's index, or -1 after a message.
-static int find(const char *word) {
+static int bench_find(const char *word) {
     for (int i = 0; i < MEASUREMENTS; i++)
         if (strcmp(measurements[i].name, word) == 0) return i;
     const char *near = args_nearest(word, measurements, MEASUREMENTS, sizeof measurements[0]);
@@ -141,22 +141,22 @@ int command_bench(int argc, char **argv) {
         return EXIT_INPUT;
     }
     if (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0) {
-        help();
+        bench_help();
         return EXIT_GOOD;
     }
     if (strcmp(argv[0], "plot") == 0) return bench_plot(argc - 1, argv + 1);
-    int m = find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
+    int m = bench_find(strcmp(argv[0], "--compare") == 0 ? "compare" : argv[0]);
     if (m < 0) return EXIT_INPUT;
     BenchRequest request;
     int end = bench_args_read(measurements[m].full_name, measurements[m].summary, measurements[m].accepted, argc - 1,
                               argv + 1, &request);
     if (end == ARG_HELP) return EXIT_GOOD;
     if (end != ARG_END) return EXIT_INPUT;
-    if (!(measurements[m].accepted & BENCH_BIT(MATERIAL))) return measure(m, &request);
+    if (!(measurements[m].accepted & BENCH_BIT(MATERIAL))) return bench_measure(m, &request);
     BenchMaterials materials;
     ExitCode code = bench_materials_open(request.materials, &materials);
     request.options.material_count = materials.count, request.options.materials = materials.items;
-    if (!code) code = measure(m, &request);
+    if (!code) code = bench_measure(m, &request);
     bench_materials_close(&materials);
     return code;
 }

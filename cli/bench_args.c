@@ -41,7 +41,7 @@ typedef struct Parser {
     int option; ///< being read
 } Parser;
 
-static bool refuse(const Parser *parser, const char *expected, const char *text) {
+static bool bench_args_refuse(const Parser *parser, const char *expected, const char *text) {
     args_complain(&parser->reader, "--%s: expected %s, got '%s'", parser->options[parser->option].name, expected,
                   shown(text).text);
     return false;
@@ -56,7 +56,7 @@ static bool read_number(const char *text, char **end, double low, double high, d
 static bool read_one(const Parser *parser, const char *text, double low, double high, const char *expected,
                      double *number) {
     char *end;
-    return (read_number(text, &end, low, high, number) && *end == 0) || refuse(parser, expected, text);
+    return (read_number(text, &end, low, high, number) && *end == 0) || bench_args_refuse(parser, expected, text);
 }
 
 /// Reads "1,2,3", each times `unit`.
@@ -67,11 +67,11 @@ static bool read_list(const Parser *parser, const char *text, double low, double
         char *end;
         double number;
         if (!read_number(at, &end, low, high, &number) || (whole && number != floor(number)))
-            return refuse(parser, expected, text);
-        if (list->count == BENCH_LIST_MAX) return refuse(parser, "at most 16 numbers", text);
+            return bench_args_refuse(parser, expected, text);
+        if (list->count == BENCH_LIST_MAX) return bench_args_refuse(parser, "at most 16 numbers", text);
         list->values[list->count++] = number * unit;
         if (*end == 0) return true;
-        if (*end != ',') return refuse(parser, expected, text);
+        if (*end != ',') return bench_args_refuse(parser, expected, text);
         at = end;
     }
 }
@@ -81,7 +81,7 @@ static bool read_word(const Parser *parser, const char *text, const char *const 
                       const char *expected, int *value) {
     for (*value = 0; *value < count; ++*value)
         if (strcmp(words[*value], text) == 0) return true;
-    return refuse(parser, expected, text);
+    return bench_args_refuse(parser, expected, text);
 }
 
 static bool read_solver(const Parser *parser, const char *text, SingeSolverMethod *method) {

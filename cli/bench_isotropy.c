@@ -89,7 +89,7 @@ static SingeResult add_world(SingeSim *sim, SingeError *error) {
     return result;
 }
 
-static SingeResult build(const Burn *burn, double angle, SingeSim **sim, SingeError *error) {
+static SingeResult isotropy_build(const Burn *burn, double angle, SingeSim **sim, SingeError *error) {
     SingeSimDef def = singe_default_sim();
     const BenchOptions *options = burn->options;
     def.thread_count = options->threads, def.pace = 5, def.instructions = options->instructions;
@@ -110,11 +110,11 @@ static double total(const double *numbers, int count) {
 }
 
 /// Burns it and adds up its wrinkles.
-static SingeResult run(const Burn *burn, double angle, Wrinkles *wrinkles, SingeError *error) {
+static SingeResult isotropy_run(const Burn *burn, double angle, Wrinkles *wrinkles, SingeError *error) {
     const double seconds = burn->options->time > 0 ? burn->options->time : 1.1;
     SingeSim *sim = NULL;
     SingeSurface surface = {0};
-    SingeResult result = build(burn, angle, &sim, error);
+    SingeResult result = isotropy_build(burn, angle, &sim, error);
     if (result) return result;
     for (int look = 1; look <= MOMENTS && !result; look++) {
         double until = seconds * (0.5 + 0.5 * look / MOMENTS) - 1e-9;
@@ -129,10 +129,10 @@ static SingeResult run(const Burn *burn, double angle, Wrinkles *wrinkles, Singe
 }
 
 /// One row, the `index`-th seed's; *sum is that of the effects' logarithms.
-static SingeResult compare(const Burn *burn, int index, BenchTable *table, double *sum, SingeError *error) {
+static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *table, double *sum, SingeError *error) {
     Wrinkles straight = {0}, turned = {0};
-    SingeResult result = run(burn, 0, &straight, error);
-    if (!result) result = run(burn, acos(-1) / 4, &turned, error);
+    SingeResult result = isotropy_run(burn, 0, &straight, error);
+    if (!result) result = isotropy_run(burn, acos(-1) / 4, &turned, error);
     if (result) return result;
     const double r_0 = wrinkles_bias(&straight), r_45 = wrinkles_bias(&turned);
     const double bend = total(straight.crease, WRINKLE_BINS) + total(turned.crease, WRINKLE_BINS);
@@ -156,7 +156,7 @@ static SingeResult compare_seeds(Burn *burn, BenchTable *table, SingeError *erro
     SingeResult result = SINGE_OK;
     for (int i = 0; i < seeds.count && !result; i++) {
         burn->seed = (uint32_t)seeds.values[i];
-        result = compare(burn, i, table, &sum, error);
+        result = isotropy_compare(burn, i, table, &sum, error);
     }
     return result;
 }

@@ -23,7 +23,7 @@ static const BenchColumn columns[COLUMNS] = {
 enum { CELLS_X = 198, CELLS_Y = 280, ACROSS = CELLS_X + 1, REPEATS = 5 };
 static const float sheet_width = 0.210f, sheet_length = 0.297f, hole_radius = 0.04f, front = 0.009f;
 
-static float smooth(float a, float b, float x) {
+static float preview_bench_smooth(float a, float b, float x) {
     float s = fminf(fmaxf((x - a) / (b - a), 0), 1);
     return s * s * (3 - 2 * s);
 }
@@ -39,14 +39,14 @@ static float from_edge(float x, float y) {
 static float height_at(float x, float y) {
     float s = from_edge(x, y), angle = atan2f(y - 0.02f, x - 0.012f);
     float curl = expf(-fmaxf(s, 0) / 0.016f) * (0.006f + 0.0045f * sinf(6 * angle) + 0.002f * sinf(17 * angle));
-    return 0.0015f + fmaxf(curl, 0) + 0.0125f * smooth(0.12f, 0.19f, fabsf(x + 0.35f * y));
+    return 0.0015f + fmaxf(curl, 0) + 0.0125f * preview_bench_smooth(0.12f, 0.19f, fabsf(x + 0.35f * y));
 }
 
 static void fill_vertex(SingeSurface *s, uint32_t i, float x, float y) {
     const float e = 1e-4f;
     float z = height_at(x, y), zx = (height_at(x + e, y) - z) / e, zy = (height_at(x, y + e) - z) / e;
     float length = sqrtf(1 + zx * zx + zy * zy), edge = from_edge(x, y);
-    float burn = 0.95f * (1 - smooth(-0.25f * front, front, edge)), ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
+    float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)), ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
     s->position[i][0] = s->rest_position[i][0] = x, s->position[i][1] = s->rest_position[i][1] = y;
     s->position[i][2] = z, s->rest_position[i][2] = 0;
     s->normal[i][0] = -zx / length, s->normal[i][1] = -zy / length, s->normal[i][2] = 1 / length;
@@ -59,7 +59,7 @@ static void fill_vertex(SingeSurface *s, uint32_t i, float x, float y) {
 }
 
 /// All arrays of a surface in one block, which is returned; NULL when out of memory.
-static void *reserve(SingeSurface *s, uint32_t vertices, uint32_t triangles) {
+static void *preview_bench_reserve(SingeSurface *s, uint32_t vertices, uint32_t triangles) {
     const size_t floats = 3 + 3 + 2 + 3 + 3 + 5, ints = 2;
     float *block = calloc((size_t)vertices * (floats + ints) + 3 * (size_t)triangles, sizeof *block), *at = block;
     if (!block) return NULL;
@@ -78,7 +78,7 @@ static void *reserve(SingeSurface *s, uint32_t vertices, uint32_t triangles) {
 }
 
 static void *make_surface(SingeSurface *s) {
-    void *block = reserve(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y);
+    void *block = preview_bench_reserve(s, ACROSS * (CELLS_Y + 1), 2 * CELLS_X * CELLS_Y);
     if (!block) return NULL;
     for (uint32_t i = 0; i < s->vertex_count; i++)
         fill_vertex(s, i, sheet_width * ((float)(i % ACROSS) / CELLS_X - 0.5f),
@@ -134,7 +134,7 @@ static const Shot shots[] = {
     {"firenear", {0.03f, -0.24f, 0.15f}, {0.01f, -0.005f, 0.03f}, 0.5f, 0, 0, true},
 };
 
-static SingeResult measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
+static SingeResult preview_bench_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
                            BenchTable *table, SingeError *error) {
     PreviewDef def = preview_default();
     def.width = 1280, def.height = 720, def.samples = 16, def.thread_count = options->threads;
@@ -171,7 +171,7 @@ SingeResult bench_preview(const BenchOptions *options, BenchTable *table, SingeE
     void *block = make_surface(&surface);
     SingeResult result = block ? SINGE_OK : SINGE_ERROR_MEMORY;
     for (size_t i = 0; i < sizeof shots / sizeof *shots && !result; i++)
-        result = measure(options, &shots[i], &surface, table, error);
+        result = preview_bench_measure(options, &shots[i], &surface, table, error);
     free(block);
     return result;
 }

@@ -137,7 +137,7 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     return result;
 }
 
-static SingeResult refuse(const Folder *folder, SingeResult code, const char *why, SingeError *error) {
+static SingeResult checkpoint_refuse(const Folder *folder, SingeResult code, const char *why, SingeError *error) {
     *error = (SingeError){.code = code, .stage = "resume", .element = -1};
     snprintf(error->message, sizeof error->message, "%.150s: %.180s; run without --resume to start over",
              folder->checkpoint, why);
@@ -146,17 +146,17 @@ static SingeResult refuse(const Folder *folder, SingeResult code, const char *wh
 
 static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, Trailer *trailer,
                                 SingeError *error) {
-    if (bytes->size < sizeof *trailer) return refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
+    if (bytes->size < sizeof *trailer) return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
-        return refuse(folder, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
+        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
     if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX ||
         trailer->step > INT_MAX)
-        return refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
+        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
     if (trailer->hash.result != hash.result)
-        return refuse(folder, SINGE_ERROR_STATE,
+        return checkpoint_refuse(folder, SINGE_ERROR_STATE,
                       "the checkpoint is of another scene (the scene, its --set or a file it names has changed)",
                       error);
     return SINGE_OK;
@@ -174,7 +174,7 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, Scen
     if (!result) {
         SingeError inner = {0};
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
-        if (result) refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
+        if (result) checkpoint_refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
         else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};
         checkpoint->totals = trailer.totals;
         checkpoint->other_looks = trailer.hash.looks != hash.looks;

@@ -49,7 +49,7 @@ static void *libc_resize(void *context, void *block, size_t old_size, size_t new
 }
 
 /// Prints what is wrong and closes the job, if the result says so.
-static ExitCode tell(Job *job, Console *console, SingeResult result, SceneMessages *messages) {
+static ExitCode job_tell(Job *job, Console *console, SingeResult result, SceneMessages *messages) {
     if (result) {
         console_clear(console);
         scene_messages_print(messages, stderr);
@@ -72,7 +72,7 @@ ExitCode job_read(Job *job, Console *console, const char *scene_path, const SetL
     *job = (Job){0};
     set_hooks(job, console, threads);
     SingeResult result = scene_read(scene_path, sets->items, sets->count, &job->scene, &messages);
-    return tell(job, console, result, &messages);
+    return job_tell(job, console, result, &messages);
 }
 
 ExitCode job_load(Job *job, Console *console, double pictures) {
@@ -85,7 +85,7 @@ ExitCode job_load(Job *job, Console *console, double pictures) {
         else if (!loaded) result = scene_load(job->scene, &job->assets, &messages);
     }
     if (!result) scene_frame(job->scene, &job->assets);
-    return tell(job, console, result, &messages);
+    return job_tell(job, console, result, &messages);
 }
 
 ExitCode job_open(Job *job, Console *console, const char *scene_path, const SetList *sets, int threads) {
@@ -101,7 +101,7 @@ ExitCode job_parse(Job *job, Console *console, const char *name, const char *tex
     SingeResult result = scene_parse(name, text, size, folder, sets->items, sets->count, &job->scene, &messages);
     if (!result) result = scene_load(job->scene, &job->assets, &messages);
     if (!result) scene_frame(job->scene, &job->assets);
-    return tell(job, console, result, &messages);
+    return job_tell(job, console, result, &messages);
 }
 
 ExitCode job_reopen(Job *job, Console *console, const char *folder, const SetList *sets, int threads) {

@@ -26,7 +26,7 @@ static const struct {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
-static void help(void) {
+static void main_help(void) {
     printf("singe %s burns cloth and paper.\n\nusage: singe COMMAND [options]\n\ncommands:\n", singe_version());
     for (int i = 0; i < COMMAND_COUNT; i++)
         if (commands[i].summary) printf("  %-10s %s\n", commands[i].name, commands[i].summary);
@@ -45,7 +45,7 @@ int main(int argc, char **argv) {
     for (int i = 0; i < COMMAND_COUNT; i++)
         if (strcmp(word, commands[i].name) == 0) return streams_finish(commands[i].run(argc - 2, argv + 2));
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
-        help();
+        main_help();
         return streams_finish(EXIT_GOOD);
     }
     if (strcmp(word, "--version") == 0) {

@@ -9,7 +9,7 @@
 #include "cli/interrupt.h"
 #include "cli/run.h"
 
-static ExitCode fail(Run *run, const SingeError *error, ExitCode code) {
+static ExitCode run_begin_fail(Run *run, const SingeError *error, ExitCode code) {
     console_result(run->console, error);
     return code;
 }
@@ -36,7 +36,7 @@ static ExitCode hold_folder(Run *run) {
     SingeResult result = folder_make(run->folder.path, &error);
     if (!result) result = take_lock(run, &run->cache_lock, run->folder.cache_lock, "frames", &error);
     if (!result) result = take_lock(run, &run->pictures_lock, run->folder.pictures_lock, "pictures", &error);
-    return result ? fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
+    return result ? run_begin_fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
 }
 
 // ---- going on
@@ -63,7 +63,7 @@ static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
     SingeError error = {0};
     SingeResult result = checkpoint_read(&run->folder, &run->job.hooks, run->hash, &checkpoint, &error);
-    if (result) return fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
+    if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
     const int frame = checkpoint.progress.frame;
     if (frame == 0) return EXIT_GOOD;
     run->sim = checkpoint.sim;
@@ -76,7 +76,7 @@ static ExitCode resume(Run *run) {
     if (code) return code;
     result = stats_open(&run->stats, &run->folder, &error);
     if (!result) result = stats_cut(&run->stats, frame, &error);
-    if (result) return fail(run, &error, result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED);
+    if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED);
     *run->totals = checkpoint.totals;
     run->wall_before = checkpoint.totals.wall_seconds;
     run->record.resumed_from = run->record.frames_done = frame;
@@ -174,8 +174,8 @@ static ExitCode open_pictures(Run *run, const RunOptions *options) {
     SingeError error = {0};
     if (options->no_preview) console_note(run->console, "no preview");
     else if (!pictures_available()) console_note(run->console, "this singe was built without the preview");
-    else if (pictures_open(&run->job, &run->pictures, &error)) return fail(run, &error, EXIT_FAILED);
-    if (options->exr && pictures_keep_layers(run->pictures, &error)) return fail(run, &error, EXIT_FAILED);
+    else if (pictures_open(&run->job, &run->pictures, &error)) return run_begin_fail(run, &error, EXIT_FAILED);
+    if (options->exr && pictures_keep_layers(run->pictures, &error)) return run_begin_fail(run, &error, EXIT_FAILED);
     run->layers = options->exr;
     return EXIT_GOOD;
 }
@@ -186,7 +186,7 @@ static ExitCode open_outputs(Run *run) {
     SingeResult result = folder_create(&run->folder, run_parts(run), &error);
     if (!result) result = folder_sweep(&run->folder, &error);
     if (!result && !run->begun) result = stats_open(&run->stats, &run->folder, &error);
-    return result ? fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
+    return result ? run_begin_fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
 }
 
 ExitCode run_prepare(Run *run, const RunOptions *options) {
@@ -195,7 +195,7 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     run->folder = folder_name(options->output, run->job.scene->name);
     run->first = 1;
     if (checkpoint_scene_hash(run->job.scene, &run->job.assets, &run->hash, &error))
-        return fail(run, &error, EXIT_FAILED);
+        return run_begin_fail(run, &error, EXIT_FAILED);
     if ((code = open_pictures(run, options))) return code;
     if (options->resume && access(run->folder.path, F_OK) == 0) {
         if ((code = hold_folder(run)) || (code = resume(run))) return code;
@@ -205,6 +205,6 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
     if ((code = hold_folder(run))) return code;
     if (outputs_open(&run->outputs, &run->job, &run->folder, run->job.scene->output.formats, run_parts(run).gas, &error))
-        return fail(run, &error, EXIT_FAILED);
+        return run_begin_fail(run, &error, EXIT_FAILED);
     return open_outputs(run);
 }

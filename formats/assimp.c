@@ -180,7 +180,7 @@ static void note_complaint(const char *message, char *bad_index) {
 }
 
 /// assimp's words without what it quotes: the file may not be one that whoever sees the message may read.
-static void unquote(char *to, size_t max, const char *words) {
+static void assimp_unquote(char *to, size_t max, const char *words) {
     size_t length = 0;
     bool quoted = false;
     for (; *words && length + 4 < max; words++) {
@@ -195,7 +195,7 @@ static SingeResult refuse_import(const Source *source, SingeError *error) {
     const char *why = aiGetErrorString();
     char words[160];
     if (why && strstr(why, "bad_alloc")) errno = ENOMEM; // tells isolate_run
-    unquote(words, sizeof words, why && why[0] ? why : "cannot be read");
+    assimp_unquote(words, sizeof words, why && why[0] ? why : "cannot be read");
     return refuse(error, SINGE_ERROR_FORMAT, "mesh", -1, "%s: %s%s", short_name(source->name), words,
                   source->refused ? source->refused : "");
 }

@@ -134,7 +134,7 @@ static SingeResult check_target(const char *path, SingeError *error) {
     return refuse(error, SINGE_ERROR_FILE, "file", -1, "%s: cannot write: not a regular file", short_name(path));
 }
 
-static int put_in_location(const char *temporary, const char *target) {
+static int put_in_place(const char *temporary, const char *target) {
     if (rename(temporary, target)) return errno;
     flush_folder(target);
     return 0;
@@ -149,7 +149,7 @@ SingeResult file_write(const char *path, const void *data, size_t size, SingeErr
     if (!reason) {
         reason = write_bytes(file, data, size);
         if (close(file) && !reason) reason = errno;
-        if (!reason) reason = put_in_location(temporary, path);
+        if (!reason) reason = put_in_place(temporary, path);
         if (reason) unlink(temporary);
     }
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
@@ -176,7 +176,7 @@ SingeResult file_publish(char *draft, const char *path, SingeError *error) {
     int file = open(draft, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     int reason = file < 0 ? errno : fsync(file) && errno != EINVAL && errno != ENOTSUP ? errno : 0;
     if (file >= 0) close(file);
-    if (!reason) reason = put_in_location(draft, path);
+    if (!reason) reason = put_in_place(draft, path);
     if (reason) {
         file_discard(draft);
         return refuse_system(error, "write", path, reason);

@@ -21,7 +21,7 @@ SingeResult gltf_refuse(const Gltf *gltf, SingeResult code, const char *format, 
     return refuse(gltf->error, code, "gltf", -1, "%s: %s", short_name(gltf->name), what);
 }
 
-static SingeResult bad(const Gltf *gltf, const char *list, uint32_t number, const char *what) {
+static SingeResult gltf_bad(const Gltf *gltf, const char *list, uint32_t number, const char *what) {
     return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "%s[%u]: %s", list, number, what);
 }
 
@@ -73,7 +73,7 @@ static SingeResult decode_base64(Gltf *gltf, uint32_t number, const uint8_t *at,
     for (int held = 0; at < end; at++) {
         int digit = base64_digit(*at);
         if (digit < 0 && *at == '\\' && at + 1 < end && at[1] == '/') continue; // JSON may write / so
-        if (digit < 0) return bad(gltf, "buffers", number, "its data are not base64");
+        if (digit < 0) return gltf_bad(gltf, "buffers", number, "its data are not base64");
         bits = bits << 6 | (uint32_t)digit, held += 6;
         if (held >= 8) held -= 8, bytes->data[done++] = (uint8_t)(bits >> held);
     }
@@ -108,12 +108,12 @@ static bool make_path(const Gltf *gltf, const uint8_t *at, const uint8_t *end, c
 static SingeResult load_file(Gltf *gltf, uint32_t number, const uint8_t *at, const uint8_t *end, Bytes *bytes) {
     char path[PATH_LIMIT];
     if (!make_path(gltf, at, end, path) || !beside_is(gltf->name, path))
-        return bad(gltf, "buffers", number, "what it refers to is no file in the folder or below");
+        return gltf_bad(gltf, "buffers", number, "what it refers to is no file in the folder or below");
     SingeError error = {0};
     SingeResult result = file_read_max(path, BUFFERS_LIMIT - gltf->loaded_size, gltf->allocator, bytes, &error);
     if (result == SINGE_ERROR_MEMORY) return refuse_memory(gltf->error, "gltf", gltf->name);
-    if (result == SINGE_ERROR_LIMIT) return bad(gltf, "buffers", number, "buffers have more than 1 GiB");
-    return result ? bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
+    if (result == SINGE_ERROR_LIMIT) return gltf_bad(gltf, "buffers", number, "buffers have more than 1 GiB");
+    return result ? gltf_bad(gltf, "buffers", number, "the file that it refers to cannot be read") : SINGE_OK;
 }
 
 /// The bytes of a buffer, read when they are first needed.
@@ -123,14 +123,14 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
     if (uri == JSON_NONE && number == 0 && gltf->chunk) {
         *bytes = gltf->chunk, *size = gltf->chunk_size;
     } else if (uri == JSON_NONE || gltf->json.values[uri].kind != JSON_STRING) {
-        return bad(gltf, "buffers", number, "it has no data");
+        return gltf_bad(gltf, "buffers", number, "it has no data");
     } else if (!loaded->data) {
         const JsonValue *text = &gltf->json.values[uri];
         const uint8_t *at = gltf->json.text + text->begin, *end = gltf->json.text + text->end;
         const uint8_t *comma = memchr(at, ',', (size_t)(end - at));
         bool inside = end - at > 5 && memcmp(at, "data:", 5) == 0;
         if (inside && (!comma || comma - at < 7 || memcmp(comma - 7, ";base64", 7) != 0))
-            return bad(gltf, "buffers", number, "its data are not base64");
+            return gltf_bad(gltf, "buffers", number, "its data are not base64");
         TRY(inside ? decode_base64(gltf, number, comma + 1, end, loaded) : load_file(gltf, number, at, end, loaded));
         gltf->loaded_size += loaded->size;
         if (!inside) gltf->beside_size += loaded->size;
@@ -138,7 +138,7 @@ static SingeResult load_buffer(Gltf *gltf, uint32_t number, const uint8_t **byte
     if (loaded->data) *bytes = loaded->data, *size = loaded->size;
     uint64_t claimed;
     if (!take_count(gltf, buffer, "byteLength", *size, *size, &claimed))
-        return bad(gltf, "buffers", number, "its data are shorter than its byteLength");
+        return gltf_bad(gltf, "buffers", number, "its data are shorter than its byteLength");
     *size = claimed;
     return SINGE_OK;
 }
@@ -154,16 +154,16 @@ typedef struct Slice {
 static SingeResult find_view(Gltf *gltf, uint32_t number, uint64_t offset, Slice *slice) {
     int64_t view = gltf->views[number], extensions = json_member(&gltf->json, view, "extensions"), buffer;
     if (json_member(&gltf->json, extensions, "EXT_meshopt_compression") != JSON_NONE)
-        return bad(gltf, "bufferViews", number, "compressed data are not read");
+        return gltf_bad(gltf, "bufferViews", number, "compressed data are not read");
     TRY(gltf_index(gltf, view, "buffer", gltf->buffer_count, &buffer));
-    if (buffer == JSON_NONE) return bad(gltf, "bufferViews", number, "it has no buffer");
+    if (buffer == JSON_NONE) return gltf_bad(gltf, "bufferViews", number, "it has no buffer");
     const uint8_t *bytes = NULL;
     uint64_t size = 0, begin, length;
     TRY(load_buffer(gltf, (uint32_t)buffer, &bytes, &size));
     bool good = take_count(gltf, view, "byteOffset", 0, size, &begin);
     good = good && take_count(gltf, view, "byteLength", 0, size - begin, &length) && offset <= length;
     if (!good || !take_count(gltf, view, "byteStride", 0, 252, &slice->stride))
-        return bad(gltf, "bufferViews", number, "it goes past the end of its buffer");
+        return gltf_bad(gltf, "bufferViews", number, "it goes past the end of its buffer");
     slice->bytes = bytes + begin + offset, slice->size = length - offset;
     return SINGE_OK;
 }
@@ -186,15 +186,15 @@ static SingeResult find_elements(Gltf *gltf, int64_t object, uint32_t number, ui
     int64_t view;
     uint64_t offset;
     TRY(gltf_index(gltf, object, "bufferView", gltf->view_count, &view));
-    if (view == JSON_NONE) return bad(gltf, "accessors", number, "it has no data, or compressed ones");
+    if (view == JSON_NONE) return gltf_bad(gltf, "accessors", number, "it has no data, or compressed ones");
     if (!take_count(gltf, object, "byteOffset", 0, INT64_MAX, &offset))
-        return bad(gltf, "accessors", number, "its byteOffset is no count");
+        return gltf_bad(gltf, "accessors", number, "its byteOffset is no count");
     Slice slice = {0};
     TRY(find_view(gltf, (uint32_t)view, offset, &slice));
     uint64_t step = slice.stride ? slice.stride : size;
-    if (step < size) return bad(gltf, "accessors", number, "its elements overlap");
+    if (step < size) return gltf_bad(gltf, "accessors", number, "its elements overlap");
     if (count == 0 || slice.size < size || (slice.size - size) / step < count - 1)
-        return bad(gltf, "accessors", number, "it has no elements, or goes past the end of its view");
+        return gltf_bad(gltf, "accessors", number, "it has no elements, or goes past the end of its view");
     *bytes = slice.bytes, *stride = (uint32_t)step;
     return SINGE_OK;
 }
@@ -205,12 +205,12 @@ static SingeResult find_sparse(Gltf *gltf, int64_t sparse, uint32_t number, Gltf
     uint32_t stride;
     if (!take_count(gltf, sparse, "count", 0, accessor->count, &count) || count == 0 ||
         !take_count(gltf, indices, "componentType", 0, 5125, &type) || (type != 5121 && type != 5123 && type != 5125))
-        return bad(gltf, "accessors", number, "its sparse elements have no count or type");
+        return gltf_bad(gltf, "accessors", number, "its sparse elements have no count or type");
     accessor->sparse_type = (uint32_t)type;
     TRY(find_elements(gltf, indices, number, count, gltf_type_size((uint32_t)type), &accessor->sparse_index, &stride));
-    if (stride != gltf_type_size((uint32_t)type)) return bad(gltf, "accessors", number, "sparse indices with gaps");
+    if (stride != gltf_type_size((uint32_t)type)) return gltf_bad(gltf, "accessors", number, "sparse indices with gaps");
     TRY(find_elements(gltf, values, number, count, size, &accessor->sparse_bytes, &stride));
-    if (stride != size) return bad(gltf, "accessors", number, "sparse elements with gaps");
+    if (stride != size) return gltf_bad(gltf, "accessors", number, "sparse elements with gaps");
     accessor->sparse_count = (uint32_t)count;
     return SINGE_OK;
 }
@@ -225,7 +225,7 @@ static SingeResult find_accessor(Gltf *gltf, int64_t number) {
     accessor.normalized = normalized != JSON_NONE && gltf->json.text[gltf->json.values[normalized].begin] == 't';
     if (!take_count(gltf, object, "componentType", 0, 5126, &type) || !gltf_type_size((uint32_t)type) ||
         !accessor.width || !take_count(gltf, object, "count", 0, MESH_COUNT_LIMIT, &count))
-        return bad(gltf, "accessors", (uint32_t)number, "it has no type or count");
+        return gltf_bad(gltf, "accessors", (uint32_t)number, "it has no type or count");
     accessor.type = (uint32_t)type, accessor.count = (uint32_t)count;
     uint32_t size = accessor.width * gltf_type_size(accessor.type);
     TRY(find_elements(gltf, object, (uint32_t)number, count, size, &accessor.bytes, &accessor.stride));
@@ -241,9 +241,9 @@ static SingeResult read_primitive(Gltf *gltf, int64_t object, GltfPrimitive *pri
     int64_t extensions = json_member(&gltf->json, object, "extensions");
     uint64_t mode;
     if (json_member(&gltf->json, extensions, "KHR_draco_mesh_compression") != JSON_NONE)
-        return bad(gltf, "meshes", primitive->mesh, "compressed data are not read");
+        return gltf_bad(gltf, "meshes", primitive->mesh, "compressed data are not read");
     if (!take_count(gltf, object, "mode", 4, 6, &mode))
-        return bad(gltf, "meshes", primitive->mesh, "a primitive's mode is not known");
+        return gltf_bad(gltf, "meshes", primitive->mesh, "a primitive's mode is not known");
     primitive->mode = (uint32_t)mode;
     TRY(gltf_index(gltf, attributes, "POSITION", gltf->accessor_count, &primitive->position));
     TRY(gltf_index(gltf, attributes, "TEXCOORD_0", gltf->accessor_count, &primitive->uv));
@@ -254,12 +254,12 @@ static SingeResult read_primitive(Gltf *gltf, int64_t object, GltfPrimitive *pri
 static SingeResult check_primitive(const Gltf *gltf, const GltfPrimitive *p) {
     const GltfAccessor *position = &gltf->read[p->position], *uv = p->uv < 0 ? NULL : &gltf->read[p->uv];
     const GltfAccessor *indices = p->indices < 0 ? NULL : &gltf->read[p->indices];
-    if (position->width != 3) return bad(gltf, "meshes", p->mesh, "positions are not VEC3");
+    if (position->width != 3) return gltf_bad(gltf, "meshes", p->mesh, "positions are not VEC3");
     if (uv && (uv->width != 2 || uv->count < position->count))
-        return bad(gltf, "meshes", p->mesh, "texture coordinates are not VEC2, or fewer than the positions");
+        return gltf_bad(gltf, "meshes", p->mesh, "texture coordinates are not VEC2, or fewer than the positions");
     if (indices && (indices->width != 1 || indices->sparse_count ||
                     (indices->type != 5121 && indices->type != 5123 && indices->type != 5125)))
-        return bad(gltf, "meshes", p->mesh, "indices are of another type than unsigned integers");
+        return gltf_bad(gltf, "meshes", p->mesh, "indices are of another type than unsigned integers");
     return SINGE_OK;
 }
 

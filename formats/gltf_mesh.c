@@ -55,7 +55,7 @@ static bool take_numbers(const Json *json, int64_t object, const char *key, uint
     return true;
 }
 
-static Transform turn(const float q[4]) {
+static Transform gltf_mesh_turn(const float q[4]) {
     float x = q[0], y = q[1], z = q[2], w = q[3];
     return (Transform){{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
                         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
@@ -75,7 +75,7 @@ static SingeResult node_transform(const Gltf *gltf, uint32_t node, Transform *at
             for (int c = 0; c < 4; c++) at->m[r][c] = matrix[4 * c + r];
         return SINGE_OK;
     }
-    Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}}, turned = turn(rotation);
+    Transform moved = {{{1, 0, 0, move[0]}, {0, 1, 0, move[1]}, {0, 0, 1, move[2]}}}, turned = gltf_mesh_turn(rotation);
     Transform scaled = {{{scale[0], 0, 0, 0}, {0, scale[1], 0, 0}, {0, 0, scale[2], 0}}};
     *at = chain(&moved, &turned);
     *at = chain(at, &scaled);

@@ -213,7 +213,7 @@ static SingeResult refuse_signal(const Child *child, int number) {
 }
 
 /// Looks at the child's time and memory. Time in which this process itself was stopped does not count.
-static SingeResult look(Child *child) {
+static SingeResult isolate_look(Child *child) {
     double now = clock_now(), passed = now - child->looked;
     if (passed < 1e-3 * LOOK_MS) return SINGE_OK;
     child->looked = now;
@@ -233,7 +233,7 @@ static SingeResult take_answer(Child *child, Bytes *answer, size_t *capacity) {
         if (count < 0 && errno != EINTR && errno != EAGAIN)
             return refuse(child->error, SINGE_ERROR_FILE, "file", -1, "%s: its reader cannot be waited for",
                           short_name(child->name));
-        TRY(look(child));
+        TRY(isolate_look(child));
         if (count <= 0) continue;
         if (answer->size > child->limits.memory) return refuse_size(child);
         if (!store_grow(answer->allocator, &answer->data, capacity, answer->size + (1u << 16) + 1, 1))
@@ -251,7 +251,7 @@ static SingeResult take_answer(Child *child, Bytes *answer, size_t *capacity) {
 static SingeResult reap(Child *child, int *status) {
     pid_t ended;
     while ((ended = waitpid(child->process, status, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
-        TRY(look(child));
+        TRY(isolate_look(child));
         nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
     }
     child->process = 0;
@@ -260,7 +260,7 @@ static SingeResult reap(Child *child, int *status) {
 }
 
 /// Takes the ending off the answer and says what it means.
-static SingeResult judge(const Child *child, Bytes *answer, int status) {
+static SingeResult isolate_judge(const Child *child, Bytes *answer, int status) {
     if (WIFSIGNALED(status)) return refuse_signal(child, WTERMSIG(status));
     if (WEXITSTATUS(status) == EXIT_NO_MEMORY) return refuse_size(child);
     Ending ending = {0};
@@ -286,7 +286,7 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     child->memory_before = memory_of(getpid());
     SingeResult result = take_answer(child, answer, &capacity);
     if (!result) result = reap(child, &status);
-    if (!result) result = judge(child, answer, status);
+    if (!result) result = isolate_judge(child, answer, status);
     if (child->process) {
         kill(child->process, SIGKILL);
         while (waitpid(child->process, NULL, 0) < 0 && errno == EINTR) {}

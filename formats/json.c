@@ -14,7 +14,7 @@ typedef struct Parser {
     int depth;
 } Parser;
 
-static SingeResult bad(const Parser *parser, const char *what) {
+static SingeResult json_bad(const Parser *parser, const char *what) {
     long long byte = parser->at - parser->json->text;
     return refuse(parser->error, SINGE_ERROR_FORMAT, "json", byte, "%s: byte %lld of its JSON: %s",
                   short_name(parser->name), byte, what);
@@ -26,7 +26,7 @@ static void skip_blanks(Parser *parser) {
         parser->at++;
 }
 
-static SingeResult add(Parser *parser, JsonKind kind, const uint8_t *begin, const uint8_t *end) {
+static SingeResult json_add(Parser *parser, JsonKind kind, const uint8_t *begin, const uint8_t *end) {
     Json *json = parser->json;
     if (!store_grow(json->allocator, &json->values, &json->capacity, json->count + 1, sizeof *json->values))
         return refuse_memory(parser->error, "json", parser->name);
@@ -37,14 +37,14 @@ static SingeResult add(Parser *parser, JsonKind kind, const uint8_t *begin, cons
 }
 
 static SingeResult take_string(Parser *parser) {
-    if (parser->at == parser->end || *parser->at != '"') return bad(parser, "a string is missing");
+    if (parser->at == parser->end || *parser->at != '"') return json_bad(parser, "a string is missing");
     const uint8_t *begin = ++parser->at;
     for (; parser->at < parser->end && *parser->at != '"'; parser->at++) {
-        if (*parser->at < ' ') return bad(parser, "a string has a control character");
+        if (*parser->at < ' ') return json_bad(parser, "a string has a control character");
         if (*parser->at == '\\' && parser->at + 1 < parser->end) parser->at++;
     }
-    if (parser->at == parser->end) return bad(parser, "a string has no end");
-    TRY(add(parser, JSON_STRING, begin, parser->at));
+    if (parser->at == parser->end) return json_bad(parser, "a string has no end");
+    TRY(json_add(parser, JSON_STRING, begin, parser->at));
     parser->at++;
     return SINGE_OK;
 }
@@ -52,20 +52,20 @@ static SingeResult take_string(Parser *parser) {
 static SingeResult take_plain(Parser *parser) {
     const uint8_t *begin = parser->at;
     while (parser->at < parser->end && *parser->at > ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
-    if (parser->at == begin) return bad(parser, "a value is missing");
-    return add(parser, JSON_PLAIN, begin, parser->at);
+    if (parser->at == begin) return json_bad(parser, "a value is missing");
+    return json_add(parser, JSON_PLAIN, begin, parser->at);
 }
 
 /// A value, or the beginning of one that has others in it.
 static SingeResult take_value(Parser *parser) {
     skip_blanks(parser);
-    if (parser->at == parser->end) return bad(parser, "the text ends too soon");
+    if (parser->at == parser->end) return json_bad(parser, "the text ends too soon");
     uint8_t c = *parser->at;
     if (c == '"') return take_string(parser);
     if (c != '{' && c != '[') return take_plain(parser);
-    if (parser->depth == JSON_DEPTH) return bad(parser, "nested too deeply");
+    if (parser->depth == JSON_DEPTH) return json_bad(parser, "nested too deeply");
     parser->open[parser->depth++] = (uint32_t)parser->json->count;
-    TRY(add(parser, c == '{' ? JSON_OBJECT : JSON_ARRAY, parser->at, parser->at + 1));
+    TRY(json_add(parser, c == '{' ? JSON_OBJECT : JSON_ARRAY, parser->at, parser->at + 1));
     parser->at++;
     return SINGE_OK;
 }
@@ -82,7 +82,7 @@ static SingeResult go_on(Parser *parser) {
         return SINGE_OK;
     }
     if (open->count) {
-        if (parser->at == parser->end || *parser->at != ',') return bad(parser, "a comma or an end is missing");
+        if (parser->at == parser->end || *parser->at != ',') return json_bad(parser, "a comma or an end is missing");
         parser->at++;
         skip_blanks(parser);
     }
@@ -90,7 +90,7 @@ static SingeResult go_on(Parser *parser) {
     if (object) {
         TRY(take_string(parser));
         skip_blanks(parser);
-        if (parser->at == parser->end || *parser->at != ':') return bad(parser, "a colon is missing");
+        if (parser->at == parser->end || *parser->at != ':') return json_bad(parser, "a colon is missing");
         parser->at++;
     }
     return take_value(parser);
@@ -100,12 +100,12 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
                       SingeError *error) {
     *json = (Json){.text = text, .allocator = allocator};
     Parser parser = {.json = json, .name = name, .at = text, .end = text + size, .error = error};
-    if (size >= UINT32_MAX) return bad(&parser, "the text is too long");
+    if (size >= UINT32_MAX) return json_bad(&parser, "the text is too long");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) parser.at += 3;
     TRY(take_value(&parser));
     while (parser.depth) TRY(go_on(&parser));
     for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {} // some chunks are filled so
-    return parser.at < parser.end ? bad(&parser, "there is more behind the end") : SINGE_OK;
+    return parser.at < parser.end ? json_bad(&parser, "there is more behind the end") : SINGE_OK;
 }
 
 void json_free(Json *json) {

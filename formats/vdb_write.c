@@ -140,7 +140,7 @@ static void set_bit(uint8_t *mask, uint32_t x, uint32_t y, uint32_t z, int log) 
     mask[n >> 3] |= (uint8_t)(1 << (n & 7));
 }
 
-static bool bit(const uint8_t *mask, uint32_t n) { return mask[n >> 3] >> (n & 7) & 1; }
+static bool vdb_write_bit(const uint8_t *mask, uint32_t n) { return mask[n >> 3] >> (n & 7) & 1; }
 
 static void leaf_mask(const Writer *w, const Leaf *leaf, uint8_t mask[VDB_LEAF_MASK]) {
     uint32_t block[3] = {leaf->block[0], leaf->block[1], leaf->block[2]}, low[3], high[3];
@@ -190,7 +190,7 @@ static void put_buffers(Writer *w, VdbField field) {
         put_zeros(w, 1);
         const uint16_t *b = w->leaves[i].block;
         for (uint32_t n = 0; n < GAS_BLOCK * GAS_BLOCK * GAS_BLOCK; n++) {
-            if (!bit(mask, n)) continue;
+            if (!vdb_write_bit(mask, n)) continue;
             size_t cell = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
                                     b[2] * GAS_BLOCK + (n & 7));
             for (uint32_t k = 0; k < width; k++) put_float(w, values[cell * width + k]);

@@ -14,7 +14,7 @@ typedef struct Turn {
 
 /// Turns the faces of a component as its first one is; they lie from `begin` to `end` in the queue. Where it comes back
 /// to itself the other way round, as on a Moebius strip, it is cut.
-static void spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
+static void manifold_spread(Work *work, Turn *turn, uint32_t begin, uint32_t *end) {
     const Faces *faces = &work->faces;
     for (uint32_t i = begin; i < *end; i++) {
         uint32_t f = turn->queue[i];
@@ -104,7 +104,7 @@ static void turn_faces(Work *work) {
         uint32_t begin = end;
         turn.seen[f] = 1;
         turn.queue[end++] = f;
-        spread(work, &turn, begin, &end);
+        manifold_spread(work, &turn, begin, &end);
         decide(work, &turn, begin, end);
         work->report->components++;
     }

@@ -31,7 +31,7 @@ static const RepairText texts[MESH_REPAIRS] = {
     [MESH_SPLIT] = {"face split into quads", "faces split into quads", NULL},
 };
 
-static void describe(const MeshReport *report, char *text, size_t size) {
+static void mesh_report_describe(const MeshReport *report, char *text, size_t size) {
     int length = snprintf(text, size, "%u vertices, %u triangles, %u quads, %u polygons, %u component%s",
                           report->vertices, report->triangles, report->quads, report->polygons, report->components,
                           report->components == 1 ? "" : "s");
@@ -51,7 +51,7 @@ static void describe_repair(const MeshReport *report, MeshRepair repair, char *t
 
 bool mesh_report_line(const MeshReport *report, int index, char *text, size_t size) {
     if (index == 0) {
-        describe(report, text, size);
+        mesh_report_describe(report, text, size);
         return report->faces > 0;
     }
     for (int i = 0; i < MESH_REPAIRS; i++) {

@@ -165,8 +165,8 @@ static void find_twins(Pairs *pairs) {
 
 // ---- what a pair costs
 
-static uint32_t next3(uint32_t half) { return half - half % 3 + (half + 1) % 3; }
-static uint32_t last3(uint32_t half) { return half - half % 3 + (half + 2) % 3; }
+static uint32_t pair_next3(uint32_t half) { return half - half % 3 + (half + 1) % 3; }
+static uint32_t pair_last3(uint32_t half) { return half - half % 3 + (half + 2) % 3; }
 static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
     uint32_t twin = pairs->work->twin[half];
     return twin < half ? twin : half;
@@ -175,7 +175,7 @@ static uint32_t pair_name(const Pairs *pairs, uint32_t half) {
 /// The angle at the corner of a half-edge's triangle that it leaves.
 static double corner_angle(const Pairs *pairs, uint32_t half) {
     const uint32_t *corner = pairs->work->faces.corner;
-    return angle_at(pairs->work, corner[last3(half)], corner[half], corner[next3(half)]);
+    return angle_at(pairs->work, corner[pair_last3(half)], corner[half], corner[pair_next3(half)]);
 }
 
 static double fold_between(const Pairs *pairs, uint32_t a, uint32_t b) {
@@ -188,20 +188,20 @@ static double fold_between(const Pairs *pairs, uint32_t a, uint32_t b) {
 static bool is_seam(const Pairs *pairs, uint32_t half, uint32_t twin) {
     float (*uv)[2] = pairs->work->faces.uv;
     if (!uv) return false;
-    uint32_t a = next3(twin), b = next3(half);
+    uint32_t a = pair_next3(twin), b = pair_next3(half);
     return uv[half][0] != uv[a][0] || uv[half][1] != uv[a][1] || uv[b][0] != uv[twin][0] || uv[b][1] != uv[twin][1];
 }
 
 static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
     const uint32_t *corner = pairs->work->faces.corner;
-    double angle[4] = {corner_angle(pairs, half) + corner_angle(pairs, next3(twin)),
-                       corner_angle(pairs, next3(half)) + corner_angle(pairs, twin), corner_angle(pairs, last3(half)),
-                       corner_angle(pairs, last3(twin))};
+    double angle[4] = {corner_angle(pairs, half) + corner_angle(pairs, pair_next3(twin)),
+                       corner_angle(pairs, pair_next3(half)) + corner_angle(pairs, twin), corner_angle(pairs, pair_last3(half)),
+                       corner_angle(pairs, pair_last3(twin))};
     double worst = 0, max = 0, fold = fold_between(pairs, half / 3, twin / 3);
     for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), max = fmax(max, angle[i]);
-    bool thin_fan = corner[last3(half)] == corner[last3(twin)]; // a vertex inside must keep three cells
+    bool thin_fan = corner[pair_last3(half)] == corner[pair_last3(twin)]; // a vertex inside must keep three cells
     for (int i = 0; i < 2; i++) {
-        uint32_t v = corner[i ? next3(half) : half];
+        uint32_t v = corner[i ? pair_next3(half) : half];
         thin_fan = thin_fan || (!pairs->rim[v] && pairs->degree[v] <= 3);
     }
     pairs->cost[half] = worst + fold;
@@ -258,8 +258,8 @@ static HeapItem heap_pop(Pairs *pairs) {
 /// triangle's side that both share, `twin` the mate's.
 static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
     double angle = corner_angle(pairs, corner_half);
-    if (corner_half == half) angle += corner_angle(pairs, next3(twin));
-    else if (corner_half == next3(half)) angle += corner_angle(pairs, twin);
+    if (corner_half == half) angle += corner_angle(pairs, pair_next3(twin));
+    else if (corner_half == pair_next3(half)) angle += corner_angle(pairs, twin);
     return angle;
 }
 
@@ -278,13 +278,13 @@ static double pair_gain(const Pairs *pairs, uint32_t half) {
     double gain = 0;
     for (int i = 0; i < 4; i++) {
         uint32_t inner = i < 2 ? half : twin, other = i < 2 ? twin : half;
-        uint32_t side = i & 1 ? next3(inner) : last3(inner), across = work->twin[side];
+        uint32_t side = i & 1 ? pair_next3(inner) : pair_last3(inner), across = work->twin[side];
         if (across == MESH_NONE || pairs->mate[across / 3] == MESH_NONE) continue;
         uint32_t shared = shared_half(pairs, across / 3);
         if (shared == MESH_NONE || shared == across) continue;
         uint32_t shared_twin = work->twin[shared];
-        double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, next3(across), shared, shared_twin);
-        double to = quad_angle(pairs, next3(side), inner, other) + quad_angle(pairs, across, shared, shared_twin);
+        double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, shared_twin);
+        double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, shared_twin);
         gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
     }
     return straight_gain * gain;
@@ -329,7 +329,7 @@ static bool any_alone(const Pairs *pairs) {
 }
 
 /// Grows the pairs over the graph of good pairs or of all.
-static void grow(Pairs *pairs, bool all, const uint8_t *open) {
+static void pair_grow(Pairs *pairs, bool all, const uint8_t *open) {
     Work *work = pairs->work;
     const uint32_t count = work->faces.count;
     uint32_t *first = work_new(work, (size_t)count + 1, sizeof *first);
@@ -351,7 +351,7 @@ static uint32_t open_side(const Pairs *pairs, uint32_t triangle) {
     double max = -1;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
         if (work->twin[h] != MESH_NONE) continue;
-        double length = distance3(work->position[work->faces.corner[h]], work->position[work->faces.corner[next3(h)]]);
+        double length = distance3(work->position[work->faces.corner[h]], work->position[work->faces.corner[pair_next3(h)]]);
         if (length > max) max = length, best = h;
     }
     return best;
@@ -363,9 +363,9 @@ static bool find_mates(Pairs *pairs) {
     if (work->no_memory) return true;
     for (uint32_t h = 0; h < work->faces.corner_count; h++) open[h / 3] |= work->twin[h] == MESH_NONE;
     join_cheapest(pairs);
-    grow(pairs, false, NULL);
-    grow(pairs, false, open);
-    grow(pairs, true, open);
+    pair_grow(pairs, false, NULL);
+    pair_grow(pairs, false, open);
+    pair_grow(pairs, true, open);
     for (uint32_t t = 0; t < work->faces.count && !work->no_memory; t++)
         if (pairs->mate[t] == MESH_NONE && !open[t]) return false;
     return true;
@@ -376,16 +376,16 @@ static bool find_mates(Pairs *pairs) {
 /// The triangle of `half` with a vertex in the middle of that side.
 static void push_halved(const Faces *old, uint32_t half, uint32_t centroid, Faces *out) {
     faces_push(out, old->corner[half], old, half);
-    faces_push_between(out, centroid, old, half, next3(half));
-    faces_push(out, old->corner[next3(half)], old, next3(half));
-    faces_push(out, old->corner[last3(half)], old, last3(half));
+    faces_push_between(out, centroid, old, half, pair_next3(half));
+    faces_push(out, old->corner[pair_next3(half)], old, pair_next3(half));
+    faces_push(out, old->corner[pair_last3(half)], old, pair_last3(half));
     faces_end(out, old->origin[half / 3]);
 }
 
-static void halve(Pairs *pairs, uint32_t half, Faces *out) {
+static void pair_halve(Pairs *pairs, uint32_t half, Faces *out) {
     Work *work = pairs->work;
     const Faces *old = &work->faces;
-    const uint32_t ends[2] = {old->corner[half], old->corner[next3(half)]};
+    const uint32_t ends[2] = {old->corner[half], old->corner[pair_next3(half)]};
     uint32_t centroid = work_vertex(work, ends, 2);
     push_halved(old, half, centroid, out);
     if (work->twin[half] != MESH_NONE) push_halved(old, work->twin[half], centroid, out);
@@ -400,7 +400,7 @@ static void push_quad(Pairs *pairs, uint32_t half, Faces *out) {
     if (whole != MESH_NONE && pairs->whole[twin / 3] == whole) {
         for (uint32_t i = 0; i < 4; i++) faces_push(out, pairs->before.corner[whole + i], &pairs->before, whole + i);
     } else {
-        const uint32_t ring[4] = {half, last3(twin), next3(half), last3(half)};
+        const uint32_t ring[4] = {half, pair_last3(twin), pair_next3(half), pair_last3(half)};
         for (int i = 0; i < 4; i++) faces_push(out, old->corner[ring[i]], old, ring[i]);
         work_did(work, MESH_PAIRED, 1, work_face_name(work, old->origin[half / 3]));
     }
@@ -413,14 +413,14 @@ static void emit(Pairs *pairs) {
     Faces out = work_faces(work, count, 4 * count);
     for (uint32_t t = 0; t < count && !work->no_memory; t++) {
         if (pairs->mate[t] == MESH_NONE) {
-            halve(pairs, open_side(pairs, t), &out);
+            pair_halve(pairs, open_side(pairs, t), &out);
             continue;
         }
         if (pairs->mate[t] < t) continue;
         uint32_t half = shared_half(pairs, t), whole = pairs->whole[t];
         bool was_quad = whole != MESH_NONE && pairs->whole[pairs->mate[t]] == whole;
         if (was_quad || pairs->good[pair_name(pairs, half)]) push_quad(pairs, half, &out);
-        else halve(pairs, half, &out);
+        else pair_halve(pairs, half, &out);
     }
     work->faces = out;
 }

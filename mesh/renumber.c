@@ -23,12 +23,12 @@ static uint32_t step(const Order *order, uint32_t lower, bool right) {
     return right ? next4(twin) : next4(across4(twin));
 }
 
-static void number(Order *order, uint32_t vertex) {
+static void renumber_number(Order *order, uint32_t vertex) {
     if (order->vertex[vertex] == MESH_NONE) order->vertex[vertex] = order->vertices++;
 }
 
 /// Numbers the row through a quad and returns the lower side from which the next one begins, or MESH_NONE.
-static uint32_t walk(Order *order, uint32_t lower) {
+static uint32_t renumber_walk(Order *order, uint32_t lower) {
     const Faces *faces = &order->work->faces;
     uint32_t start = lower, count = 0, above = MESH_NONE;
     for (uint32_t at = lower, steps = 0; at != MESH_NONE && steps < faces->count; steps++) {
@@ -39,9 +39,9 @@ static uint32_t walk(Order *order, uint32_t lower) {
     for (uint32_t at = start; at != MESH_NONE; at = step(order, at, true)) {
         order->face[at / 4] = order->faces++;
         order->row[count++] = at;
-        number(order, faces->corner[at]);
+        renumber_number(order, faces->corner[at]);
     }
-    number(order, faces->corner[next4(order->row[count - 1])]);
+    renumber_number(order, faces->corner[next4(order->row[count - 1])]);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t twin = order->work->twin[across4(order->row[i])];
         if (twin != MESH_NONE && order->face[twin / 4] == MESH_NONE && above == MESH_NONE) above = twin;
@@ -49,8 +49,8 @@ static uint32_t walk(Order *order, uint32_t lower) {
     if (above == MESH_NONE) // the top: nothing will number it
         for (uint32_t i = 0; i < count; i++) {
             uint32_t top = across4(order->row[i]);
-            number(order, faces->corner[next4(top)]);
-            if (i + 1 == count) number(order, faces->corner[top]);
+            renumber_number(order, faces->corner[next4(top)]);
+            if (i + 1 == count) renumber_number(order, faces->corner[top]);
         }
     return above;
 }
@@ -122,9 +122,9 @@ void mesh_order(Work *work) {
     for (uint32_t f = 0; f < count; f++) {
         if (order.face[f] != MESH_NONE) continue;
         uint32_t side = searches-- > 0 ? first_side(work, order.face, f) : 4 * f;
-        while (side != MESH_NONE) side = walk(&order, side);
+        while (side != MESH_NONE) side = renumber_walk(&order, side);
         if (order.face[f] == MESH_NONE) f--; // not reached yet
     }
-    for (uint32_t v = 0; v < work->vertex_count; v++) number(&order, v); // of no face
+    for (uint32_t v = 0; v < work->vertex_count; v++) renumber_number(&order, v); // of no face
     apply(&order);
 }

@@ -13,7 +13,7 @@ static double lobe(double x, double centre, double left, double right) {
     return exp(-0.5 * t * t);
 }
 
-static void observe(double nm, double xyz[3]) {
+static void blackbody_observe(double nm, double xyz[3]) {
     xyz[0] = 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
              0.065 * lobe(nm, 501.1, 0.0490, 0.0382);
     xyz[1] = 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322);
@@ -25,7 +25,7 @@ static void planck_xyz(double temperature, double xyz[3]) {
     for (int nm = 380; nm <= 780; nm += 5) {
         double lambda = nm * 1e-9, seen[3];
         double radiance = pow(lambda * 1e6, -5) / (exp(1.438777e-2 / (lambda * temperature)) - 1);
-        observe(nm, seen);
+        blackbody_observe(nm, seen);
         for (int c = 0; c < 3; c++) xyz[c] += radiance * seen[c];
     }
 }

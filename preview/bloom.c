@@ -39,7 +39,7 @@ static void blur_line(const Float3 *in, Float3 *out, int length, size_t step, co
     }
 }
 
-static void blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
+static void bloom_blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
     float weight[RADIUS_LIMIT + 1], sum = 0;
     int radius = (int)ceilf(3 * sigma);
     radius = radius < 1 ? 1 : radius > RADIUS_LIMIT ? RADIUS_LIMIT : radius;
@@ -55,7 +55,7 @@ static void blur(Float3 *image, Float3 *scratch, int w, int h, float sigma) {
     for (int x = 0; x < w; x++) blur_line(scratch + x, image + x, h, (size_t)w, weight, radius);
 }
 
-static void add(Preview *preview, const Float3 *glow, int w, int h, float amount) {
+static void bloom_add(Preview *preview, const Float3 *glow, int w, int h, float amount) {
     amount /= preview->def.exposure;
     for (int y = 0; y < preview->def.height; y++) {
         float gy = clampf(((float)y + 0.5f) / SHRINK - 0.5f, 0, (float)(h - 1));
@@ -77,8 +77,8 @@ void bloom_apply(Preview *preview) {
     Float3 *glow = preview->glow[0], *scratch = preview->glow[1];
     if (!shrink(preview, w, h, glow)) return;
     float near = 0.005f * (float)preview->def.height / SHRINK, far = 0.022f * (float)preview->def.height / SHRINK;
-    blur(glow, scratch, w, h, maxf(near, 0.4f));
-    add(preview, glow, w, h, 0.14f);
-    blur(glow, scratch, w, h, maxf(far, 0.8f));
-    add(preview, glow, w, h, 0.10f);
+    bloom_blur(glow, scratch, w, h, maxf(near, 0.4f));
+    bloom_add(preview, glow, w, h, 0.14f);
+    bloom_blur(glow, scratch, w, h, maxf(far, 0.8f));
+    bloom_add(preview, glow, w, h, 0.10f);
 }

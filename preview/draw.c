@@ -25,7 +25,7 @@ typedef struct Job {
 } Job;
 
 /// A sample's place in the pixel: a tent of radius 0.9 pixel, softer than a box and without ringing.
-static void position_sample(int sample, float at[2]) {
+static void sample_offset(int sample, float at[2]) {
     sample_square((uint32_t)sample, 0.5f, 0.5f, at);
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
@@ -187,7 +187,7 @@ static void add_light(const Preview *preview, Block *block, const int *active, i
 static void add_sample(const Preview *preview, Block *block, const int *active, bool bare, int sample, int rays) {
     if (!bare || preview->camera.lens > 0) {
         float at[2];
-        position_sample(sample, at);
+        sample_offset(sample, at);
         aim_block(preview, block, sample, at);
         if (!bare) find_points(preview, block, active);
         for (int i = 0; bare && i < LANES; i++)
@@ -311,7 +311,7 @@ static void fill_table(Preview *preview, Block *block) {
     for (int i = 0; i < LANES; i++) block->key[i] = sample_key(block->x[i], block->y[i], preview->def.seed);
     for (int s = 0; s < samples; s++) {
         float at[2];
-        position_sample(s, at);
+        sample_offset(s, at);
         aim_block(preview, block, s, at);
         for (int i = 0; i < LANES; i++) {
             float distance = hit_ground(preview, block->origin[i], block->direction[i]);

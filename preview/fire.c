@@ -15,7 +15,7 @@
 #define FLAME_SEEN 0.085f  ///< less is below the edge of a flame wherever noise puts it
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
-static size_t at(const Fire *fire, int x, int y, int z) {
+static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
 }
 
@@ -35,7 +35,7 @@ static void fill_cells(Fire *fire, const SingeGas *gas) {
     for (uint32_t z = 0; z < gas->size[2]; z++)
         for (uint32_t y = 0; y < gas->size[1]; y++)
             for (uint32_t x = 0; x < gas->size[0]; x++, from++) {
-                size_t to = at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
+                size_t to = fire_at(fire, (int)x + FIRE_BORDER, (int)y + FIRE_BORDER, (int)z + FIRE_BORDER);
                 fill_cell(gas, from, &fire->cells[to], fire->source[to]);
             }
 }
@@ -55,24 +55,24 @@ static void find_roots(Preview *preview) {
         bool in = true;
         for (int c = 0; c < 3; c++) in = in && position[c] > 0 && position[c] < fire->size[c] - 1;
         if (!in) continue;
-        float *root = fire->roots[at(fire, position[0], position[1], position[2])];
+        float *root = fire->roots[fire_at(fire, position[0], position[1], position[2])];
         root[0] += rate, root[1] += rate * scene->positions[i][2];
     }
 }
 
 /// The layer below as the gas came from there: flame and rise at (x - vx/vz, y - vy/vz).
 static FireCell upstream(const Fire *fire, int x, int y, int z) {
-    const float *drift = fire->source[at(fire, x, y, z)];
+    const float *drift = fire->source[fire_at(fire, x, y, z)];
     float fx, fy;
     int ix = noise_floor((float)x - drift[0], &fx), iy = noise_floor((float)y - drift[1], &fy);
-    const FireCell *a = &fire->cells[at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
+    const FireCell *a = &fire->cells[fire_at(fire, ix, iy, z - 1)], *b = a + fire->size[0];
     FireCell out = {.flame = mixf(mixf(a[0].flame, a[1].flame, fx), mixf(b[0].flame, b[1].flame, fx), fy)};
     out.rise = mixf(mixf(a[0].rise, a[1].rise, fx), mixf(b[0].rise, b[1].rise, fx), fy);
     return out;
 }
 
 static void raise_cell(Fire *fire, int x, int y, int z) {
-    size_t here = at(fire, x, y, z), above = at(fire, x, y, z + 1);
+    size_t here = fire_at(fire, x, y, z), above = fire_at(fire, x, y, z + 1);
     FireCell *cell = &fire->cells[here];
     cell->rise = 0, cell->flame = fire->source[here][2];
     if (cell->flame <= 0) return;
@@ -119,7 +119,7 @@ static void mark_cells(Fire *fire, int x, int y, int z) {
     }
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
-            memset(&fire->burns[at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
+            memset(&fire->burns[fire_at(fire, low[0], j, k)], 1, (size_t)(high[0] - low[0] + 1));
 }
 
 /// The most that the spline can be in a cell's box: the largest of its Bezier points, which are the means of the
@@ -130,7 +130,7 @@ static float max_flame(const Fire *fire, int x, int y, int z) {
         int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
         float sum = 0;
         for (int m = 0; m < 8; m++)
-            sum += fire->cells[at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))].flame;
+            sum += fire->cells[fire_at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))].flame;
         max = maxf(max, 0.125f * sum);
     }
     return max;
@@ -147,7 +147,7 @@ static void mark_all(Fire *fire) {
                     mark_bricks(fire, x, y, z, reach, FIRE_FLAME);
                     mark_cells(fire, x, y, z);
                 }
-                if (fire->cells[at(fire, x, y, z)].smoke > SMOKE_SEEN) mark_bricks(fire, x, y, z, 1, FIRE_SMOKE);
+                if (fire->cells[fire_at(fire, x, y, z)].smoke > SMOKE_SEEN) mark_bricks(fire, x, y, z, 1, FIRE_SMOKE);
             }
 }
 
@@ -285,7 +285,7 @@ void fire_light_smoke(Preview *preview) {
     for (int z = 0; z < fire->size[2]; z++)
         for (int y = 0; y < fire->size[1]; y++)
             for (int x = 0; x < fire->size[0]; x++) {
-                FireCell *cell = &fire->cells[at(fire, x, y, z)];
+                FireCell *cell = &fire->cells[fire_at(fire, x, y, z)];
                 cell->glow = 0;
                 if (cell->smoke <= SMOKE_SEEN) continue;
                 Float3 p = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), fire->cell);

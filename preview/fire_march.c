@@ -18,7 +18,7 @@ static void add_step(Gathered *g, const Matter *m, float step) {
 // ---- along the ray
 
 /// Enters and leaves the bounds. False where the ray misses them.
-static bool clip(const Fire *fire, Float3 eye, Float3 d, float *near, float *far) {
+static bool fire_clip(const Fire *fire, Float3 eye, Float3 d, float *near, float *far) {
     const float from[3] = {eye.x, eye.y, eye.z}, ray[3] = {d.x, d.y, d.z};
     const float low[3] = {fire->low.x, fire->low.y, fire->low.z}, high[3] = {fire->high.x, fire->high.y, fire->high.z};
     *near = 0, *far = INFINITY;
@@ -52,7 +52,7 @@ static void see_ray(const Preview *preview, Float3 d, FireView *view) {
     Float3 eye = preview->camera.eye;
     float t, far, run;
     view->count = 0;
-    if (!clip(fire, eye, d, &t, &far)) return;
+    if (!fire_clip(fire, eye, d, &t, &far)) return;
     Gathered g = {{0, 0, 0}, 1};
     // far away a step must still be one in floats
     float fine = minf(0.35f * fire->cell, 0.0028f), min = maxf((far - t) / (4 * FIRE_STEPS), 1e-5f * far);

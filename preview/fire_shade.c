@@ -71,7 +71,7 @@ static FireCell look_up(const Fire *fire, Float3 g) {
 typedef struct Noise { float a, b, c, d; } Noise;
 
 /// The whole number below x, and what is left. Places lie within some kilometres, so that it is an int.
-static inline int split(float x, float *rest) {
+static inline int fire_split(float x, float *rest) {
     int whole = (int)x - (x < (float)(int)x);
     *rest = x - (float)whole;
     return whole;
@@ -80,7 +80,7 @@ static inline int split(float x, float *rest) {
 /// Four smooth noises from -1 to 1 at q, lattice size 1.
 static inline Noise noise_at(const Fire *fire, Float3 q) {
     float fx, fy, fz;
-    int x = split(q.x, &fx), y = split(q.y, &fy), z = split(q.z, &fz);
+    int x = fire_split(q.x, &fx), y = fire_split(q.y, &fy), z = fire_split(q.z, &fz);
     fx = fx * fx * (3 - 2 * fx), fy = fy * fy * (3 - 2 * fy), fz = fz * fz * (3 - 2 * fz);
     Four layer[2];
     for (int k = 0; k < 2; k++) {
@@ -165,7 +165,7 @@ static bool may_burn(const Fire *fire, Float3 p) {
 }
 
 /// Flame and smoke at p, as the eddies have shifted them.
-static FireCell sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
+static FireCell fire_sample(const Fire *fire, Float3 p, int what, Float3 *light, float *opaque) {
     Noise wide = eddies(fire, p, fire->moment, 0.019f, 3.0f);
     Float3 shifted = float3_mad(p, float3(wide.a, wide.b, 0), 0.7f * FIRE_WARP_WIDE);
     if (!may_burn(fire, shifted)) {
@@ -186,7 +186,7 @@ Matter fire_matter(const Preview *preview, Float3 p, int what) {
     Matter m = {{0, 0, 0}, 0, false};
     FireCell cell;
     if (what & FIRE_FLAME) {
-        cell = sample(fire, p, what, &m.light, &m.dense);
+        cell = fire_sample(fire, p, what, &m.light, &m.dense);
         m.flame = m.light.z > 0;
     } else {
         cell = cell_at(fire, p);

@@ -22,7 +22,7 @@ static float luminance(const GlowPicture *picture, size_t pixel) {
     return picture->layers->sheet[pixel] < 0 ? 0 : float3_luminance(float3_load(picture->layers->glow[pixel]));
 }
 
-static Float3 position(const GlowPicture *picture, int x, int y) {
+static Float3 glow_position(const GlowPicture *picture, int x, int y) {
     const Camera *camera = &picture->camera;
     float u = 2 * ((float)x + 0.5f) / (float)picture->width - 1, v = 1 - 2 * ((float)y + 0.5f) / (float)picture->height;
     Float3 ray = float3_mad(float3_mad(camera->forward, camera->right, u), camera->up, v);
@@ -35,7 +35,7 @@ static bool glows(const GlowPicture *picture, int x, int y) {
 }
 
 /// The last pixel that glows on the way from (x, y) along (dx, dy).
-static void walk(const GlowPicture *picture, int x, int y, float dx, float dy, int end[2]) {
+static void glow_walk(const GlowPicture *picture, int x, int y, float dx, float dy, int end[2]) {
     end[0] = x, end[1] = y;
     for (int step = 1; step <= WALK_LIMIT; step++) {
         int to[2] = {x + (int)lroundf((float)step * dx), y + (int)lroundf((float)step * dy)};
@@ -50,16 +50,16 @@ static float width_at(const GlowPicture *picture, int x, int y) {
     for (int k = 0; k < DIRECTIONS; k++) {
         float angle = PI_F * (float)k / DIRECTIONS, dx = cosf(angle), dy = sinf(angle);
         int a[2], b[2];
-        walk(picture, x, y, dx, dy, a), walk(picture, x, y, -dx, -dy, b);
+        glow_walk(picture, x, y, dx, dy, a), glow_walk(picture, x, y, -dx, -dy, b);
         float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
         // between the middles of the last pixels, and half of each
-        float width = float3_length(float3_sub(position(picture, a[0], a[1]), position(picture, b[0], b[1])));
+        float width = float3_length(float3_sub(glow_position(picture, a[0], a[1]), glow_position(picture, b[0], b[1])));
         min = minf(min, width + depth * picture->camera.pixel);
     }
     return min;
 }
 
-static int ascending(const void *a, const void *b) {
+static int glow_ascending(const void *a, const void *b) {
     const float *x = a, *y = b;
     return (*x > *y) - (*x < *y);
 }
@@ -75,13 +75,13 @@ SingeResult preview_glow_width(const PreviewDef *def, const PreviewLayers *layer
         if (value > 1e-3f) values[lit++] = value;
     }
     if (lit) {
-        qsort(values, lit, sizeof *values, ascending);
+        qsort(values, lit, sizeof *values, glow_ascending);
         picture.min = 0.1f * values[lit - 1 - lit / 100];
         lit = 0;
         for (int y = 0; y < def->height; y++)
             for (int x = 0; x < def->width; x++)
                 if (glows(&picture, x, y)) values[lit++] = width_at(&picture, x, y);
-        qsort(values, lit, sizeof *values, ascending);
+        qsort(values, lit, sizeof *values, glow_ascending);
         *width = (double)values[lit / 2];
     }
     free(values);

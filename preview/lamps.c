@@ -30,7 +30,7 @@ static inline float four_sum(Four a) { return a[0] + a[1] + (a[2] + a[3]); }
 
 /// What white paper at the point sends back of all lights, and the luminance in each. A normal that faces away from a
 /// light is lit through the sheet.
-static Float3 gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
+static Float3 lamps_gather(const EmberLights *l, const Point *point, int count, float weight[LIGHT_LIMIT]) {
     Float3 p = point->position, n = point->normal;
     Four r = {0, 0, 0, 0}, g = r, b = r, zero = r;
     for (int k = 0; k < count; k += 4) {
@@ -57,7 +57,7 @@ static int choose(const float weight[LIGHT_LIMIT], int count, float random) {
 }
 
 /// Aims at a random point of a lamp; what stands within it does not hide it.
-static void aim(const Preview *preview, Block *block, int lane, int sample, int lamp) {
+static void lamps_aim(const Preview *preview, Block *block, int lane, int sample, int lamp) {
     const EmberLights *l = &preview->scene.lights;
     const Point *point = &block->point[lane];
     float square[2], extent = l->extent[lamp];
@@ -82,7 +82,7 @@ static void ask(const Preview *preview, Block *block, const float wanted[LANES],
         rest_ray(&block->shadow, i);
         if (wanted[i] <= 0) continue;
         float random = hash_unit(block->key[i] ^ 0x5bd1e995u) + golden * (float)sample;
-        aim(preview, block, i, sample, choose(weight[i], preview->scene.light_count, random - floorf(random)));
+        lamps_aim(preview, block, i, sample, choose(weight[i], preview->scene.light_count, random - floorf(random)));
     }
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++)
@@ -98,7 +98,7 @@ static Float3 white_light(const Preview *preview, Block *block, int lane, bool a
         (float3_dot(point->normal, block->lamp_normal[lane]) > 0.99f || float3_luminance(point->albedo) < 0.08f))
         return block->lamp_white[lane];
     block->lamp_position[lane] = point->position, block->lamp_normal[lane] = point->normal;
-    return block->lamp_white[lane] = gather(&preview->scene.lights, point, preview->scene.light_count, weight);
+    return block->lamp_white[lane] = lamps_gather(&preview->scene.lights, point, preview->scene.light_count, weight);
 }
 
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]) {
@@ -136,7 +136,7 @@ static bool is_same(const Lamp *a, const Lamp *b) {
 }
 
 /// Mean of `values` along a line of pixels `stride` apart, from `before` of them to `after`, each at its nearness.
-static float smooth(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride, int before, int after,
+static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride, int before, int after,
                     int reach) {
     float sum = 0, total = 0;
     for (int k = -before; k <= after; k++) {
@@ -148,7 +148,7 @@ static float smooth(const Lamp *lamp, const float *values, size_t values_stride,
     return total > 0 ? sum / total : *values;
 }
 
-static int lesser(int a, int b) { return a < b ? a : b; }
+static int lamps_lesser(int a, int b) { return a < b ? a : b; }
 
 static int smooth_reach(const Preview *preview) { return 2 + preview->def.height / 180; }
 
@@ -159,7 +159,7 @@ void lamps_smooth(Preview *preview, Block *block) {
         if (x >= w || y >= h) continue;
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
         const Lamp *lamp = &preview->lamps[pixel];
-        preview->seen[pixel] = smooth(lamp, &lamp->seen, sizeof *lamp, 1, lesser(x, reach), lesser(w - 1 - x, reach),
+        preview->seen[pixel] = lamps_smooth_line(lamp, &lamp->seen, sizeof *lamp, 1, lamps_lesser(x, reach), lamps_lesser(w - 1 - x, reach),
                                       reach);
     }
 }
@@ -172,7 +172,7 @@ void lamps_finish(Preview *preview, Block *block) {
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
         const Lamp *lamp = &preview->lamps[pixel];
         if (lamp->light.x + lamp->light.y + lamp->light.z <= 0) continue;
-        float seen = smooth(lamp, &preview->seen[pixel], sizeof(float), w, lesser(y, reach), lesser(h - 1 - y, reach),
+        float seen = lamps_smooth_line(lamp, &preview->seen[pixel], sizeof(float), w, lamps_lesser(y, reach), lamps_lesser(h - 1 - y, reach),
                             reach);
         preview->picture[pixel] = float3_mad(preview->picture[pixel], lamp->light, seen);
     }

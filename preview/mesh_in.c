@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint32_t count, size_t size) {
+static bool mesh_in_grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint32_t count, size_t size) {
     void **array = array_pointer;
     if (count <= *capacity) return true;
     uint32_t wanted = count + count / 4 < count ? count : count + count / 4;
@@ -19,14 +19,14 @@ static bool grow(Preview *preview, void *array_pointer, uint32_t *capacity, uint
     return true;
 }
 
-static bool reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
+static bool mesh_in_reserve(Preview *preview, uint32_t vertices, uint32_t triangles) {
     Scene *scene = &preview->scene;
     size_t position = sizeof *scene->positions;
-    bool done = grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
-                grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
+    bool done = mesh_in_grow(preview, &scene->vertices, &scene->vertex_capacity, vertices, sizeof *scene->vertices) &&
+                mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
     for (int i = 0; done && preview->def.shutter > 0 && i < 2; i++)
-        done = grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
-    return done && grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
+        done = mesh_in_grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
+    return done && mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
 }
 
 static float finite_or(float x, float otherwise) { return isfinite(x) ? x : otherwise; }
@@ -202,7 +202,7 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
     scene->vertex_count = scene->triangle_count = 0;
     SingeResult result = check(surface, error);
     if (result) return result;
-    if (!reserve(preview, surface->vertex_count, surface->triangle_count))
+    if (!mesh_in_reserve(preview, surface->vertex_count, surface->triangle_count))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a surface of %u vertices",
                             surface->vertex_count);
 

@@ -44,23 +44,23 @@ static bool all_between(const float *values, int count, float low, float high) {
     return true;
 }
 
-static SingeResult refuse(SingeError *error, int64_t element, const char *what) {
+static SingeResult preview_refuse(SingeError *error, int64_t element, const char *what) {
     return preview_fail(error, SINGE_ERROR_ARGUMENT, element, "%s", what);
 }
 
 static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) {
     if (!all_between(camera->eye, 3, -1e4f, 1e4f) || !all_between(camera->target, 3, -1e4f, 1e4f) ||
         !all_between(camera->up, 3, -1e4f, 1e4f))
-        return refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
+        return preview_refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
     Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
-    if (!(float3_dot(view, view) > 1e-12f)) return refuse(error, -1, "camera: eye and target are the same point");
-    if (!(float3_dot(up, up) > 1e-12f)) return refuse(error, -1, "camera: up has no direction");
+    if (!(float3_dot(view, view) > 1e-12f)) return preview_refuse(error, -1, "camera: eye and target are the same point");
+    if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up has no direction");
     if (!(camera->fov > 0.001f && camera->fov < 3.1f))
-        return refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
+        return preview_refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
     if (!(camera->aperture >= 0 && camera->aperture <= 10))
-        return refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
+        return preview_refuse(error, -1, "camera: aperture must lie between 0 and 10 m");
     if (!(camera->focus >= 0 && camera->focus <= 1e4f))
-        return refuse(error, -1, "camera: focus must lie between 0 and 10 km");
+        return preview_refuse(error, -1, "camera: focus must lie between 0 and 10 km");
     return SINGE_OK;
 }
 
@@ -81,11 +81,11 @@ static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeEr
     default: good = false;
     }
     if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
-    return good ? SINGE_OK : refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
+    return good ? SINGE_OK : preview_refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
 }
 
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
-    if (count && !shapes) return refuse(error, -1, "shapes: a count and no array");
+    if (count && !shapes) return preview_refuse(error, -1, "shapes: a count and no array");
     for (uint32_t i = 0; i < count; i++) {
         SingeResult result = check_shape(&shapes[i], i, error);
         if (result) return result;
@@ -101,44 +101,44 @@ static bool image_is_good(const Image *image) {
 static SingeResult check_light(const PreviewDef *def, SingeError *error) {
     Float3 sun = float3_load(def->sun_direction);
     if (!float3_finite(sun) || !(float3_dot(sun, sun) > 1e-20f) || !(float3_dot(sun, sun) < 1e20f))
-        return refuse(error, -1, "sun_direction must be finite and not zero");
+        return preview_refuse(error, -1, "sun_direction must be finite and not zero");
     if (!(def->sun_angle >= 0 && def->sun_angle < 1.5f))
-        return refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
+        return preview_refuse(error, -1, "sun_angle must lie between 0 and 1.5 rad");
     if (!all_between(def->sun_colour, 3, 0, 1e4f) || !all_between(def->sky_colour, 3, 0, 1e4f) ||
         !all_between(def->ground_colour, 3, 0, 1e4f) || !all_between(def->background, 3, 0, 1e4f))
-        return refuse(error, -1, "colours must be finite and not negative");
-    if (!(def->exposure > 0 && def->exposure < 1e4f)) return refuse(error, -1, "exposure must be above 0");
-    if (!(def->shutter >= 0 && def->shutter <= 1e4f)) return refuse(error, -1, "shutter must lie between 0 and 1e4 s");
-    if (!(def->pace > 0 && def->pace <= 1e9f)) return refuse(error, -1, "pace must be above 0");
-    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return refuse(error, -1, "ground is none of those there are");
-    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return refuse(error, -1, "sky is none of those there are");
-    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f) return refuse(error, -1, "sky_turn must be finite");
+        return preview_refuse(error, -1, "colours must be finite and not negative");
+    if (!(def->exposure > 0 && def->exposure < 1e4f)) return preview_refuse(error, -1, "exposure must be above 0");
+    if (!(def->shutter >= 0 && def->shutter <= 1e4f)) return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
+    if (!(def->pace > 0 && def->pace <= 1e9f)) return preview_refuse(error, -1, "pace must be above 0");
+    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return preview_refuse(error, -1, "ground is none of those there are");
+    if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is none of those there are");
+    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f) return preview_refuse(error, -1, "sky_turn must be finite");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
-        return refuse(error, -1, "sky_picture is missing, empty or too large");
+        return preview_refuse(error, -1, "sky_picture is missing, empty or too large");
     float ground = def->ground_height;
     if (!(ground <= 1e4f) || (ground < -1e4f && isfinite(ground)))
-        return refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
+        return preview_refuse(error, -1, "ground_height must lie within 10 km, or be -infinity for none");
     return SINGE_OK;
 }
 
 static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     if (def->width < 1 || def->height < 1 || def->width > SIZE_LIMIT || def->height > SIZE_LIMIT)
-        return refuse(error, -1, "width and height must lie between 1 and 16384");
-    if (def->samples < 1 || def->samples > 4096) return refuse(error, -1, "samples must lie between 1 and 4096");
+        return preview_refuse(error, -1, "width and height must lie between 1 and 16384");
+    if (def->samples < 1 || def->samples > 4096) return preview_refuse(error, -1, "samples must lie between 1 and 4096");
     if (def->thread_count < 1 || def->thread_count > THREAD_LIMIT)
-        return refuse(error, -1, "thread_count must lie between 1 and 64");
+        return preview_refuse(error, -1, "thread_count must lie between 1 and 64");
     SingeResult result = check_camera(&def->camera, error);
     if (!result) result = check_light(def, error);
     if (!result) result = check_shapes(def->shapes, def->shape_count, error);
     for (uint32_t s = 0; !result && def->pictures && s < def->sheet_count; s++) {
         if (def->pictures[s] && !image_is_good(def->pictures[s]))
-            result = refuse(error, s, "a sheet's picture is empty or too large");
+            result = preview_refuse(error, s, "a sheet's picture is empty or too large");
     }
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
-        if (!all_between(def->colours[s], 3, 0, 1e4f)) result = refuse(error, s, "a sheet's colour is out of range");
+        if (!all_between(def->colours[s], 3, 0, 1e4f)) result = preview_refuse(error, s, "a sheet's colour is out of range");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
-            result = refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
+            result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
     return result;
 }
 
@@ -148,7 +148,7 @@ static size_t glow_count(const PreviewDef *def) {
     return (size_t)((def->width + 3) / 4) * (size_t)((def->height + 3) / 4);
 }
 
-static SingeResult allocate(Preview *preview, SingeError *error) {
+static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
     preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
@@ -170,7 +170,7 @@ static SingeResult allocate(Preview *preview, SingeError *error) {
     return SINGE_OK;
 }
 
-static void aim(Preview *preview) {
+static void preview_aim(Preview *preview) {
     preview->camera = camera_make(&preview->def);
     preview->sun = float3_unit_or(float3_load(preview->def.sun_direction), float3(0, 0, 1));
     float3_frame(preview->sun, &preview->sun_right, &preview->sun_up);
@@ -188,8 +188,8 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     Preview *preview = preview_resize(&allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
     *preview = (Preview){.def = *def, .allocator = allocator};
-    aim(preview);
-    result = allocate(preview, error);
+    preview_aim(preview);
+    result = preview_allocate(preview, error);
     if (!result) {
         preview->device = rtcNewDevice("threads=1,set_affinity=0");
         if (!preview->device) result = preview_fail(error, SINGE_ERROR_STATE, -1, "Embree made no device");

@@ -27,7 +27,7 @@ static float line_life(const Preview *preview, const Bent *bent) {
                                    0.2f * bent->fine);
 }
 
-static Float3 line(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
+static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     float activity = ember_activity(state->burn_rate);
     if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
@@ -68,7 +68,7 @@ static Float3 sparks(const Preview *preview, const PaperState *state, const Bent
 void ember_shade(const Preview *preview, const PaperState *state, const Bent *bent, Point *point) {
     if (state->burn < 0.2f || state->temperature < 420) return;
     float air = ember_air(preview, point->position);
-    point->glow = float3_add(line(preview, state, bent, air, point->footprint),
+    point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
                          sparks(preview, state, bent, air, point->footprint));
     point->glow = float3_add(point->glow, leaf(preview, state, bent, air));
 }

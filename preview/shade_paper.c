@@ -54,7 +54,7 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
     };
 }
 
-static Bent bend(const PaperState *state, float footprint) {
+static Bent shade_paper_bend(const PaperState *state, float footprint) {
     Bent bent = {.position = askew(state->rest)};
     bent.coarse = paper_noise(bent.position, 4.0f, footprint, 1);
     bent.middle = paper_noise(bent.position, 1.3f, footprint, 2);
@@ -115,7 +115,7 @@ static bool is_hole(const PaperState *state, const Bent *bent, float footprint) 
 
 bool paper_is_hole(const PaperState *state, float footprint) {
     if (state->burn <= PAPER_WHOLE) return false;
-    Bent bent = bend(state, footprint);
+    Bent bent = shade_paper_bend(state, footprint);
     return is_hole(state, &bent, footprint);
 }
 
@@ -173,7 +173,7 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     bool touched = state->burn > 0 || maxf(state->peak, state->temperature) > 325;
     if (!touched) return true;
 
-    Bent bent = bend(state, point->footprint);
+    Bent bent = shade_paper_bend(state, point->footprint);
     if (is_hole(state, &bent, point->footprint)) return false;
     float by_heat = heat_scorch(bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
     float scorch = 1 - (1 - by_heat) * (1 - by_burn);

@@ -3,12 +3,12 @@
 
 #include "preview/internal.h"
 
-static uint8_t encode(float linear) {
+static uint8_t texture_encode(float linear) {
     float s = linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
     return (uint8_t)(clampf(s, 0, 1) * 255 + 0.5f);
 }
 
-static void halve(const Preview *preview, const Texture *texture, int level, uint8_t *out) {
+static void texture_halve(const Preview *preview, const Texture *texture, int level, uint8_t *out) {
     const uint8_t *in = texture->levels[level - 1];
     int w = texture->width[level - 1], h = texture->height[level - 1];
     for (int y = 0; y < texture->height[level]; y++) {
@@ -19,7 +19,7 @@ static void halve(const Preview *preview, const Texture *texture, int level, uin
             for (int c = 0; c < 3; c++) {
                 float sum = preview->linear[row0[3 * x0 + c]] + preview->linear[row0[3 * x1 + c]] +
                             preview->linear[row1[3 * x0 + c]] + preview->linear[row1[3 * x1 + c]];
-                out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] = encode(0.25f * sum);
+                out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] = texture_encode(0.25f * sum);
             }
         }
     }
@@ -42,7 +42,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
         if (!out) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture's smaller copies");
         texture->levels[level] = out;
         texture->count++;
-        halve(preview, texture, level, out);
+        texture_halve(preview, texture, level, out);
     }
     return SINGE_OK;
 }

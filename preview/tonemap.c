@@ -14,7 +14,7 @@ static float film(float x) {
     return f < shoulder ? f : shoulder + rest * (1 - expf((shoulder - f) / rest));
 }
 
-static float encode(float linear) {
+static float tonemap_encode(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }
 
@@ -46,7 +46,7 @@ void tonemap_write(const Preview *preview, uint8_t *rgb) {
     float curve[CURVE_COUNT];
     for (int i = 0; i < CURVE_COUNT; i++) {
         float s = (float)i / (CURVE_COUNT - 1);
-        curve[i] = encode(film(s * s * CURVE_MAX));
+        curve[i] = tonemap_encode(film(s * s * CURVE_MAX));
     }
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
     for (size_t i = 0; i < count; i++) {

@@ -41,7 +41,7 @@ static void unit3(double v[3]) {
 
 /// Unit vectors from the box to the camera and, across it, to the right and up in the picture. What lies flat is
 /// seen from above, what stands from the front (-y), a little from the side.
-static void look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
+static void camera_look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
     double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, max = 0;
     unit3(vertical);
     if (fabs(vertical[1]) > 0.9)
@@ -68,7 +68,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     if (scene->preview.camera_given || !sheets_box(assets, &box))
         return;
     double back[3], right[3], top[3], distance = 0;
-    look(&box, camera->up, back, right, top);
+    camera_look(&box, camera->up, back, right, top);
     double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
     for (int corner = 0; corner < 8; corner++) {
         double d[3]; // from the middle to the corner

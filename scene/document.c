@@ -17,7 +17,7 @@ static char *document_text(size_t *size) {
     return text;
 }
 
-static int compare(const char *path, const char *text, size_t size) {
+static int document_compare(const char *path, const char *text, size_t size) {
     Bytes bytes = {0};
     SingeError error;
     if (file_read(path, (SingeAllocator){0}, &bytes, &error)) {
@@ -43,7 +43,7 @@ int main(int argc, char **argv) {
     }
     int status = 0;
     if (argc > 1)
-        status = compare(argv[1], text, size);
+        status = document_compare(argv[1], text, size);
     else
         status = fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
     free(text);

@@ -10,13 +10,13 @@ typedef struct Dumper {
     bool json;
 } Dumper;
 
-static const void *at(const void *object, size_t offset) { return (const char *)object + offset; }
+static const void *dump_at(const void *object, size_t offset) { return (const char *)object + offset; }
 
-static uint32_t count_at(const void *object, const SchemaRow *row) { return *(const uint32_t *)at(object, row->extra); }
+static uint32_t count_at(const void *object, const SchemaRow *row) { return *(const uint32_t *)dump_at(object, row->extra); }
 
 static const void *items_at(const void *object, const SchemaRow *row) {
     const void *items;
-    memcpy(&items, at(object, row->offset), sizeof items);
+    memcpy(&items, dump_at(object, row->offset), sizeof items);
     return items;
 }
 
@@ -103,7 +103,7 @@ static void put_points(FILE *file, const ScenePoint *points, uint32_t count) {
 }
 
 void dump_value(const SchemaRow *row, const void *object, FILE *file) {
-    const void *field = at(object, row->offset);
+    const void *field = dump_at(object, row->offset);
     switch (row->type) {
     case ROW_BOOL: fputs(*(const bool *)field ? "true" : "false", file); break;
     case ROW_INT: fprintf(file, "%d", *(const int *)field); break;
@@ -127,7 +127,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     }
     case ROW_ORDER: put_order(file, field); break;
     case ROW_FORMATS: put_formats(file, *(const OutputSet *)field); break;
-    case ROW_PARAM: put_param(file, row, field, at(object, row->extra)); break;
+    case ROW_PARAM: put_param(file, row, field, dump_at(object, row->extra)); break;
     case ROW_POINTS: put_points(file, items_at(object, row), count_at(object, row)); break;
     case ROW_INDICES: {
         const uint32_t *indices = items_at(object, row);
@@ -151,9 +151,9 @@ static bool row_present(const SchemaRow *row, unsigned kind, const void *object)
         return false;
     switch (row->type) {
     case ROW_TEXT:
-    case ROW_NAME: return *(char *const *)at(object, row->offset) != NULL;
-    case ROW_FILE: return ((const SceneFile *)at(object, row->offset))->name != NULL;
-    case ROW_MAP: return !row->extra || *(const bool *)at(object, row->extra);
+    case ROW_NAME: return *(char *const *)dump_at(object, row->offset) != NULL;
+    case ROW_FILE: return ((const SceneFile *)dump_at(object, row->offset))->name != NULL;
+    case ROW_MAP: return !row->extra || *(const bool *)dump_at(object, row->extra);
     case ROW_LIST:
     case ROW_STRENGTH:
     case ROW_POINTS:
@@ -162,7 +162,7 @@ static bool row_present(const SchemaRow *row, unsigned kind, const void *object)
     }
 }
 
-static void line(const Dumper *dumper, int indent) { fprintf(dumper->file, "\n%*s", indent, ""); }
+static void dump_line(const Dumper *dumper, int indent) { fprintf(dumper->file, "\n%*s", indent, ""); }
 
 static void dump_map(const Dumper *dumper, const Schema *schema, const void *object, int indent, bool inline_first);
 
@@ -172,7 +172,7 @@ static void dump_list(const Dumper *dumper, const SchemaRow *row, const void *ob
     for (uint32_t i = 0; i < count; i++) {
         if (dumper->json)
             fputs(i ? "," : "[", dumper->file);
-        line(dumper, indent);
+        dump_line(dumper, indent);
         if (!dumper->json)
             fputs("- ", dumper->file);
         dump_map(dumper, row->sub, items + i * row->sub->size, dumper->json ? indent : indent + 2, true);
@@ -186,7 +186,7 @@ static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *obj
     if (row->type == ROW_MAP) {
         if (dumper->json)
             fputc(' ', dumper->file);
-        dump_map(dumper, row->sub, at(object, row->offset), indent + 2, dumper->json);
+        dump_map(dumper, row->sub, dump_at(object, row->offset), indent + 2, dumper->json);
     } else if (row->type == ROW_LIST || row->type == ROW_STRENGTH) {
         if (dumper->json)
             fputc(' ', dumper->file);
@@ -210,12 +210,12 @@ static void dump_map(const Dumper *dumper, const Schema *schema, const void *obj
         if (!first && dumper->json)
             fputc(',', dumper->file);
         if (!first || !inline_first || dumper->json)
-            line(dumper, indent + (dumper->json ? 2 : 0));
+            dump_line(dumper, indent + (dumper->json ? 2 : 0));
         dump_row(dumper, row, object, indent);
         first = false;
     }
     if (dumper->json) {
-        line(dumper, indent);
+        dump_line(dumper, indent);
         fputc('}', dumper->file);
     }
 }

@@ -47,7 +47,7 @@ void row_range(const SchemaRow *row, char *buffer, size_t size) {
              row->flags & ROW_OPEN_MAX ? "< " : "", high);
 }
 
-static size_t add(char *buffer, size_t size, const char *text) {
+static size_t expected_add(char *buffer, size_t size, const char *text) {
     size_t used = strlen(buffer);
     snprintf(buffer + used, size - used, "%s", text);
     return strlen(buffer);
@@ -56,31 +56,31 @@ static size_t add(char *buffer, size_t size, const char *text) {
 static void add_names(char *buffer, size_t size, const char *const *names) {
     for (int i = 0; names[i]; i++) {
         if (i)
-            add(buffer, size, names[i + 1] ? ", " : " or ");
-        add(buffer, size, names[i]);
+            expected_add(buffer, size, names[i + 1] ? ", " : " or ");
+        expected_add(buffer, size, names[i]);
     }
 }
 
 static void add_base(char *buffer, size_t size) {
     char names[160];
-    add(buffer, size, "a material (");
-    add(buffer, size, base_names(names, sizeof names));
-    add(buffer, size, ") or a material file (mine.yaml)");
+    expected_add(buffer, size, "a material (");
+    expected_add(buffer, size, base_names(names, sizeof names));
+    expected_add(buffer, size, ") or a material file (mine.yaml)");
 }
 
 static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
     char units[80];
     quantity_units(row->dimension, units, sizeof units);
-    add(buffer, size, quantity_name(row->dimension));
+    expected_add(buffer, size, quantity_name(row->dimension));
     if (units[0]) {
-        add(buffer, size, " (");
-        add(buffer, size, units);
-        add(buffer, size, ")");
+        expected_add(buffer, size, " (");
+        expected_add(buffer, size, units);
+        expected_add(buffer, size, ")");
     }
     if (row->flags & ROW_INF)
-        add(buffer, size, " or inf");
+        expected_add(buffer, size, " or inf");
     if (row->flags & ROW_NONE)
-        add(buffer, size, " or none");
+        expected_add(buffer, size, " or none");
 }
 
 void row_expected(const SchemaRow *row, char *buffer, size_t size) {
@@ -88,63 +88,63 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     snprintf(count, sizeof count, "a list of %d ", row->length);
     buffer[0] = 0;
     switch (row->type) {
-    case ROW_BOOL: add(buffer, size, "true or false"); break;
+    case ROW_BOOL: expected_add(buffer, size, "true or false"); break;
     case ROW_INT:
     case ROW_UINT32:
-    case ROW_UINT64: add(buffer, size, "a whole number"); break;
-    case ROW_STRENGTH: add(buffer, size, "a number or a list of {time, value}"); break;
+    case ROW_UINT64: expected_add(buffer, size, "a whole number"); break;
+    case ROW_STRENGTH: expected_add(buffer, size, "a number or a list of {time, value}"); break;
     case ROW_FLOAT:
     case ROW_PARAM:
-        add(buffer, size, "a ");
+        expected_add(buffer, size, "a ");
         add_quantity(buffer, size, row);
         if (row->type == ROW_PARAM)
-            add(buffer, size, " or a map {from, to, texture | attribute | noise}");
+            expected_add(buffer, size, " or a map {from, to, texture | attribute | noise}");
         break;
     case ROW_POSITION:
     case ROW_ROTATION:
     case ROW_VECTOR:
-        add(buffer, size, count);
-        add(buffer, size, row->dimension ? "numbers, each a " : "numbers");
+        expected_add(buffer, size, count);
+        expected_add(buffer, size, row->dimension ? "numbers, each a " : "numbers");
         if (row->dimension)
             add_quantity(buffer, size, row);
         break;
     case ROW_INTS:
-        add(buffer, size, count);
-        add(buffer, size, "whole numbers");
+        expected_add(buffer, size, count);
+        expected_add(buffer, size, "whole numbers");
         break;
-    case ROW_TEXT: add(buffer, size, "a text"); break;
+    case ROW_TEXT: expected_add(buffer, size, "a text"); break;
     case ROW_NAME:
-        add(buffer, size, "a name of at most 100 characters and 200 bytes, all of them printable, without / \\ : * ? \" < > | % or a "
+        expected_add(buffer, size, "a name of at most 100 characters and 200 bytes, all of them printable, without / \\ : * ? \" < > | % or a "
             "dot in front");
         break;
-    case ROW_FILE: add(buffer, size, "the name of a file"); break;
+    case ROW_FILE: expected_add(buffer, size, "the name of a file"); break;
     case ROW_BASE: add_base(buffer, size); break;
     case ROW_ENUM: add_names(buffer, size, row->names); break;
-    case ROW_ORDER: add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
+    case ROW_ORDER: expected_add(buffer, size, "a list of red, green, blue and yellow, each once"); break;
     case ROW_FORMATS:
-        add(buffer, size, "a list of ");
+        expected_add(buffer, size, "a list of ");
         for (int i = 0; i < OUTPUT_COUNT; i++) {
             if (i)
-                add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
-            add(buffer, size, output_formats[i].name);
+                expected_add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
+            expected_add(buffer, size, output_formats[i].name);
         }
-        add(buffer, size, ", each at most once");
+        expected_add(buffer, size, ", each at most once");
         break;
     case ROW_MAP:
-        add(buffer, size, "a map (key: value)");
+        expected_add(buffer, size, "a map (key: value)");
         for (int i = 0; row->sub && row->sub->choice && i < row->sub->row_count; i++)
             if (strcmp(row->sub->rows[i].key, row->sub->choice) == 0) {
-                add(buffer, size, " or ");
+                expected_add(buffer, size, " or ");
                 if (row->sub->rows[i].type == ROW_BASE)
                     add_base(buffer, size);
                 else if (row->sub->rows[i].type == ROW_BOOL)
-                    add(buffer, size, "yes or no");
+                    expected_add(buffer, size, "yes or no");
                 else
                     add_names(buffer, size, row->sub->rows[i].names);
             }
         break;
-    case ROW_LIST: add(buffer, size, "a list of maps"); break;
-    case ROW_POINTS: add(buffer, size, "a list of points [x, y, z], at least one"); break;
-    case ROW_INDICES: add(buffer, size, "a list of whole numbers, at least one"); break;
+    case ROW_LIST: expected_add(buffer, size, "a list of maps"); break;
+    case ROW_POINTS: expected_add(buffer, size, "a list of points [x, y, z], at least one"); break;
+    case ROW_INDICES: expected_add(buffer, size, "a list of whole numbers, at least one"); break;
     }
 }

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static void *at(void *object, size_t offset) { return (char *)object + offset; }
+static void *read_at(void *object, size_t offset) { return (char *)object + offset; }
 
 // ---- parameters that may vary
 
@@ -91,8 +91,8 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
 
 static void *list_new(Reader *reader, void *object, const SchemaRow *row, uint32_t count, size_t size) {
     void *items = arena_new(reader->arena, count, size);
-    memcpy(at(object, row->offset), &items, sizeof items);
-    *(uint32_t *)at(object, row->extra) = items ? count : 0;
+    memcpy(read_at(object, row->offset), &items, sizeof items);
+    *(uint32_t *)read_at(object, row->extra) = items ? count : 0;
     return items;
 }
 
@@ -157,8 +157,8 @@ static void read_indices(Reader *reader, const SchemaRow *row, const Node *node,
 
 static SceneKey *only_key(Reader *reader, const SchemaRow *row, void *object) {
     SceneKey *keys;
-    memcpy(&keys, at(object, row->offset), sizeof keys);
-    return keys && *(uint32_t *)at(object, row->extra) == 1 ? keys : list_new(reader, object, row, 1, sizeof *keys);
+    memcpy(&keys, read_at(object, row->offset), sizeof keys);
+    return keys && *(uint32_t *)read_at(object, row->extra) == 1 ? keys : list_new(reader, object, row, 1, sizeof *keys);
 }
 
 static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
@@ -187,7 +187,7 @@ static void read_choice(Reader *reader, const Schema *schema, const Node *node, 
 }
 
 void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
-    void *begun = row->type == ROW_MAP ? at(object, row->offset) : arena_new(arena, 1, row->sub->size);
+    void *begun = row->type == ROW_MAP ? read_at(object, row->offset) : arena_new(arena, 1, row->sub->size);
     return begun && (!row->sub->defaults || row->sub->defaults(arena, begun)) ? begun : NULL;
 }
 
@@ -196,7 +196,7 @@ static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, 
     if (!inner)
         return;
     if (row->extra)
-        *(bool *)at(object, row->extra) = true;
+        *(bool *)read_at(object, row->extra) = true;
     if (node->kind == NODE_MAP)
         schema_read(reader, row->sub, node, inner);
     else if (row->sub->choice && node->kind == NODE_VALUE)
@@ -206,7 +206,7 @@ static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, 
 }
 
 static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
-    void *field = at(object, row->offset);
+    void *field = read_at(object, row->offset);
     switch (row->type) {
     case ROW_BOOL: value_bool(reader, row, node, field); break;
     case ROW_INT:
@@ -237,7 +237,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     case ROW_BASE: read_base(reader, row, node, field); break;
     case ROW_ORDER: value_order(reader, row, node, field); break;
     case ROW_FORMATS: value_formats(reader, row, node, field); break;
-    case ROW_PARAM: read_param(reader, row, node, field, at(object, row->extra)); break;
+    case ROW_PARAM: read_param(reader, row, node, field, read_at(object, row->extra)); break;
     case ROW_MAP: read_submap(reader, row, node, object); break;
     case ROW_LIST: read_list(reader, row, node, object); break;
     case ROW_POINTS: read_points(reader, row, node, object); break;

@@ -27,7 +27,7 @@ static int line_break(const char *c, const char *end) {
 
 /// YAML 1.2, 7.3.2: '' is one quote. Lines are folded: blanks around a break vanish, one break is a space, and n
 /// breaks are n - 1 newlines. `out` has room for as many bytes as come in.
-static size_t unquote(const char *c, const char *end, char *out) {
+static size_t scalar_unquote(const char *c, const char *end, char *out) {
     size_t length = 0, line = 0; // `line`: where blanks of the present line may begin
     while (c < end) {
         int width = line_break(c, end);
@@ -89,6 +89,6 @@ char *scalar_text(SceneArena *arena, struct fy_token *token, const char *bytes, 
         return read_chunks(arena, token, length);
     char *text = arena_new(arena, (size_t)(end - begin) + 1, 1);
     if (text)
-        text[*length = unquote(begin, end, text)] = 0;
+        text[*length = scalar_unquote(begin, end, text)] = 0;
     return text;
 }

@@ -40,7 +40,7 @@ static void face_normal(const float *vertices, const uint32_t *corners, uint32_t
 }
 
 /// Twice the area of the triangle as seen along the normal; negative where it turns the other way.
-static double turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, const double normal[3]) {
+static double solid_turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, const double normal[3]) {
     const float *p = vertices + 3 * (size_t)a, *q = vertices + 3 * (size_t)b, *r = vertices + 3 * (size_t)c;
     double u[3], v[3], sum = 0;
     for (int k = 0; k < 3; k++) u[k] = (double)q[k] - (double)p[k], v[k] = (double)r[k] - (double)p[k];
@@ -54,12 +54,12 @@ static double turn(const float *vertices, uint32_t a, uint32_t b, uint32_t c, co
 /// Square of the edge that cutting off corner i of those left makes new; infinite where the corner is no ear.
 static double ear(const float *vertices, const uint32_t *left, uint32_t count, uint32_t i, const double normal[3]) {
     uint32_t a = left[(i + count - 1) % count], b = left[i], c = left[(i + 1) % count];
-    if (!(turn(vertices, a, b, c, normal) > 0)) return INFINITY;
+    if (!(solid_turn(vertices, a, b, c, normal) > 0)) return INFINITY;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t p = left[k];
         if (p == a || p == b || p == c) continue;
-        if (turn(vertices, a, b, p, normal) >= 0 && turn(vertices, b, c, p, normal) >= 0 &&
-            turn(vertices, c, a, p, normal) >= 0)
+        if (solid_turn(vertices, a, b, p, normal) >= 0 && solid_turn(vertices, b, c, p, normal) >= 0 &&
+            solid_turn(vertices, c, a, p, normal) >= 0)
             return INFINITY;
     }
     double square = 0;

@@ -211,7 +211,7 @@ static const bool always_here = true; // fuzzers look into libfyaml, and make no
 static const bool always_here = false;
 #endif
 
-static SingeResult run(const char *name, Sink *sink, YamlEvents *events, SingeError *error) {
+static SingeResult yaml_run(const char *name, Sink *sink, YamlEvents *events, SingeError *error) {
     // commands that simulate before they read have nothing but scenes of their own: `paper` and `validate`
     if (always_here || !isolate_possible()) {
         SingeResult result = sink_work(sink, NULL, error);
@@ -227,7 +227,7 @@ static SingeResult run(const char *name, Sink *sink, YamlEvents *events, SingeEr
 SingeResult yaml_read(const char *name, const char *bytes, size_t size, YamlEvents *events, SingeError *error) {
     Sink sink = {.bytes = bytes, .size = size};
     *events = (YamlEvents){0};
-    SingeResult result = run(name, &sink, events, error);
+    SingeResult result = yaml_run(name, &sink, events, error);
     if (result)
         yaml_free(events);
     return result;

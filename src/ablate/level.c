@@ -11,7 +11,7 @@ float ablate_level(const Shell *shell, const State *state, uint32_t particle) {
     return state->burn.mass[particle] - field_at(matter->mass_loss, particle);
 }
 
-static void fill(AblatePlan *plan, const Shell *shell, const State *state, bool ablate, uint32_t first,
+static void level_fill(AblatePlan *plan, const Shell *shell, const State *state, bool ablate, uint32_t first,
                  uint32_t count) {
     const float *mass = state->burn.mass;
     const Field mass_loss = shell->matter.mass_loss;
@@ -22,7 +22,7 @@ void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state) {
     ablate_plan_follow(plan, shell);
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
-        fill(plan, shell, state, sheet->material.ablate, sheet->vertex_first, sheet->vertex_count);
-        fill(plan, shell, state, sheet->material.ablate, shell_centre(shell, sheet->cell_first), sheet->cell_count);
+        level_fill(plan, shell, state, sheet->material.ablate, sheet->vertex_first, sheet->vertex_count);
+        level_fill(plan, shell, state, sheet->material.ablate, shell_centre(shell, sheet->cell_first), sheet->cell_count);
     }
 }

@@ -10,7 +10,7 @@
 
 enum { PIECE_HELD = 1, PIECE_DROPPED = 2 };
 
-static uint32_t find(uint32_t *root, uint32_t i) {
+static uint32_t piece_find(uint32_t *root, uint32_t i) {
     while (root[i] != i) {
         root[i] = root[root[i]];
         i = root[i];
@@ -18,8 +18,8 @@ static uint32_t find(uint32_t *root, uint32_t i) {
     return i;
 }
 
-static void join(uint32_t *root, uint32_t a, uint32_t b) {
-    a = find(root, a), b = find(root, b);
+static void piece_join(uint32_t *root, uint32_t a, uint32_t b) {
+    a = piece_find(root, a), b = piece_find(root, b);
     if (a < b) root[b] = a;
     else root[a] = b;
 }
@@ -32,14 +32,14 @@ static void find_sets(AblatePlan *plan, const Shell *shell, const AblateState *a
         const SpringSet *springs = &shell->springs[colour];
         const uint8_t *flags = ablate->spring_flags[colour];
         for (uint32_t s = 0; s < springs->count; s++)
-            if (flags[s] & SINGE_ALIVE) join(root, springs->ends[s][0], springs->ends[s][1]);
+            if (flags[s] & SINGE_ALIVE) piece_join(root, springs->ends[s][0], springs->ends[s][1]);
     }
     // roots come before what they are the root of, so one look is enough
     for (uint32_t i = 0; i < shell->particle_count; i++) root[i] = root[root[i]];
 }
 
 /// Size, area and pins of every set, at its root.
-static void measure(AblatePlan *plan, const Shell *shell, const AblateState *ablate, const uint8_t *pinned) {
+static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateState *ablate, const uint8_t *pinned) {
     size_t count = shell->particle_count;
     memset(plan->size, 0, count * sizeof *plan->size);
     memset(plan->mark, 0, count);
@@ -117,7 +117,7 @@ void piece_update(Removal *removal, EventList *events) {
     AblateState *ablate = removal->ablate;
     bool drop = false;
     find_sets(plan, removal->shell, ablate);
-    measure(plan, removal->shell, ablate, state->dynamics.pinned);
+    piece_measure(plan, removal->shell, ablate, state->dynamics.pinned);
     for (uint32_t s = 0; s < removal->shell->sheet_count; s++) drop |= mark_small(plan, &removal->shell->sheets[s]);
     if (drop) drop_marked(removal);
     choose_heirs(plan, ablate);

@@ -136,7 +136,7 @@ static SingeResult search_again(Ccd *ccd, const State *state, Pool *pool, float 
     return broad_search(plan, ccd->shell, pool);
 }
 
-static void measure(Ccd *ccd, Pool *pool) {
+static void ccd_measure(Ccd *ccd, Pool *pool) {
     pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd);
 }
 
@@ -165,7 +165,7 @@ static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, floa
     bool all = count > plan->cell_count / OUTSIDE_MAX || plan->edge <= 0;
     if (all) {
         TRY(search_again(ccd, state, pool, h));
-        measure(ccd, pool);
+        ccd_measure(ccd, pool);
         count = list_strayed(plan);
     }
     TRY(broad_search_outside(plan, ccd->shell, pool, count, (const float(*)[4])ccd->dynamics->position));
@@ -175,12 +175,12 @@ static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, floa
 }
 
 /// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
-static SingeResult look(Ccd *ccd, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+static SingeResult ccd_look(Ccd *ccd, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     uint32_t first;
     if (changed) {
         *hits = meet_changed(ccd, pool);
     } else {
-        measure(ccd, pool);
+        ccd_measure(ccd, pool);
         *hits = ccd_meet(ccd, pool, 0);
     }
     if (*hits > 0) return SINGE_OK;
@@ -239,7 +239,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     if (plan->closed) mark_moved(&ccd);
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
-        TRY(look(&ccd, state, pool, h, stopped || plan->closed, &hits));
+        TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
         if (hits == 0) break;
         if (zones == ZONE_ROUNDS) {
             plan->counters.unresolved += hits;

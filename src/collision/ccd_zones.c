@@ -22,7 +22,7 @@ enum { ZONE_PATIENCE = 4 };
 // ---- impacts
 
 /// Weights of a cell's corners that stand for its nodes.
-static void spread(float corner[4], int node, float weight) {
+static void zones_spread(float corner[4], int node, float weight) {
     for (int i = 0; i < 4; i++) corner[i] += node == i ? weight : node == 4 ? 0.25f * weight : 0;
 }
 
@@ -39,15 +39,15 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
         const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
         float s, t;
         apart = feature_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
-        spread(w1, k[0], 1 - s), spread(w1, k[1], s);
-        spread(w2, l[0], 1 - t), spread(w2, l[1], t);
+        zones_spread(w1, k[0], 1 - s), zones_spread(w1, k[1], s);
+        zones_spread(w2, l[0], 1 - t), zones_spread(w2, l[1], t);
         return apart;
     }
     const uint8_t *k = collision_triangle[pair->first[1]];
     float weight[3];
     apart = feature_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);
-    spread(w1, pair->first[0], 1);
-    for (int i = 0; i < 3; i++) spread(w2, k[i], weight[i]);
+    zones_spread(w1, pair->first[0], 1);
+    for (int i = 0; i < 3; i++) zones_spread(w2, k[i], weight[i]);
     return pair->kind == COLLISION_NODE_OF_B ? -apart : apart;
 }
 

@@ -78,7 +78,7 @@ typedef struct Look {
     float due; ///< m, distance from which on nothing can touch in this step
 } Look;
 
-static inline float min(float a, float b) { return a < b ? a : b; }
+static inline float open_min(float a, float b) { return a < b ? a : b; }
 
 /// Distance at which features of two cells that near each other by `approach` m/s may touch.
 static inline float due(float thickness, const CollisionPlan *plan, float approach) {
@@ -144,19 +144,19 @@ static bool near_at_rest(const Opening *job, const CollisionPair *pair, const Ne
 /// How far two features are to be kept apart in this step; 0 where they need not be looked after.
 static float target(const Opening *job, const CollisionPair *pair, const Look *look, const NearFeatures *near) {
     const CollisionPlan *plan = job->plan;
-    float thickness = min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
+    float thickness = open_min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (!(distance > 0)) return 0;
     float toward = -float4_dot(point_speed(look, near), near->apart) / distance;
     if (distance > due(plan->thickness, plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
-        thickness = min(thickness, 4 * plan->gap);
+        thickness = open_min(thickness, 4 * plan->gap);
         if (distance > due(thickness, plan, toward)) return 0;
     }
     float parted = distance + COLLISION_PART * plan->time_step;
     return parted < thickness ? parted : thickness;
 }
 
-static void position_speeds(const Opening *job, uint32_t cell, Float4 speed[5]) {
+static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) {
     for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }
@@ -178,7 +178,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     pair->distance = apart > pair->distance ? apart : pair->distance;
     if (pair->distance > look.due) return;
     // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
-    FeatureRange far = {look.due, look.due, min(plan->thin[pair->a], plan->thin[pair->b]),
+    FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
                     apart < FEATURE_SEPARATED * plan->thickness};
     // measuring a little farther, not every step has to look again
     if (far.edges) far.measured += 0.25f * plan->thickness;
@@ -189,8 +189,8 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     if (doubt > 0.5f * plan->gap) nearest -= doubt; // the guard leaves a gap itself, which has room for less
     if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
-    position_speeds(job, pair->a, look.speed_a);
-    position_speeds(job, pair->b, look.speed_b);
+    node_velocities(job, pair->a, look.speed_a);
+    node_velocities(job, pair->b, look.speed_b);
     for (int i = 0; i < count; i++) {
         float keep = target(job, pair, &look, &near[i]);
         FoundPoints *found = keep > 0 ? block_list_add(writer) : NULL;
@@ -233,7 +233,7 @@ static void look_block(void *context, BlockList *list, int block) {
 
 // ---- what is pushed
 
-static void gather(Repulsion *repulsion, const uint32_t corner[4], const float weight[4], float sign) {
+static void open_gather(Repulsion *repulsion, const uint32_t corner[4], const float weight[4], float sign) {
     for (int i = 0; i < 4; i++) {
         if (weight[i] == 0) continue;
         uint32_t k = 0;
@@ -257,8 +257,8 @@ static void open_repulsion(void *context, const void *item, uint32_t number) {
     repulsion->normal = (Float4){found.normal[0], found.normal[1], found.normal[2], 0};
     repulsion->target = found.target;
     repulsion->count = 0;
-    gather(repulsion, job->shell->cells[pair->a], wa, 1);
-    gather(repulsion, job->shell->cells[pair->b], wb, -1);
+    open_gather(repulsion, job->shell->cells[pair->a], wa, 1);
+    open_gather(repulsion, job->shell->cells[pair->b], wb, -1);
 }
 
 static SingeResult open_repulsions(Opening *job, Pool *pool) {

@@ -75,7 +75,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
     memcpy(list, all, sizeof all);
 }
 
-static bool allocate(Memory *memory, CollisionPlan *plan) {
+static bool collision_plan_allocate(Memory *memory, CollisionPlan *plan) {
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) {
@@ -135,7 +135,7 @@ SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, cons
     plan->def = *def;
     plan->time_step = time_step;
     size_plan(plan, shell, sizes);
-    if (!allocate(memory, plan)) {
+    if (!collision_plan_allocate(memory, plan)) {
         collision_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }

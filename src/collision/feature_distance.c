@@ -4,7 +4,7 @@
 // In float, the nearest point of a triangle 200 times as long as it is high is off by a two-thousandth of its length:
 // then what passes through it seems to pass by. So weights are computed in double.
 
-static double dot(Float4 a, Float4 b) {
+static double feature_dot(Float4 a, Float4 b) {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
@@ -17,9 +17,9 @@ static void set_weights(float w[3], double b, double c) {
 /// Weights of the triangle's point nearest to p.
 static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
     Float4 ab = b - a, ac = c - a, ap = p - a;
-    double d1 = dot(ab, ap), d2 = dot(ac, ap), both = dot(ab, ac);
+    double d1 = feature_dot(ab, ap), d2 = feature_dot(ac, ap), both = feature_dot(ab, ac);
     // not from p - b and p - c, whose rounding would fit ill
-    double d3 = d1 - dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - dot(ac, ac);
+    double d3 = d1 - feature_dot(ab, ab), d4 = d2 - both, d5 = d1 - both, d6 = d2 - feature_dot(ac, ac);
     double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
     if (d1 <= 0 && d2 <= 0) set_weights(w, 0, 0);
     else if (d3 >= 0 && d4 <= d3) set_weights(w, 1, 0);
@@ -112,17 +112,17 @@ bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned s
     return is_beyond(a, shared[0], first, away, margin) && is_beyond(b, shared[1], first, -away, margin);
 }
 
-static double clamp01(double a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
+static double feature_clamp01(double a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
 
 Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t) {
     Float4 u = b - a, v = d - c, r = a - c;
-    double uu = dot(u, u), vv = dot(v, v), vr = dot(v, r), ur = dot(u, r), uv = dot(u, v);
+    double uu = feature_dot(u, u), vv = feature_dot(v, v), vr = feature_dot(v, r), ur = feature_dot(u, r), uv = feature_dot(u, v);
     double determinant = uu * vv - uv * uv;
-    double along = determinant > 1e-13 * uu * vv ? clamp01((uv * vr - ur * vv) / determinant) : 0;
+    double along = determinant > 1e-13 * uu * vv ? feature_clamp01((uv * vr - ur * vv) / determinant) : 0;
     double other = vv > 0 ? (uv * along + vr) / vv : 0;
     if (!(other >= 0 && other <= 1)) {
-        other = clamp01(other);
-        along = uu > 0 ? clamp01((other * uv - ur) / uu) : 0;
+        other = feature_clamp01(other);
+        along = uu > 0 ? feature_clamp01((other * uv - ur) / uu) : 0;
     }
     *s = (float)along, *t = (float)other;
     return (a + *s * u) - (c + *t * v);

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static inline Float4 clamp01(Float4 a) { return float4_min(float4_max(a, float4_all(0)), float4_all(1)); }
+static inline Float4 narrow_clamp01(Float4 a) { return float4_min(float4_max(a, float4_all(0)), float4_all(1)); }
 
 /// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
 typedef struct FourNear {
@@ -49,12 +49,12 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
     Float4 uu = four_dot(along, along), vv = four_dot(others, others), uv = four_dot(along, others);
     Float4 ur = four_dot(along, r), vr = four_dot(others, r), zero = {0}, one = float4_all(1);
     Float4 determinant = uu * vv - uv * uv;
-    Float4 s = clamp01((uv * vr - ur * vv) / determinant);
+    Float4 s = narrow_clamp01((uv * vr - ur * vv) / determinant);
     s = float4_select(determinant > 4e-7f * uu * vv, s, zero);
     Float4 t = float4_select(vv > 0, (uv * s + vr) / vv, zero);
     Float4Mask out_of_range = ~((t >= 0) & (t <= 1));
-    t = clamp01(t);
-    Float4 mended = float4_select(uu > 0, clamp01((t * uv - ur) / uu), zero);
+    t = narrow_clamp01(t);
+    Float4 mended = float4_select(uu > 0, narrow_clamp01((t * uv - ur) / uu), zero);
     s = float4_select(out_of_range, mended, s);
     FourNear out = {.u = s, .v = t};
     out.apart = four_along(four_along(r, s, along), -t, others);
@@ -129,7 +129,7 @@ typedef struct Search {
 } Search;
 
 /// Notes those of four that are near enough; `meet` are those that count.
-static void note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
+static void narrow_note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
     const Float4Mask bits = {1, 2, 4, 8};
     Float4Mask counts = (bits & (int32_t)meet) != 0;
     search->square = float4_select(counts, float4_min(four->square, search->square), search->square);
@@ -153,7 +153,7 @@ static void find_nodes(Search *search, const NarrowCell *p, const NarrowCell *q,
         if (i < 4) meet &= ~narrow_around(same[i]);
         if (!meet) continue;
         FourNear four = from_triangles(four_all(p->node[i]), q->corner, q->turned, centroid);
-        note(search, &four, meet, kind, i, 0, kind == COLLISION_NODE_OF_B ? -1 : 1);
+        narrow_note(search, &four, meet, kind, i, 0, kind == COLLISION_NODE_OF_B ? -1 : 1);
     }
 }
 
@@ -169,11 +169,11 @@ static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q,
         unsigned spokes = four_meet(&q->boxes.spokes, low, high) & ~corners;
         if (sides) {
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, q->turned);
-            note(search, &four, sides, COLLISION_EDGES, i, 0, 1);
+            narrow_note(search, &four, sides, COLLISION_EDGES, i, 0, 1);
         }
         if (spokes) {
             FourNear four = from_segments(four_all(a), four_all(b), q->corner, centroid);
-            note(search, &four, spokes, COLLISION_EDGES, i, 4, 1);
+            narrow_note(search, &four, spokes, COLLISION_EDGES, i, 4, 1);
         }
     }
 }

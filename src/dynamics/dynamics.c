@@ -126,7 +126,7 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
 }
 
 /// The colliders in use, with their poses at the ends of a substep.
-static uint32_t dynamics_position_colliders(DynamicsPlan *plan, const ColliderList *list, double before, double after) {
+static uint32_t dynamics_pose_colliders(DynamicsPlan *plan, const ColliderList *list, double before, double after) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < list->count; i++) {
         const Collider *collider = &list->items[i];
@@ -204,10 +204,10 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         between.opens = substep < solver->substeps;
         between.attaches = between.opens && solver->attachments && !plan->paper;
         // held particles are where the substep ahead ends before the others set out
-        if (between.opens) dynamics_position_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        if (between.opens) dynamics_move_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
         if (!between.opens) break;
-        uint32_t collider_count = dynamics_position_colliders(plan, colliders, before, after);
+        uint32_t collider_count = dynamics_pose_colliders(plan, colliders, before, after);
         before = after;
         if (plan->paper) {
             TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));

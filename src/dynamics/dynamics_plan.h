@@ -114,7 +114,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
                        DynamicsState *dynamics);
 
 /// Puts pinned particles on their paths (move.c).
-void dynamics_position_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                          DynamicsState *dynamics);
 
 /// One projection of one colour, family after family (strand_project.c).

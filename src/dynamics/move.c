@@ -80,7 +80,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
     return (uint64_t)pool_sum(pool, (int)shell->particle_count, move_block, &job, plan->partial);
 }
 
-void dynamics_position_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
+void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
                          DynamicsState *dynamics) {
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];

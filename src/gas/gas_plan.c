@@ -100,7 +100,7 @@ static void plan_levels(GasPlan *plan) {
 }
 
 /// Takes `count` floats from the block; with a NULL base only the size is counted.
-static float *take(float *base, size_t *used, size_t count) {
+static float *gas_take(float *base, size_t *used, size_t count) {
     float *slice = base ? base + *used : NULL;
     *used += (count + 15) / 16 * 16;
     return slice;
@@ -108,30 +108,30 @@ static float *take(float *base, size_t *used, size_t count) {
 
 static size_t plan_turn(const GasPlan *plan, float *base, GasTurn *turn) {
     size_t used = 0, n = plan->particles;
-    for (int f = 0; f < GAS_FIELDS; f++) turn->field[f] = take(base, &used, plan->grid.cells);
-    turn->conductance = take(base, &used, n);
-    turn->temperature = take(base, &used, n);
-    turn->fuel = take(base, &used, n);
-    turn->air = (float(*)[4])take(base, &used, 4 * n);
+    for (int f = 0; f < GAS_FIELDS; f++) turn->field[f] = gas_take(base, &used, plan->grid.cells);
+    turn->conductance = gas_take(base, &used, n);
+    turn->temperature = gas_take(base, &used, n);
+    turn->fuel = gas_take(base, &used, n);
+    turn->air = (float(*)[4])gas_take(base, &used, 4 * n);
     return used;
 }
 
 static size_t plan_scratch(GasPlan *plan, float *base) {
     size_t used = 0, cells = plan->grid.cells;
-    for (int f = 0; f < 3; f++) plan->spare[f] = take(base, &used, cells);
-    for (int d = 0; d < 3; d++) plan->open[d] = take(base, &used, cells);
-    plan->mixing = take(base, &used, cells);
-    plan->expansion = take(base, &used, cells);
-    plan->solid = (uint8_t *)take(base, &used, cells / sizeof(float) + 1);
+    for (int f = 0; f < 3; f++) plan->spare[f] = gas_take(base, &used, cells);
+    for (int d = 0; d < 3; d++) plan->open[d] = gas_take(base, &used, cells);
+    plan->mixing = gas_take(base, &used, cells);
+    plan->expansion = gas_take(base, &used, cells);
+    plan->solid = (uint8_t *)gas_take(base, &used, cells / sizeof(float) + 1);
     for (int l = 0; l < plan->levels; l++) {
         GasLevel *level = &plan->level[l];
-        for (int d = 0; d < 3; d++) level->weight[d] = take(base, &used, level->grid.cells);
-        level->inverse = take(base, &used, level->grid.cells);
-        level->rhs = take(base, &used, level->grid.cells);
-        level->p = l ? take(base, &used, level->grid.cells) : NULL; // the finest is the pressure itself
+        for (int d = 0; d < 3; d++) level->weight[d] = gas_take(base, &used, level->grid.cells);
+        level->inverse = gas_take(base, &used, level->grid.cells);
+        level->rhs = gas_take(base, &used, level->grid.cells);
+        level->p = l ? gas_take(base, &used, level->grid.cells) : NULL; // the finest is the pressure itself
     }
-    for (int f = 0; f < 3; f++) plan->view[f] = take(base, &used, plan->view_cells);
-    plan->view_velocity = (float(*)[3])take(base, &used, 3 * plan->view_cells);
+    for (int f = 0; f < 3; f++) plan->view[f] = gas_take(base, &used, plan->view_cells);
+    plan->view_velocity = (float(*)[3])gas_take(base, &used, 3 * plan->view_cells);
     return used;
 }
 

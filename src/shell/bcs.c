@@ -80,7 +80,7 @@ void shell_free(Memory *memory, Shell *shell) {
 
 /// Copies one sheet to its ranges, which begin at sheet->vertex_first, cell_first and source_first. Spares wait at its
 /// first vertex.
-static void position_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
+static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *source) {
     const Sheet *sheet = &shell->sheets[index];
     uint32_t centre = shell_centre(shell, sheet->cell_first), count = source->sheet.vertex_count;
     for (uint32_t i = 0; i < sheet->vertex_count; i++) {
@@ -108,7 +108,7 @@ static void position_sheet(Shell *shell, uint32_t index, const SheetSource *sour
     }
 }
 
-static void position_sheets(Shell *shell, const SheetSource *sources) {
+static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
     uint32_t vertex = 0, cell = 0, source = 0;
     for (uint32_t i = 0; i < shell->sheet_count; i++) {
         memcpy(&shell->sheets[i], &sources[i].sheet, sizeof shell->sheets[i]);
@@ -118,7 +118,7 @@ static void position_sheets(Shell *shell, const SheetSource *sources) {
         shell->sheets[i].vertex_count += shell->sheets[i].spare_count;
         shell->spare_count += shell->sheets[i].spare_count;
         source += sources[i].sheet.source_count;
-        position_sheet(shell, i, &sources[i]);
+        bcs_lay_sheet(shell, i, &sources[i]);
         vertex += shell->sheets[i].vertex_count;
         cell += sources[i].sheet.cell_count;
     }
@@ -288,7 +288,7 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     TRY(shell_count(sources, source_count, shell, error));
     SingeResult result = SINGE_OK;
     if (!shell_alloc(memory, any_seams(sources, source_count), shell) ||
-        (position_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
+        (bcs_lay_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
         !matter_create(memory, shell, sources))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
                            shell->cell_count);

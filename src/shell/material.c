@@ -87,7 +87,7 @@ static const ParamRule param_rules[] = {
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 
 /// NaN is outside every range, and so are infinities but where the range ends at one and is closed.
-static bool inside(float x, float low, float high, bool low_open, bool high_open) {
+static bool material_inside(float x, float low, float high, bool low_open, bool high_open) {
     return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
 }
 
@@ -159,7 +159,7 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
     case SINGE_FIELD_NOISE:
-        if (!inside(param->noise.scale, POSITIVE_RANGE))
+        if (!material_inside(param->noise.scale, POSITIVE_RANGE))
             return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
         if (param->noise.octaves < 1 || param->noise.octaves > 8)
             return field_fail(field->source, rule, "is noise of other than 1 to 8 octaves", error);
@@ -194,7 +194,7 @@ static void rule_range(const ParamRule *rule, const Sheet *sheet, uint32_t *begi
 }
 
 static SingeResult check_value(const ParamRule *rule, const Sheet *sheet, uint32_t i, float value, SingeError *error) {
-    if (inside(value, rule->low, rule->high, rule->low_open, rule->high_open)) return SINGE_OK;
+    if (material_inside(value, rule->low, rule->high, rule->low_open, rule->high_open)) return SINGE_OK;
     bool corner = i < sheet->vertex_count;
     uint32_t element = corner ? i : i - sheet->vertex_count;
     return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", element,

@@ -109,7 +109,7 @@ static bool matter_is_uniform(const SheetSource *sources, uint32_t count, int pa
 }
 
 /// Copies one sheet's values of a parameter to its particles.
-static void matter_position(const Shell *shell, const Sheet *sheet, const SheetSource *source, int param, Field *field) {
+static void matter_fill(const Shell *shell, const Sheet *sheet, const SheetSource *source, int param, Field *field) {
     uint32_t centre = shell_centre(shell, sheet->cell_first);
     uint32_t vertices = source->sheet.vertex_count;
     for (uint32_t v = 0; v < sheet->vertex_count; v++)
@@ -132,7 +132,7 @@ bool matter_create(Memory *memory, Shell *shell, const SheetSource *sources) {
         if (!field_create(memory, field, matter_value(&sources[0], p, 0))) return false;
         if (uniform) continue;
         if (!field_vary(memory, field, particles)) return false;
-        for (uint32_t s = 0; s < sheets; s++) matter_position(shell, &shell->sheets[s], &sources[s], p, field);
+        for (uint32_t s = 0; s < sheets; s++) matter_fill(shell, &shell->sheets[s], &sources[s], p, field);
     }
     if (!field_create(memory, &matter->capacity_ratio, 1)) return false;
     if (!weighs_evenly && !field_vary(memory, &matter->capacity_ratio, particles)) return false;

@@ -17,13 +17,13 @@ static void subtract(const double a[3], const double b[3], double r[3]) {
     for (int k = 0; k < 3; k++) r[k] = a[k] - b[k];
 }
 
-static void cross(const double a[3], const double b[3], double r[3]) {
+static void rest_cross(const double a[3], const double b[3], double r[3]) {
     r[0] = a[1] * b[2] - a[2] * b[1];
     r[1] = a[2] * b[0] - a[0] * b[2];
     r[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double rest_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Areas of the triangles (x_i, x_i+1, mean), negative where they face away from the normal.
 static void share_area(double p[4][3], CellShape *shape) {
@@ -31,8 +31,8 @@ static void share_area(double p[4][3], CellShape *shape) {
         double a[3], b[3], c[3];
         subtract(p[i], shape->centre, a);
         subtract(p[(i + 1) & 3], shape->centre, b);
-        cross(a, b, c);
-        double area = copysign(sqrt(dot(c, c)) / 2, dot(c, shape->normal));
+        rest_cross(a, b, c);
+        double area = copysign(sqrt(rest_dot(c, c)) / 2, rest_dot(c, shape->normal));
         shape->area += area;
         shape->corner_area[i] += area / 2;
         shape->corner_area[(i + 1) & 3] += area / 2;
@@ -53,14 +53,14 @@ CellShape cell_shape(const float *const corners[4]) {
     }
     for (int i = 0; i < 4; i++) {
         subtract(p[(i + 1) & 3], p[i], side);
-        double length = sqrt(dot(side, side));
+        double length = sqrt(rest_dot(side, side));
         if (i == 0 || length < shape.shortest) shape.shortest = length;
         if (i == 0 || length > shape.longest) shape.longest = length;
     }
     subtract(p[2], p[0], diagonal[0]);
     subtract(p[3], p[1], diagonal[1]);
-    cross(diagonal[0], diagonal[1], shape.normal);
-    double length = sqrt(dot(shape.normal, shape.normal));
+    rest_cross(diagonal[0], diagonal[1], shape.normal);
+    double length = sqrt(rest_dot(shape.normal, shape.normal));
     shape.vector_area = length / 2;
     for (int k = 0; k < 3 && length > 0; k++) shape.normal[k] /= length;
     share_area(p, &shape);

@@ -13,7 +13,7 @@ static const float position_max = 1e15f;
 /// Areas, masses and heat capacities within this range (and its inverse) stay normal floats.
 static const double measure_max = 1e30;
 
-static size_t min(size_t a, size_t b) { return a < b ? a : b; }
+static size_t sheet_min(size_t a, size_t b) { return a < b ? a : b; }
 
 /// Copies a Def of any version over the defaults. The material lies inside and has grown by itself, so
 /// the fields after it are found by the size that the caller's header gave it.
@@ -23,13 +23,13 @@ static bool read_def(const SingeSheetDef *def, SingeSheetDef *out) {
     size_t size = def->struct_size, inner;
     *out = singe_default_sheet();
     if (size < sizeof size) return false;
-    memcpy(out, bytes, min(size, head));
+    memcpy(out, bytes, sheet_min(size, head));
     if (size > head) {
         if (size - head < sizeof inner) return false;
         memcpy(&inner, bytes + head, sizeof inner);
         if (inner < sizeof inner || inner > size - head) return false;
-        memcpy(&out->material, bytes + head, min(inner, sizeof out->material));
-        memcpy((char *)out + tail, bytes + head + inner, min(size - head - inner, sizeof *out - tail));
+        memcpy(&out->material, bytes + head, sheet_min(inner, sizeof out->material));
+        memcpy((char *)out + tail, bytes + head + inner, sheet_min(size - head - inner, sizeof *out - tail));
     }
     out->struct_size = sizeof *out;
     out->material.struct_size = sizeof out->material;

@@ -6,13 +6,13 @@
 enum { SLICE = 64 }; // bytes; a cache line, and the widest vector register
 
 /// Takes `count` elements from the block; with a NULL base only the size is counted.
-static void *take(char *base, size_t *used, size_t count, size_t element_size) {
+static void *state_take(char *base, size_t *used, size_t count, size_t element_size) {
     void *slice = base ? base + *used : NULL;
     *used += (count * element_size + SLICE - 1) / SLICE * SLICE;
     return slice;
 }
 
-#define TAKE(pointer, count) ((pointer) = take(base, &used, (count), sizeof *(pointer)))
+#define TAKE(pointer, count) ((pointer) = state_take(base, &used, (count), sizeof *(pointer)))
 
 uint32_t shell_nowhere_count(const Shell *shell) {
     uint32_t max = 1;

@@ -172,14 +172,14 @@ static SingeSimDef standard_sim(void) {
 }
 
 /// Fills a caller's part of `size` bytes with ours of `known`; zero where it is longer.
-static void fill(void *part, size_t size, const void *standard, size_t known) {
+static void defaults_fill(void *part, size_t size, const void *standard, size_t known) {
     memset(part, 0, size);
     memcpy(part, standard, size < known ? size : known);
 }
 
 static void fill_def(void *def, size_t size, const void *standard, size_t known) {
     if (size < sizeof size) return;
-    fill(def, size, standard, known);
+    defaults_fill(def, size, standard, known);
     memcpy(def, &size, sizeof size);
 }
 
@@ -249,7 +249,7 @@ void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
     fill_def(def, head, &standard, head);
     memcpy(def, &struct_size, sizeof struct_size);
     fill_def(bytes + head, inner, &standard.material, sizeof standard.material);
-    fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail, sizeof standard - tail);
+    defaults_fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail, sizeof standard - tail);
 }
 
 void singe_init_sim(SingeSimDef *def, size_t struct_size) {

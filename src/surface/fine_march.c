@@ -58,7 +58,7 @@ static uint32_t cut_vertex(Fine *fine, const Piece *piece, int edge) {
     return *piece->cut[edge] = add_vertex(fine, location, in->mass + t * (out->mass - in->mass), SHELL_NONE);
 }
 
-static void draw(Fine *fine, const Piece *piece) {
+static void march_draw(Fine *fine, const Piece *piece) {
     const float level[3] = {fine->values[piece->point[0]].level, fine->values[piece->point[1]].level,
                             fine->values[piece->point[2]].level};
     const int first = surface_fan(level, NEAREST);
@@ -175,7 +175,7 @@ static void march_row(Marching *march, const Row *row) {
         piece.cut[2] = back;
         int inside = inside_count(fine, piece.point);
         if (!march->drawing) count(march, inside);
-        else if (inside > 0) draw(fine, &piece);
+        else if (inside > 0) march_draw(fine, &piece);
         if (on_lower) low++;
         else high++;
     }

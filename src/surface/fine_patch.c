@@ -71,7 +71,7 @@ static void count_cells(void *context, int begin, int end) {
     }
 }
 
-static void location_inner(void *context, int begin, int end) {
+static void put_inner(void *context, int begin, int end) {
     Fine *fine = context;
     for (int c = begin; c < end; c++) {
         const uint32_t *at = fine->shell->cells[c];
@@ -86,7 +86,7 @@ static void location_inner(void *context, int begin, int end) {
 }
 
 /// The two points of side i of a cell, in the order of its corners.
-static void location_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
+static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
     const Shell *shell = fine->shell;
     const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
     uint32_t other = shell_neighbour(shell, cell, i);
@@ -100,7 +100,7 @@ static void location_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2
     }
 }
 
-static void location_rails(void *context, int begin, int end) {
+static void put_rails(void *context, int begin, int end) {
     Fine *fine = context;
     const Shell *shell = fine->shell;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++)
@@ -108,14 +108,14 @@ static void location_rails(void *context, int begin, int end) {
             uint32_t other = shell_neighbour(shell, c, i), blue = shell->cell_springs[c].blue[i];
             if (other != SHELL_NONE && other < c) continue;
             Float3 point[2];
-            location_rail(fine, c, i, point);
+            put_rail(fine, c, i, point);
             bool forwards = shell->springs[SINGE_BLUE].ends[blue][0] == shell->cells[c][i];
             for (int k = 0; k < 2; k++) float3_store(fine->rail[blue][forwards ? k : 1 - k], point[k]);
         }
 }
 
 /// Where the patches meet at a vertex, and how they are moved there to stay within reach of it.
-static void location_limits(void *context, int begin, int end) {
+static void put_limits(void *context, int begin, int end) {
     Fine *fine = context;
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         Ring ring = ring_of(fine, v);
@@ -134,9 +134,9 @@ void fine_find_sound(Fine *fine) { pool_for(fine->pool, (int)fine->shell->cell_c
 void fine_patches(Fine *fine) {
     const int cells = (int)fine->shell->cell_count, vertices = (int)fine->shell->vertex_count;
     pool_for(fine->pool, vertices, 1024, count_cells, fine);
-    pool_for(fine->pool, cells, 1024, location_inner, fine);
-    pool_for(fine->pool, cells, 1024, location_rails, fine);
-    pool_for(fine->pool, vertices, 1024, location_limits, fine);
+    pool_for(fine->pool, cells, 1024, put_inner, fine);
+    pool_for(fine->pool, cells, 1024, put_rails, fine);
+    pool_for(fine->pool, vertices, 1024, put_limits, fine);
 }
 
 // ---- a patch

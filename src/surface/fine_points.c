@@ -11,11 +11,11 @@
 
 #include <string.h>
 
-static bool alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
+static bool points_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
 
 static bool gone_beside(const Fine *fine, uint32_t cell, int side) {
     uint32_t other = shell_neighbour(fine->shell, cell, side);
-    return other != SHELL_NONE && !alive(fine, other);
+    return other != SHELL_NONE && !points_alive(fine, other);
 }
 
 // ---- numbering
@@ -41,7 +41,7 @@ static void bound_cells(Fine *fine) {
         measure_axes(fine->shell, c, fine->axes[c]);
         fine->flags[c] = low >= 0 && heaviest - lightest < 1e-5f ? FINE_EVEN : 0;
         if (whole == 1) fine->flags[c] |= FINE_WHOLE;
-        if (alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours have been asked
+        if (points_alive(fine, c) && high >= 0) fine->flags[c] |= FINE_NEAR; // until its neighbours have been asked
     }
 }
 
@@ -94,7 +94,7 @@ static void number_bent(Fine *fine, uint64_t *point) {
     }
 }
 
-static SingeResult number(Fine *fine, SingeError *error) {
+static SingeResult points_number(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
     uint64_t point = shell->particle_count;
     memset(fine->side_point, 0xff, shell->springs[SINGE_BLUE].count * sizeof *fine->side_point);
@@ -163,7 +163,7 @@ static void evaluate_vertices(void *context, int begin, int end) {
         uint32_t home = SHELL_NONE;
         bool gone = false;
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
-            if (!alive(fine, shell->fan[k])) gone = true;
+            if (!points_alive(fine, shell->fan[k])) gone = true;
             else if (home == SHELL_NONE) home = shell->fan[k];
         }
         fine->values[v] = (FineValue){-1, 0};
@@ -182,7 +182,7 @@ static void evaluate_centres(void *context, int begin, int end) {
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         FineValue *value = &fine->values[shell_centre(fine->shell, c)];
         *value = (FineValue){-1, 0};
-        if (!alive(fine, c)) continue;
+        if (!points_alive(fine, c)) continue;
         if (fine->flags[c] & FINE_EVEN) *value = particle_value(fine, shell_centre(fine->shell, c));
         else *value = fine_value(fine, (FineLocation){c, 0, {0, 0, 1}});
     }
@@ -242,7 +242,7 @@ static void mark_split(void *context, int begin, int end) {
 // ---- what is bent and not split
 
 /// Decides how cells and their sides are drawn.
-static void settle(Fine *fine) {
+static void points_settle(Fine *fine) {
     const Shell *shell = fine->shell;
     uint32_t *split_side = fine->bent_side; // the two change places; back where a side belongs to a split cell
     fine->bent_side = fine->side_point, fine->side_point = split_side;
@@ -274,14 +274,14 @@ static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation lo
 static bool is_bent_side(const Fine *fine, uint32_t cell, int side) {
     uint32_t other = shell_neighbour(fine->shell, cell, side);
     if (fine_parts(fine, cell, side) == 1 || fine_is_split(fine, cell)) return false;
-    return other == SHELL_NONE || !alive(fine, other) || (cell < other && !fine_is_split(fine, other));
+    return other == SHELL_NONE || !points_alive(fine, other) || (cell < other && !fine_is_split(fine, other));
 }
 
 static void evaluate_bent(void *context, int begin, int end) {
     Fine *fine = context;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
         int splits = fine->splits[c];
-        if (!alive(fine, c) || fine_is_split(fine, c)) continue;
+        if (!points_alive(fine, c) || fine_is_split(fine, c)) continue;
         for (int side = 0; side < 4; side++) {
             int parts = fine_parts(fine, c, side);
             for (int i = 1; i < parts && is_bent_side(fine, c, side); i++)
@@ -299,7 +299,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     const Shell *shell = fine->shell;
     bound_cells(fine);
     fine_tear_edges(fine);
-    TRY(number(fine, error));
+    TRY(points_number(fine, error));
     if (!NEW(fine->memory, fine->values, fine->point_count))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     pool_for(fine->pool, (int)shell->vertex_count, 256, evaluate_vertices, fine);
@@ -307,7 +307,7 @@ SingeResult fine_points(Fine *fine, SingeError *error) {
     pool_for(fine->pool, (int)fine->side_count, 64, evaluate_sides, fine);
     pool_for(fine->pool, (int)fine->near_count, 8, evaluate_cells, fine);
     pool_for(fine->pool, (int)fine->near_count, 64, mark_split, fine);
-    settle(fine);
+    points_settle(fine);
     pool_for(fine->pool, (int)shell->cell_count, 256, evaluate_bent, fine);
     return SINGE_OK;
 }

@@ -84,7 +84,7 @@ static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]
 }
 
 /// Where corners are, what they have of their shares, and how far the surface may leave them.
-static void location_corners(Fine *fine) {
+static void fine_put_corners(Fine *fine) {
     const Shell *shell = fine->shell;
     const SpringSet *blue = &shell->springs[SINGE_BLUE];
     const uint32_t spare = blue->count - shell->edge_spare_count;
@@ -163,7 +163,7 @@ static int parts_of(const Fine *fine, uint32_t cell) {
 }
 
 void fine_position(Fine *fine) {
-    location_corners(fine);
+    fine_put_corners(fine);
     gather_normals(fine);
     fine_find_sound(fine);
     gather_shares(fine);

@@ -23,7 +23,7 @@ static float blend_times(const float *time, const uint32_t particle[3], const fl
     return total > 0 ? sum / total : -1;
 }
 
-static void fill(const Fine *fine, const FinePatch *patch, uint32_t v) {
+static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) {
     const FineVertex *vertex = &fine->vertices[v];
     const FineLocation *location = &vertex->location;
     const Shell *shell = fine->shell;
@@ -62,7 +62,7 @@ static void fill_range(void *context, int begin, int end) {
     uint32_t cell = SHELL_NONE;
     for (int v = begin; v < end; v++) {
         if (fine->vertices[v].location.cell != cell) cell = fine->vertices[v].location.cell, patch = fine_patch(fine, cell);
-        fill(fine, &patch, (uint32_t)v);
+        vertices_fill(fine, &patch, (uint32_t)v);
     }
 }
 

@@ -25,7 +25,7 @@ static void push(Polygon *polygon, uint32_t key) {
 }
 
 /// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back.
-static Polygon clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, int side) {
+static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, int side) {
     const CellSprings *springs = &shell->cell_springs[cell];
     int next = (side + 1) & 3;
     uint32_t corner[3] = {shell->cells[cell][side], shell->cells[cell][next], shell_centre(shell, cell)};
@@ -56,7 +56,7 @@ static void draw_cells(AblatePlan *plan, const Shell *shell, const State *state,
         if (cell_first) cell_first[c + 1] = surface->triangle_count;
         if (!(state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
         for (int side = 0; side < 4; side++) {
-            Polygon polygon = clip(plan, shell, c, side);
+            Polygon polygon = surface_clip(plan, shell, c, side);
             for (int k = 2; k < polygon.count; k++) {
                 uint32_t *triangle = surface->triangles[surface->triangle_count++];
                 triangle[0] = polygon.keys[0], triangle[1] = polygon.keys[k - 1], triangle[2] = polygon.keys[k];
@@ -118,7 +118,7 @@ void surface_normals(SingeSurface *surface) {
     }
 }
 
-static SingeResult draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
+static SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
                         SingeSurface *surface, SingeError *error) {
     TRY(surface_reserve_triangles(surface, max_triangles(plan, shell, state), error));
     draw_cells(plan, shell, state, cell_first, surface);
@@ -132,7 +132,7 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
                            SingeError *error) {
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
-    if (!shell->corner_uv) return draw(plan, shell, state, NULL, surface, error);
+    if (!shell->corner_uv) return surface_draw(plan, shell, state, NULL, surface, error);
     Memory memory = memory_make(surface->allocator);
     uint32_t *cell_first;
     size_t cells = (size_t)shell->cell_count + 1;
@@ -140,7 +140,7 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
         surface_clear(surface);
         return error_set(error, SINGE_ERROR_MEMORY, "ablate", -1, "out of memory for the surface's seams");
     }
-    SingeResult result = draw(plan, shell, state, cell_first, surface, error);
+    SingeResult result = surface_draw(plan, shell, state, cell_first, surface, error);
     FREE(&memory, cell_first, cells);
     return result;
 }

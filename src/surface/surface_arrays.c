@@ -18,7 +18,7 @@ static const SurfaceArray triangle_array = ARRAY(triangles);
 
 enum { VERTEX_ARRAYS = sizeof vertex_arrays / sizeof *vertex_arrays };
 
-static void release(Memory *memory, SingeSurface *surface, const SurfaceArray *array, uint32_t count) {
+static void arrays_release(Memory *memory, SingeSurface *surface, const SurfaceArray *array, uint32_t count) {
     memory_free(memory, (char *)surface + array->offset, count, array->element_size);
 }
 
@@ -31,8 +31,8 @@ static bool obtain(Memory *memory, SingeSurface *surface, const SurfaceArray *ar
 void singe_surface_free(SingeSurface *surface) {
     if (!surface) return;
     Memory memory = memory_make(surface->allocator);
-    for (int i = 0; i < VERTEX_ARRAYS; i++) release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
-    release(&memory, surface, &triangle_array, surface->triangle_capacity);
+    for (int i = 0; i < VERTEX_ARRAYS; i++) arrays_release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
+    arrays_release(&memory, surface, &triangle_array, surface->triangle_capacity);
     *surface = (SingeSurface){0};
 }
 
@@ -42,34 +42,34 @@ void surface_clear(SingeSurface *surface) {
     surface->allocator = allocator;
 }
 
-static SingeResult fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
+static SingeResult arrays_fail(SingeSurface *surface, SingeResult code, const char *message, SingeError *error) {
     surface_clear(surface);
     return error_set(error, code, "ablate", -1, "%s", message);
 }
 
-static SingeResult reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count, uint32_t *capacity,
+static SingeResult arrays_reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count, uint32_t *capacity,
                            uint64_t count, SingeError *error) {
-    if (count > INT32_MAX) return fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
+    if (count > INT32_MAX) return arrays_fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
     if (count <= *capacity) return SINGE_OK;
     Memory memory = memory_make(surface->allocator);
-    for (int i = 0; i < array_count; i++) release(&memory, surface, &arrays[i], *capacity);
+    for (int i = 0; i < array_count; i++) arrays_release(&memory, surface, &arrays[i], *capacity);
     *capacity = (uint32_t)(count + count / 4); // a burning sheet's surface grows a little in most frames
     for (int i = 0; i < array_count; i++)
         if (!obtain(&memory, surface, &arrays[i], *capacity))
-            return fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
+            return arrays_fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
     return SINGE_OK;
 }
 
 SingeResult surface_reserve_triangles(SingeSurface *surface, uint64_t count, SingeError *error) {
-    return reserve(surface, &triangle_array, 1, &surface->triangle_capacity, count, error);
+    return arrays_reserve(surface, &triangle_array, 1, &surface->triangle_capacity, count, error);
 }
 
 SingeResult surface_reserve_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
-    return reserve(surface, vertex_arrays, VERTEX_ARRAYS, &surface->vertex_capacity, count, error);
+    return arrays_reserve(surface, vertex_arrays, VERTEX_ARRAYS, &surface->vertex_capacity, count, error);
 }
 
 SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeError *error) {
-    if (count > INT32_MAX) return fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
+    if (count > INT32_MAX) return arrays_fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
     if (count <= surface->vertex_capacity) return SINGE_OK;
     Memory memory = memory_make(surface->allocator);
     SingeSurface grown = {.vertex_capacity = (uint32_t)(count + count / 4), .allocator = surface->allocator};
@@ -86,10 +86,10 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
         const SurfaceArray *array = &vertex_arrays[i];
         void *to;
         memcpy(&to, (char *)&grown + array->offset, sizeof to);
-        release(&memory, good ? surface : &grown, array, good ? surface->vertex_capacity : grown.vertex_capacity);
+        arrays_release(&memory, good ? surface : &grown, array, good ? surface->vertex_capacity : grown.vertex_capacity);
         if (good) memcpy((char *)surface + array->offset, &to, sizeof to);
     }
-    if (!good) return fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
+    if (!good) return arrays_fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);
     surface->vertex_capacity = grown.vertex_capacity;
     return SINGE_OK;
 }

@@ -11,7 +11,7 @@
 
 #define LEVEL_GONE 0.12f
 
-static FineSheet describe(const SurfaceDetail *detail, const Sheet *sheet, uint32_t index) {
+static FineSheet fine_describe(const SurfaceDetail *detail, const Sheet *sheet, uint32_t index) {
     float splits = roundf(sheet->cell_size / (1.4142136f * detail->size));
     FineSheet fine = {.splits = splits < 1 ? 1 : splits > FINE_SPLITS_MAX ? FINE_SPLITS_MAX : (int)splits};
     float spacing = sheet->cell_size / (1.4142136f * (float)fine.splits);
@@ -46,7 +46,7 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
 
 enum { FINE_ARRAYS_MAX = 32 };
 
-static bool allocate(Fine *fine) {
+static bool fine_allocate(Fine *fine) {
     FineArray arrays[FINE_ARRAYS_MAX];
     int count = list_arrays(fine, arrays);
     for (int i = 0; i < count; i++) {
@@ -61,7 +61,7 @@ static bool allocate(Fine *fine) {
     return true;
 }
 
-static void release(Fine *fine) {
+static void fine_release(Fine *fine) {
     FineArray arrays[FINE_ARRAYS_MAX];
     int count = list_arrays(fine, arrays);
     for (int i = 0; i < count; i++)
@@ -96,12 +96,12 @@ static void fill_levels(Fine *fine) {
     }
 }
 
-static SingeResult draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
+static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError *error) {
     const State *state = fine->state;
-    if (!allocate(fine))
+    if (!fine_allocate(fine))
         return error_set(error, SINGE_ERROR_MEMORY, "surface", -1, "out of memory for the surface's detail");
     for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
-        fine->sheets[s] = describe(detail, &fine->shell->sheets[s], s);
+        fine->sheets[s] = fine_describe(detail, &fine->shell->sheets[s], s);
     fill_levels(fine);
     const float *const fields[SPLINE_COUNT] = {
         [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass, [SPLINE_FUEL] = state->burn.fuel,
@@ -125,8 +125,8 @@ SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const Stat
     fine.room = detail->room, fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
     ablate_levels(plan, shell, state);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
-    SingeResult result = draw(&fine, detail, error);
-    release(&fine);
+    SingeResult result = fine_draw(&fine, detail, error);
+    fine_release(&fine);
     if (result) surface_clear(surface);
     return result;
 }

@@ -26,7 +26,7 @@ static void copy_particle(State *state, uint32_t to, uint32_t from) {
     COPY(state->dynamics.velocity, to, from);
 }
 
-static uint16_t alive(const State *state, SingeColour colour, uint32_t spring) {
+static uint16_t split_alive(const State *state, SingeColour colour, uint32_t spring) {
     return state->ablate.spring_flags[colour][spring] & SINGE_ALIVE;
 }
 
@@ -39,11 +39,11 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
         int i = 0;
         while (shell->cells[cell][i] != vertex) i++;
         int after = (i + 3) & 3;
-        degree = (uint16_t)(degree + alive(state, SINGE_RED, springs->red[i]) +
-                            alive(state, SINGE_YELLOW, springs->yellow[i & 1]) +
-                            alive(state, SINGE_BLUE, springs->blue[i]));
+        degree = (uint16_t)(degree + split_alive(state, SINGE_RED, springs->red[i]) +
+                            split_alive(state, SINGE_YELLOW, springs->yellow[i & 1]) +
+                            split_alive(state, SINGE_BLUE, springs->blue[i]));
         if (springs->green[after] == SHELL_NONE)
-            degree = (uint16_t)(degree + alive(state, SINGE_BLUE, springs->blue[after]));
+            degree = (uint16_t)(degree + split_alive(state, SINGE_BLUE, springs->blue[after]));
     }
     state->ablate.degree[vertex] = degree;
 }
@@ -52,7 +52,7 @@ static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
 static void tear_edge_state(const Shell *shell, State *state, const TornEdge *torn) {
     COPY(state->ablate.spring_flags[SINGE_BLUE], torn->spare, torn->edge);
     COPY(state->burn.spring_length[SINGE_BLUE], torn->spare, torn->edge);
-    if (!alive(state, SINGE_GREEN, torn->green)) return;
+    if (!split_alive(state, SINGE_GREEN, torn->green)) return;
     state->ablate.spring_flags[SINGE_GREEN][torn->green] &= (uint8_t)~SINGE_ALIVE;
     for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
 }

@@ -9,15 +9,15 @@
 
 enum { HEIGHT_BLOCK = 8 };
 
-static uint32_t min(uint32_t a, uint32_t b) { return a < b ? a : b; }
+static uint32_t height_solid_min(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 static void height_ranges(HeightSolid *solid) {
     for (uint32_t bj = 0; bj < solid->blocks[1]; bj++)
         for (uint32_t bi = 0; bi < solid->blocks[0]; bi++) {
             float *range = solid->ranges[bj * solid->blocks[0] + bi];
             range[0] = INFINITY, range[1] = -INFINITY;
-            for (uint32_t j = bj * HEIGHT_BLOCK; j <= min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
-                for (uint32_t i = bi * HEIGHT_BLOCK; i <= min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
+            for (uint32_t j = bj * HEIGHT_BLOCK; j <= height_solid_min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
+                for (uint32_t i = bi * HEIGHT_BLOCK; i <= height_solid_min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
                     float h = solid->heights[(size_t)j * solid->columns + i];
                     range[0] = fminf(range[0], h), range[1] = fmaxf(range[1], h);
                 }
@@ -125,8 +125,8 @@ static double height_box(const HeightSolid *solid, Float3 p, const uint32_t firs
 static void height_block(const HeightSolid *solid, Float3 p, uint32_t bi, uint32_t bj, const uint32_t from[2],
                          const uint32_t to[2], HeightFoot *best) {
     uint32_t first[2] = {bi * HEIGHT_BLOCK, bj * HEIGHT_BLOCK};
-    uint32_t end[2] = {min(first[0] + HEIGHT_BLOCK, solid->columns - 1),
-                       min(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
+    uint32_t end[2] = {height_solid_min(first[0] + HEIGHT_BLOCK, solid->columns - 1),
+                       height_solid_min(first[1] + HEIGHT_BLOCK, solid->rows - 1)};
     if (height_box(solid, p, first, end, solid->ranges[bj * solid->blocks[0] + bi]) >= best->square) return;
     for (int d = 0; d < 2; d++) {
         if (first[d] < from[d]) first[d] = from[d];

@@ -142,7 +142,7 @@ static void kinetics_follow_arrhenius(void **unused) {
     }
 }
 
-static void no_step_passes_the_min_mass(void **unused) {
+static void no_step_passes_the_least_mass(void **unused) {
     (void)unused;
     const float exponents[] = {0, 0.3f, 0.5f, 1, 1.7f, 2, 5}, steps[] = {1, 50, 1e4f, 1e30f};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
@@ -397,7 +397,7 @@ int main(void) {
         cmocka_unit_test(exponents_follow_their_solutions),
         cmocka_unit_test(any_rate_leaves_a_mass),
         cmocka_unit_test(kinetics_follow_arrhenius),
-        cmocka_unit_test(no_step_passes_the_min_mass),
+        cmocka_unit_test(no_step_passes_the_least_mass),
         cmocka_unit_test(ignites_once_and_in_order),
         cmocka_unit_test(burnt_when_mass_is_below_loss),
         cmocka_unit_test(springs_shrink_by_eq_6),

@@ -216,7 +216,7 @@ static void cells_of_other_crossings_are_kept_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void sheets_in_one_position_are_left_alone(void **unused) {
+static void sheets_at_one_place_are_left_alone(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
@@ -513,7 +513,7 @@ int main(void) {
         cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
         cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone),
-        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_in_one_position_are_left_alone),
+        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_at_one_place_are_left_alone),
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
         cmocka_unit_test(cells_out_of_bounds_are_found),            cmocka_unit_test(the_search_is_linear),

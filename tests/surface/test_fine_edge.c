@@ -130,7 +130,7 @@ static void edges_are_eaten_by_a_length(void **unused) {
 }
 
 /// Whether a place of the raster within `reach` of (x, y) is covered, or is not, as wanted.
-static bool near_a_location_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
+static bool near_a_place_that_is(const uint8_t *raster, bool wanted, int size, int x, int y, int reach) {
     for (int j = y - reach; j <= y + reach; j++)
         for (int i = x - reach; i <= x + reach; i++)
             if (i >= 0 && j >= 0 && i < size && j < size && (i - x) * (i - x) + (j - y) * (j - y) <= reach * reach &&
@@ -155,7 +155,7 @@ static void edges_stay_within_a_cell(void **unused) {
         for (int k = 0; k < SIZE * SIZE; k++) {
             if (coarse[k] == fine[k]) continue;
             missing += coarse[k];
-            assert_true(near_a_location_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
+            assert_true(near_a_place_that_is(coarse, fine[k], SIZE, k % SIZE, k / SIZE, reach));
         }
     }
     assert_true(missing > 1000);

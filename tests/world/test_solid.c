@@ -96,7 +96,7 @@ static void four_triangles_are_enough(void **unused) {
 }
 
 /// Every box of its tree would be near such a place.
-static void positions_that_are_none_are_far(void **unused) {
+static void places_that_are_none_are_far(void **unused) {
     (void)unused;
     Triangles mesh = triangles_torus(24, 12, 0.1f, 0.04f);
     Memory memory = memory_make((SingeAllocator){0});
@@ -345,7 +345,7 @@ int main(void) {
         cmocka_unit_test(distances_are_those_of_all_triangles), cmocka_unit_test(four_triangles_are_enough),
         cmocka_unit_test(inside_out_is_turned),                 cmocka_unit_test(bad_meshes_are_refused_by_number),
         cmocka_unit_test(heights_are_those_of_their_triangles), cmocka_unit_test(bad_heights_are_refused),
-        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(positions_that_are_none_are_far),
+        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(places_that_are_none_are_far),
     };
     return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }
