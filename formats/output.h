@@ -62,6 +62,10 @@ SINGE_NODISCARD SingeResult vtp_write_frame(const char *path, const OutputScene 
                                             SingeError *error);
 SINGE_NODISCARD SingeResult pvd_write_root(const char *path, const OutputScene *scene, SingeError *error);
 
+SINGE_NODISCARD SingeResult usd_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                            SingeError *error);
+SINGE_NODISCARD SingeResult usd_write_root(const char *path, const OutputScene *scene, SingeError *error);
+
 typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                      SingeError *error);
 typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, SingeError *error);
@@ -70,6 +74,7 @@ typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, 
 /// beside that folder. The first is the cache, which every run writes and from which the others can be made.
 #define OUTPUT_FORMATS(ROW)                                   \
     ROW(ply, ".ply", ply_write_frame, NULL, NULL)             \
+    ROW(usd, ".usdc", usd_write_frame, ".usda", usd_write_root) \
     ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root)
 
 #define OUTPUT_ENUMERATOR(name, ...) OUTPUT_##name,

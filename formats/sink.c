@@ -12,6 +12,11 @@ void sink_free(Sink *sink) {
     *sink = (Sink){.allocator = sink->allocator};
 }
 
+void sink_reserve(Sink *sink, size_t size) {
+    // failing now changes nothing: it is tried again when bytes come
+    (void)store_grow(sink->allocator, &sink->bytes, &sink->capacity, size, 1);
+}
+
 uint8_t *sink_room(Sink *sink, size_t count) {
     if (sink->failed || count > SIZE_MAX / 4 ||
         !store_grow(sink->allocator, &sink->bytes, &sink->capacity, sink->size + count, 1)) {
@@ -56,6 +61,10 @@ void sink_double(Sink *sink, double value) {
 
 void sink_words(Sink *sink, const void *values, size_t count) {
     uint8_t *room = sink_room(sink, 4 * count);
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (room && count) memcpy(room, values, 4 * count);
+    return;
+#endif
     const uint8_t *from = values;
     for (size_t i = 0; room && i < count; i++) {
         uint32_t bits;

@@ -14,6 +14,9 @@ typedef struct Sink {
 
 void sink_free(Sink *sink);
 
+/// Makes room for so many bytes in all, so that it need not grow by and by. It may fail without harm.
+void sink_reserve(Sink *sink, size_t size);
+
 /// Room for `count` bytes at the end, which they become; NULL where there is no memory.
 uint8_t *sink_room(Sink *sink, size_t count);
 

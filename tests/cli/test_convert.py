@@ -8,7 +8,7 @@ import xml.etree.ElementTree as xml
 
 from support import Case
 
-FORMATS = {"vtp": ".pvd"}  # and the ending of their roots; None: no root
+FORMATS = {"usd": ".usda", "vtp": ".pvd"}  # and the ending of their roots; None: no root
 
 
 class Convert(Case):

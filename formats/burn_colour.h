@@ -1,0 +1,24 @@
+// What colour burning paper and cloth have at a vertex, for programs that draw vertex colours.
+#ifndef FORMATS_BURN_COLOUR_H
+#define FORMATS_BURN_COLOUR_H
+
+#include "output.h"
+
+/// Below these a vertex looks as it did at the start: K, highest so far; burn progress.
+#define BURN_COLOUR_PEAK 348.0f
+#define BURN_COLOUR_LEAST 1e-3f
+
+/// Linear colour of the surface, without light of its own.
+void burn_colour(const OutputSheet *sheet, const SingeSurface *surface, uint32_t vertex, float colour[3]);
+
+/// Steps of ember_colour: 0 is dark, the others from 800 K to 1400 K.
+enum { EMBER_STEPS = 64 };
+static inline uint8_t ember_step(float temperature) {
+    if (!(temperature >= 800)) return 0;
+    const float step = 1 + (temperature - 800) / 600 * (EMBER_STEPS - 2);
+    return (uint8_t)(step < EMBER_STEPS - 1 ? step : EMBER_STEPS - 1);
+}
+/// Linear light that an ember gives off, 6 in red at 1200 K, by its black body's colour.
+void ember_colour(uint8_t step, float colour[3]);
+
+#endif

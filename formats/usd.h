@@ -1,0 +1,31 @@
+// What the frames and the root of the USD format share: names and how a stage is laid out.
+//
+//     /NAME                 Xform
+//     /NAME/sheets/SHEET    Mesh, a sheet each; with a picture its faces are in the subsets `fresh` and `burnt`
+//     /NAME/gas, /NAME/camera, /NAME/light, /NAME/materials, /NAME/shapes: of the root alone
+#ifndef FORMATS_USD_H
+#define FORMATS_USD_H
+
+#include "output.h"
+
+enum { USD_NAME = 160 };
+
+/// A name that a prim may have: letters, digits and underscores, all else becomes one.
+void usd_name(const char *name, char prim[USD_NAME]);
+/// That of a sheet, which no sheet before it has.
+void usd_sheet_name(const OutputScene *scene, uint32_t sheet, char prim[USD_NAME]);
+
+/// An attribute of a sheet's mesh.
+typedef struct UsdAttribute {
+    const char *name, *type;
+    bool vertex; ///< interpolation "vertex"
+} UsdAttribute;
+
+enum {
+    USD_POINTS, USD_VELOCITIES, USD_NORMALS, USD_ST, USD_REST, USD_COLOUR, USD_COLOUR_INDICES, USD_EMBER,
+    USD_EMBER_INDICES, USD_COUNTS, USD_INDICES, USD_EXTENT, USD_OWN
+};
+/// The first USD_OWN attributes; the fields of fields.h follow as primvars.
+extern const UsdAttribute usd_attributes[USD_OWN];
+
+#endif

@@ -1,0 +1,351 @@
+#include "usd_crate.h"
+
+#include "lz4.h"
+
+#include <string.h>
+
+enum { HEADER_SIZE = 88, PACKED_LEAST = 16, SECTIONS = 6 };
+static const CrateValue flag_array = (uint64_t)1 << 63, flag_packed = (uint64_t)1 << 61;
+
+/// Room for one more entry of a list; false, and the crate fails, where there is no memory.
+static bool grow(Crate *crate, void *list, size_t *capacity, size_t count, size_t size) {
+    if (store_grow(crate->sink.allocator, list, capacity, count + 1, size)) return true;
+    crate->sink.failed = true;
+    return false;
+}
+
+/// A word's number; it is added where it is new.
+static uint32_t word_number(Crate *crate, const char *text) {
+    for (size_t i = 0; i < crate->word_count; i++)
+        if (strcmp((const char *)crate->words.bytes + crate->places[i], text) == 0) return (uint32_t)i;
+    if (!grow(crate, &crate->places, &crate->word_capacity, crate->word_count, sizeof *crate->places)) return 0;
+    crate->places[crate->word_count] = (uint32_t)crate->words.size;
+    sink_bytes(&crate->words, text, strlen(text) + 1);
+    if (crate->words.failed) {
+        crate->sink.failed = true;
+        return 0;
+    }
+    return (uint32_t)crate->word_count++;
+}
+
+void crate_begin(Crate *crate, SingeAllocator allocator) {
+    *crate = (Crate){.sink = {.allocator = allocator}, .words = {.allocator = allocator},
+                     .scratch = {.allocator = allocator}, .packed = {.allocator = allocator}};
+    sink_zeros(&crate->sink, HEADER_SIZE);
+    word_number(crate, ""); // number 0 has no sign, by which names of properties are known: it is the root's
+}
+
+void crate_free(Crate *crate) {
+    SingeAllocator a = crate->sink.allocator;
+    store_free(a, crate->places, crate->word_capacity, sizeof *crate->places);
+    store_free(a, crate->field_tokens, crate->field_capacity, sizeof *crate->field_tokens);
+    store_free(a, crate->field_values, crate->value_capacity, sizeof *crate->field_values);
+    store_free(a, crate->sets, crate->set_capacity, sizeof *crate->sets);
+    store_free(a, crate->paths, crate->path_capacity, sizeof *crate->paths);
+    store_free(a, crate->specs, crate->spec_capacity, sizeof *crate->specs);
+    store_free(a, crate->table, crate->table_capacity, sizeof *crate->table);
+    sink_free(&crate->sink), sink_free(&crate->words), sink_free(&crate->scratch), sink_free(&crate->packed);
+    *crate = (Crate){.sink = {.allocator = a, .failed = true}};
+}
+
+// ---- packing
+
+/// `size` bytes by LZ4 behind the mark of a single chunk, and its length before it.
+static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t size) {
+    const size_t place = sink->size;
+    sink_u64(sink, 0);
+    uint8_t *room = sink_room(sink, 1 + lz4_most(size));
+    if (!room) return;
+    *room = 0;
+    const size_t length = 1 + lz4_pack(bytes, size, room + 1);
+    sink->size = place + 8 + length;
+    store_u32_little(sink->bytes + place, (uint32_t)length);
+    store_u32_little(sink->bytes + place + 4, (uint32_t)((uint64_t)length >> 32));
+    if (sink->failed) crate->sink.failed = true;
+}
+
+/// The difference of one byte that comes most often, among one in seven where there are many.
+static int32_t common_difference(const int32_t *values, size_t count) {
+    uint32_t counts[256] = {0};
+    const size_t stride = count > 1000 ? 7 : 1;
+    for (size_t i = 0; i < count; i += stride) {
+        const int32_t d = (int32_t)((uint32_t)values[i] - (i ? (uint32_t)values[i - 1] : 0));
+        if (d >= -128 && d <= 127) counts[d + 128]++;
+    }
+    int most = 128;
+    for (int i = 0; i < 256; i++)
+        if (counts[i] > counts[most]) most = i;
+    return most - 128;
+}
+
+/// Differences: the commonest one, two bits for each (it, or one, two or four bytes), then those bytes.
+static void put_ints(Crate *crate, Sink *sink, const int32_t *values, size_t count) {
+    Sink *scratch = &crate->scratch;
+    scratch->size = 0;
+    const size_t codes = (count + 3) / 4;
+    uint8_t *bytes = sink_room(scratch, 4 + codes + 4 * count + 4);
+    if (!bytes) {
+        crate->sink.failed = true;
+        return;
+    }
+    const int32_t common = common_difference(values, count);
+    uint8_t *code = bytes + 4, *at = code + codes;
+    uint32_t before = 0;
+    store_u32_little(bytes, (uint32_t)common);
+    for (size_t i = 0; i < count; i += 4) {
+        unsigned kinds = 0;
+        for (size_t k = 0; k < 4 && i + k < count; k++) {
+            const int32_t d = (int32_t)((uint32_t)values[i + k] - before);
+            before = (uint32_t)values[i + k];
+            // without branches, which nothing could foretell: all four bytes are put, and as many count as are needed
+            const unsigned kind = (d != common) * (1u + (d != (int8_t)d) + (d != (int16_t)d));
+            kinds |= kind << 2 * k;
+            store_u32_little(at, (uint32_t)d);
+            at += kind + (kind == 3);
+        }
+        *code++ = (uint8_t)kinds;
+    }
+    put_packed(crate, sink, bytes, (size_t)(at - bytes));
+}
+
+// ---- values
+
+CrateValue crate_token(Crate *crate, const char *text) { return crate_inline(CRATE_TOKEN, word_number(crate, text)); }
+
+CrateValue crate_double(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return crate_inline(CRATE_DOUBLE, bits);
+}
+
+static CrateValue lies_here(const Crate *crate, CrateType type) { return (uint64_t)type << 48 | crate->sink.size; }
+
+CrateValue crate_token_list(Crate *crate, const char *const *texts, size_t count) {
+    const CrateValue value = lies_here(crate, CRATE_TOKENS);
+    sink_u64(&crate->sink, count);
+    for (size_t i = 0; i < count; i++) sink_u32(&crate->sink, word_number(crate, texts[i]));
+    return value;
+}
+
+CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
+    CrateValue value = (uint64_t)CRATE_INT << 48 | flag_array;
+    if (!count) return value;
+    sink_align(&crate->sink, 8);
+    value |= crate->sink.size;
+    sink_u64(&crate->sink, count);
+    if (count < PACKED_LEAST) {
+        sink_words(&crate->sink, values, count);
+        return value;
+    }
+    put_ints(crate, &crate->sink, values, count);
+    return value | flag_packed;
+}
+
+/// Numbers the values that occur, in the order in which they do. How many there are, or 0 where so many differ that
+/// nothing is gained, or there is no memory, which matters as little.
+static size_t number_values(Crate *crate, const uint32_t *bits, size_t count, int32_t *numbers, uint32_t *values) {
+    const size_t most = count - count / 3;
+    int log = 5;
+    while ((size_t)1 << log < 2 * most) log++;
+    const size_t size = (size_t)1 << log;
+    if (log > 31 || !store_grow(crate->sink.allocator, &crate->table, &crate->table_capacity, size, 4)) return 0;
+    memset(crate->table, 0, size * sizeof *crate->table);
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = bits[i] * 2654435761u >> (32 - log);
+        while (crate->table[at] && values[crate->table[at] - 1] != bits[i]) at = (at + 1) & (size - 1);
+        if (!crate->table[at]) {
+            if (found == most) return 0;
+            values[found++] = bits[i];
+            crate->table[at] = (uint32_t)found;
+        }
+        numbers[i] = (int32_t)crate->table[at] - 1;
+    }
+    return found;
+}
+
+/// Floats as numbers of a table: 't', the table's size, the table, the numbers. False where that is no shorter.
+static bool put_table(Crate *crate, const float *values, size_t count) {
+    Sink *packed = &crate->packed;
+    packed->size = 0;
+    uint32_t *room = (uint32_t *)(void *)sink_room(packed, 3 * 4 * count);
+    if (!room) return packed->failed = false;
+    uint32_t *bits = room, *table = room + count;
+    int32_t *numbers = (int32_t *)(room + 2 * count);
+    memcpy(bits, values, 4 * count);
+    const size_t found = number_values(crate, bits, count, numbers, table);
+    if (!found) return false;
+    const size_t before = crate->sink.size;
+    sink_bytes(&crate->sink, "t", 1);
+    sink_u32(&crate->sink, (uint32_t)found);
+    sink_words(&crate->sink, table, found);
+    put_ints(crate, &crate->sink, numbers, count);
+    if (crate->sink.size - before < 4 * count) return true;
+    crate->sink.size = before;
+    return false;
+}
+
+CrateValue crate_floats(Crate *crate, int width, const float *values, size_t count) {
+    static const CrateType types[] = {[1] = CRATE_FLOAT, [2] = CRATE_VEC2F, [3] = CRATE_VEC3F};
+    CrateValue value = (uint64_t)types[width] << 48 | flag_array;
+    if (!count) return value;
+    sink_align(&crate->sink, 8);
+    value |= crate->sink.size;
+    sink_u64(&crate->sink, count);
+    if (width == 1 && count >= PACKED_LEAST && put_table(crate, values, count)) return value | flag_packed;
+    sink_words(&crate->sink, values, count * (size_t)width);
+    return value;
+}
+
+CrateValue crate_time(Crate *crate, double time) {
+    const CrateValue value = lies_here(crate, CRATE_DOUBLES);
+    sink_u64(&crate->sink, 1);
+    sink_double(&crate->sink, time);
+    return value;
+}
+
+CrateValue crate_sample(Crate *crate, CrateValue time, CrateValue value) {
+    const CrateValue samples = lies_here(crate, CRATE_SAMPLES);
+    sink_u64(&crate->sink, 8); // how far on the times' value is, and behind it the values
+    sink_u64(&crate->sink, time);
+    sink_u64(&crate->sink, 8);
+    sink_u64(&crate->sink, 1);
+    sink_u64(&crate->sink, value);
+    return samples;
+}
+
+// ---- paths and specs
+
+uint32_t crate_path(Crate *crate, const char *name, bool property, uint32_t parent) {
+    if (!grow(crate, &crate->paths, &crate->path_capacity, crate->path_count, sizeof *crate->paths)) return 0;
+    crate->paths[crate->path_count] = (CratePath){word_number(crate, name), parent, property};
+    return (uint32_t)crate->path_count++;
+}
+
+static void put_set(Crate *crate, uint32_t number) {
+    if (grow(crate, &crate->sets, &crate->set_capacity, crate->set_count, sizeof *crate->sets))
+        crate->sets[crate->set_count++] = number;
+}
+
+void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *fields, size_t count) {
+    if (!grow(crate, &crate->specs, &crate->spec_capacity, crate->spec_count, sizeof *crate->specs)) return;
+    crate->specs[crate->spec_count++] = (CrateSpecRow){path, (uint32_t)crate->set_count, kind};
+    for (size_t i = 0; i < count; i++) {
+        if (!grow(crate, &crate->field_tokens, &crate->field_capacity, crate->field_count, 4) ||
+            !grow(crate, &crate->field_values, &crate->value_capacity, crate->field_count, 8))
+            return;
+        put_set(crate, (uint32_t)crate->field_count);
+        crate->field_tokens[crate->field_count] = word_number(crate, fields[i].name);
+        crate->field_values[crate->field_count++] = fields[i].value;
+    }
+    put_set(crate, UINT32_MAX);
+}
+
+// ---- sections
+
+static void put_tokens(Crate *crate) {
+    sink_u64(&crate->sink, crate->word_count);
+    sink_u64(&crate->sink, crate->words.size);
+    put_packed(crate, &crate->sink, crate->words.bytes, crate->words.size);
+}
+
+static void put_strings(Crate *crate) { sink_u64(&crate->sink, 0); }
+
+static void put_fields(Crate *crate) {
+    sink_u64(&crate->sink, crate->field_count);
+    put_ints(crate, &crate->sink, (const int32_t *)crate->field_tokens, crate->field_count);
+    Sink *values = &crate->packed;
+    values->size = 0;
+    for (size_t i = 0; i < crate->field_count; i++) sink_u64(values, crate->field_values[i]);
+    if (values->failed) crate->sink.failed = true;
+    else put_packed(crate, &crate->sink, values->bytes, values->size);
+}
+
+static void put_fieldsets(Crate *crate) {
+    sink_u64(&crate->sink, crate->set_count);
+    put_ints(crate, &crate->sink, (const int32_t *)crate->sets, crate->set_count);
+}
+
+/// How to go on from a path: 0 to a sibling that follows, -1 to its child alone, -2 nowhere, else to its child, and
+/// its sibling is so far on. `room` has a number a path.
+static void find_jumps(const Crate *crate, int32_t *room, int32_t *jumps) {
+    const CratePath *paths = crate->paths;
+    for (size_t i = 0; i < crate->path_count; i++) room[i] = 0; // the child of it that comes next; 0: none
+    for (size_t i = crate->path_count; i-- > 0;) {
+        const bool child = i + 1 < crate->path_count && paths[i + 1].parent == i;
+        const int32_t sibling = paths[i].parent == CRATE_NO_PARENT ? 0 : room[paths[i].parent];
+        jumps[i] = child && sibling ? sibling - (int32_t)i : child ? -1 : sibling ? 0 : -2;
+        if (paths[i].parent != CRATE_NO_PARENT) room[paths[i].parent] = (int32_t)i;
+    }
+}
+
+/// Numbers, names (those of properties negative) and jumps.
+static void put_paths(Crate *crate) {
+    const size_t count = crate->path_count;
+    Sink *room = &crate->packed;
+    room->size = 0;
+    int32_t *columns = (int32_t *)(void *)sink_room(room, 4 * 4 * count);
+    if (!columns) {
+        crate->sink.failed = true;
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const int32_t name = (int32_t)crate->paths[i].token;
+        columns[i] = (int32_t)i;
+        columns[count + i] = crate->paths[i].property ? -name : name;
+    }
+    find_jumps(crate, columns + 3 * count, columns + 2 * count);
+    sink_u64(&crate->sink, count);
+    sink_u64(&crate->sink, count);
+    for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);
+}
+
+static void put_specs(Crate *crate) {
+    const size_t count = crate->spec_count;
+    Sink *room = &crate->packed;
+    room->size = 0;
+    int32_t *columns = (int32_t *)(void *)sink_room(room, 3 * 4 * count);
+    if (!columns) {
+        crate->sink.failed = true;
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        columns[i] = (int32_t)crate->specs[i].path;
+        columns[count + i] = (int32_t)crate->specs[i].fields;
+        columns[2 * count + i] = (int32_t)crate->specs[i].kind;
+    }
+    sink_u64(&crate->sink, count);
+    for (int k = 0; k < 3; k++) put_ints(crate, &crate->sink, columns + (size_t)k * count, count);
+}
+
+static void put_sections(Crate *crate) {
+    static const struct { const char *name; void (*put)(Crate *); } sections[SECTIONS] = {
+        {"TOKENS", put_tokens}, {"STRINGS", put_strings}, {"FIELDS", put_fields},
+        {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths}, {"SPECS", put_specs}};
+    size_t places[SECTIONS + 1];
+    for (int i = 0; i < SECTIONS; i++) {
+        places[i] = crate->sink.size;
+        sections[i].put(crate);
+    }
+    places[SECTIONS] = crate->sink.size;
+    sink_u64(&crate->sink, SECTIONS);
+    for (int i = 0; i < SECTIONS; i++) {
+        char name[16] = "";
+        memcpy(name, sections[i].name, strlen(sections[i].name));
+        sink_bytes(&crate->sink, name, sizeof name);
+        sink_u64(&crate->sink, places[i]);
+        sink_u64(&crate->sink, places[i + 1] - places[i]);
+    }
+    if (crate->sink.failed) return;
+    uint8_t *header = crate->sink.bytes;
+    memcpy(header, "PXR-USDC\0\10\0", 11);
+    store_u32_little(header + 16, (uint32_t)places[SECTIONS]);
+    store_u32_little(header + 20, (uint32_t)((uint64_t)places[SECTIONS] >> 32));
+}
+
+SingeResult crate_write(Crate *crate, const char *path, SingeError *error) {
+    put_sections(crate);
+    SingeResult result = sink_write(&crate->sink, path, error);
+    crate_free(crate);
+    return result;
+}

@@ -1,0 +1,327 @@
+// A frame as a stage of its own in a crate file: a mesh for each sheet, every attribute at the frame's time, so that
+// the root's value clips can take them, and complete enough to be opened alone.
+//
+// Vertices of a sheet keep their order. Colours are indexed: they are rounded to 5, 6 and 5 bits of their square roots.
+#include "burn_colour.h"
+#include "fields.h"
+#include "usd.h"
+#include "usd_crate.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ATTRIBUTES_MOST = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
+
+/// Vertices and triangles by sheet, each in the surface's order.
+typedef struct Parts {
+    uint32_t *vertex_first, *triangle_first; ///< [sheet_count + 1]
+    uint32_t *vertices, *triangles;          ///< by sheet
+    uint32_t *local;                         ///< [vertex_count] a vertex's number in its sheet
+} Parts;
+
+typedef struct UsdWriter {
+    Crate crate;
+    const OutputScene *scene;
+    const SingeSurface *surface;
+    CrateValue time;
+    Parts parts;
+    float *gathered;   ///< [3 * vertex_count]
+    int32_t *numbers;  ///< [3 * triangle_count and vertex_count at least]
+    int32_t *palette;  ///< [COLOURS] index of a colour, -1: none
+    size_t number_count;
+} UsdWriter;
+
+// ---- parts
+
+static bool parts_make(UsdWriter *w) {
+    const SingeSurface *s = w->surface;
+    const SingeAllocator a = s->allocator;
+    const size_t sheets = w->scene->sheet_count;
+    w->number_count = 3 * (size_t)s->triangle_count > s->vertex_count ? 3 * (size_t)s->triangle_count : s->vertex_count;
+    w->parts = (Parts){store_new(a, sheets + 1, 4), store_new(a, sheets + 1, 4), store_new(a, s->vertex_count, 4),
+                       store_new(a, s->triangle_count, 4), store_new(a, s->vertex_count, 4)};
+    w->gathered = store_new(a, s->vertex_count, 12);
+    w->numbers = store_new(a, w->number_count, 4);
+    w->palette = store_new(a, COLOURS, 4);
+    return w->parts.vertex_first && w->parts.triangle_first && w->parts.vertices && w->parts.triangles &&
+           w->parts.local && w->gathered && w->numbers && w->palette;
+}
+
+static void writer_free(UsdWriter *w) {
+    const SingeSurface *s = w->surface;
+    const SingeAllocator a = s->allocator;
+    const size_t sheets = w->scene->sheet_count;
+    store_free(a, w->parts.vertex_first, sheets + 1, 4), store_free(a, w->parts.triangle_first, sheets + 1, 4);
+    store_free(a, w->parts.vertices, s->vertex_count, 4), store_free(a, w->parts.triangles, s->triangle_count, 4);
+    store_free(a, w->parts.local, s->vertex_count, 4), store_free(a, w->gathered, s->vertex_count, 12);
+    store_free(a, w->numbers, w->number_count, 4), store_free(a, w->palette, COLOURS, 4);
+    crate_free(&w->crate);
+}
+
+/// Sorts 0 to count - 1 by sheet. first[sheet_count] is how many there are.
+static void sort_by_sheet(const UsdWriter *w, const int32_t *sheets, const uint32_t (*triangles)[3], uint32_t count,
+                          uint32_t *first, uint32_t *sorted) {
+    const uint32_t sheet_count = w->scene->sheet_count;
+    memset(first, 0, (sheet_count + 1) * sizeof *first);
+    for (uint32_t i = 0; i < count; i++) first[sheets[triangles ? triangles[i][0] : i] + 1]++;
+    for (uint32_t i = 0; i < sheet_count; i++) first[i + 1] += first[i];
+    for (uint32_t i = 0; i < count; i++) sorted[first[sheets[triangles ? triangles[i][0] : i]]++] = i;
+    memmove(first + 1, first, sheet_count * sizeof *first);
+    first[0] = 0;
+}
+
+static SingeResult parts_fill(UsdWriter *w, const char *path, SingeError *error) {
+    const SingeSurface *s = w->surface;
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+        if (s->sheet[v] < 0 || (uint32_t)s->sheet[v] >= w->scene->sheet_count)
+            return refuse(error, SINGE_ERROR_FORMAT, "usd", v, "%s: vertex %u is of sheet %d; the scene has %u",
+                          short_name(path), v, (int)s->sheet[v], w->scene->sheet_count);
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+        for (int k = 1; k < 3; k++)
+            if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
+                return refuse(error, SINGE_ERROR_FORMAT, "usd", t, "%s: triangle %u is of two sheets", short_name(path),
+                              t);
+    sort_by_sheet(w, s->sheet, NULL, s->vertex_count, w->parts.vertex_first, w->parts.vertices);
+    sort_by_sheet(w, s->sheet, (const uint32_t(*)[3])s->triangles, s->triangle_count, w->parts.triangle_first,
+                  w->parts.triangles);
+    for (uint32_t i = 0; i < s->vertex_count; i++) {
+        const uint32_t v = w->parts.vertices[i];
+        w->parts.local[v] = i - w->parts.vertex_first[s->sheet[v]];
+    }
+    return SINGE_OK;
+}
+
+// ---- values
+
+/// A sheet's vertices.
+typedef struct Part {
+    uint32_t sheet, count;
+    const uint32_t *vertices;
+    uint32_t triangle_count;
+    const uint32_t *triangles;
+} Part;
+
+static Part part_of(const UsdWriter *w, uint32_t sheet) {
+    const Parts *p = &w->parts;
+    return (Part){sheet, p->vertex_first[sheet + 1] - p->vertex_first[sheet], p->vertices + p->vertex_first[sheet],
+                  p->triangle_first[sheet + 1] - p->triangle_first[sheet], p->triangles + p->triangle_first[sheet]};
+}
+
+/// A sheet's values of 4 bytes, `width` a vertex: in place where they follow each other, as those of one sheet do.
+static const void *gather(UsdWriter *w, const Part *part, const void *values, int width) {
+    const uint32_t *v = part->vertices;
+    if (!part->count) return values;
+    const uint32_t *from = values;
+    if (v[part->count - 1] - v[0] == part->count - 1) return from + (size_t)width * v[0];
+    uint32_t *to = (uint32_t *)(void *)w->gathered;
+    for (uint32_t i = 0; i < part->count; i++) memcpy(to + (size_t)width * i, from + (size_t)width * v[i], 4 * (size_t)width);
+    return to;
+}
+
+static CrateValue put_vectors(UsdWriter *w, const Part *part, const void *values, int width) {
+    return crate_floats(&w->crate, width, gather(w, part, values, width), part->count);
+}
+
+/// The colours that occur, and of each vertex which.
+static void put_colours(UsdWriter *w, const Part *part, CrateValue *palette, CrateValue *indices) {
+    uint32_t found = 0;
+    memset(w->palette, 0xff, COLOURS * sizeof *w->palette);
+    for (uint32_t i = 0; i < part->count; i++) {
+        static const float steps[3] = {31, 63, 31};
+        float colour[3];
+        uint32_t q[3];
+        burn_colour(&w->scene->sheets[part->sheet], w->surface, part->vertices[i], colour);
+        for (int c = 0; c < 3; c++) {
+            const float within = colour[c] < 0 ? 0 : colour[c] > 1 ? 1 : colour[c];
+            q[c] = (uint32_t)(sqrtf(within) * steps[c] + 0.5f);
+        }
+        int32_t *entry = &w->palette[q[0] << 11 | q[1] << 5 | q[2]];
+        if (*entry < 0) {
+            *entry = (int32_t)found;
+            for (int c = 0; c < 3; c++) w->gathered[3 * found + (uint32_t)c] = (float)q[c] / steps[c] * ((float)q[c] / steps[c]);
+            found++;
+        }
+        w->numbers[i] = *entry;
+    }
+    *palette = crate_floats(&w->crate, 3, w->gathered, found);
+    *indices = crate_ints(&w->crate, w->numbers, part->count);
+}
+
+/// What of it glows: the dark and as many steps as occur.
+static void put_embers(UsdWriter *w, const Part *part, CrateValue *palette, CrateValue *indices) {
+    float colours[EMBER_STEPS][3];
+    int32_t entries[EMBER_STEPS], found = 0;
+    memset(entries, 0xff, sizeof entries);
+    for (uint32_t i = 0; i < part->count; i++) {
+        const uint8_t step = ember_step(w->surface->temperature[part->vertices[i]]);
+        if (entries[step] < 0) {
+            ember_colour(step, colours[found]);
+            entries[step] = found++;
+        }
+        w->numbers[i] = entries[step];
+    }
+    *palette = crate_floats(&w->crate, 3, colours[0], (size_t)found);
+    *indices = crate_ints(&w->crate, w->numbers, part->count);
+}
+
+static void put_faces(UsdWriter *w, const Part *part, CrateValue *counts, CrateValue *indices) {
+    for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
+    *counts = crate_ints(&w->crate, w->numbers, part->triangle_count);
+    for (uint32_t i = 0; i < part->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            w->numbers[3 * i + (uint32_t)k] = (int32_t)w->parts.local[w->surface->triangles[part->triangles[i]][k]];
+    *indices = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
+}
+
+static CrateValue put_extent(UsdWriter *w, const Part *part) {
+    float box[2][3] = {{0}};
+    for (uint32_t i = 0; i < part->count; i++)
+        for (int c = 0; c < 3; c++) {
+            const float x = w->surface->position[part->vertices[i]][c];
+            box[0][c] = i && box[0][c] < x ? box[0][c] : x;
+            box[1][c] = i && box[1][c] > x ? box[1][c] : x;
+        }
+    return crate_floats(&w->crate, 3, box[0], 2);
+}
+
+// ---- prims
+
+static void put_sampled(UsdWriter *w, uint32_t prim, const char *name, const char *type, bool vertex, CrateValue value) {
+    CrateField fields[3] = {{"typeName", crate_token(&w->crate, type)},
+                            {"timeSamples", crate_sample(&w->crate, w->time, value)}};
+    if (vertex) fields[2] = (CrateField){"interpolation", crate_token(&w->crate, "vertex")};
+    crate_spec(&w->crate, crate_path(&w->crate, name, true, prim), CRATE_ATTRIBUTE, fields, vertex ? 3 : 2);
+}
+
+static void put_uniform(UsdWriter *w, uint32_t prim, const char *name, const char *type, CrateValue value) {
+    CrateField fields[] = {{"typeName", crate_token(&w->crate, type)},
+                           {"variability", crate_inline(CRATE_VARIABILITY, 1)},
+                           {"default", value}};
+    crate_spec(&w->crate, crate_path(&w->crate, name, true, prim), CRATE_ATTRIBUTE, fields, 3);
+}
+
+/// Faces whose corners all look as at the start, or the others.
+static void put_subset(UsdWriter *w, const Part *part, uint32_t mesh, const char *name, bool fresh) {
+    const SingeSurface *s = w->surface;
+    size_t count = 0;
+    for (uint32_t i = 0; i < part->triangle_count; i++) {
+        bool untouched = true;
+        for (int k = 0; k < 3; k++) {
+            const uint32_t v = s->triangles[part->triangles[i]][k];
+            untouched = untouched && s->burn[v] < BURN_COLOUR_LEAST && s->temperature_peak[v] <= BURN_COLOUR_PEAK;
+        }
+        if (untouched == fresh) w->numbers[count++] = (int32_t)i;
+    }
+    static const char *const names[] = {"elementType", "familyName", "indices"};
+    const uint32_t prim = crate_path(&w->crate, name, false, mesh);
+    CrateField fields[] = {{"specifier", crate_inline(CRATE_SPECIFIER, 0)},
+                           {"typeName", crate_token(&w->crate, "GeomSubset")},
+                           {"properties", crate_token_list(&w->crate, names, 3)}};
+    crate_spec(&w->crate, prim, CRATE_PRIM, fields, 3);
+    put_uniform(w, prim, names[0], "token", crate_token(&w->crate, "face"));
+    put_uniform(w, prim, names[1], "token", crate_token(&w->crate, "materialBind"));
+    put_sampled(w, prim, names[2], "int[]", false, crate_ints(&w->crate, w->numbers, count));
+}
+
+static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
+    static const char *const uniforms[][2] = {
+        {"subdivisionScheme", "none"}, {"orientation", "rightHanded"}, {"doubleSided", NULL}};
+    const SingeSurface *s = w->surface;
+    const Part part = part_of(w, sheet);
+    const bool pictured = w->scene->sheets[sheet].picture != NULL;
+    const char *names[ATTRIBUTES_MOST + 4], *children[] = {"fresh", "burnt"};
+    char primvars[SURFACE_FIELDS][40], name[USD_NAME];
+    size_t count = 0;
+    for (int i = 0; i < 3; i++) names[count++] = uniforms[i][0];
+    for (int i = 0; i < USD_OWN; i++) names[count++] = usd_attributes[i].name;
+    for (int i = 0; i < SURFACE_FIELDS; i++) {
+        strcat(strcpy(primvars[i], "primvars:"), surface_fields[i].name);
+        names[count++] = primvars[i];
+    }
+    if (pictured) names[count++] = "subsetFamily:materialBind:familyType";
+    usd_sheet_name(w->scene, sheet, name);
+    const uint32_t mesh = crate_path(&w->crate, name, false, sheets);
+    CrateField fields[PRIM_FIELDS] = {{"specifier", crate_inline(CRATE_SPECIFIER, 0)},
+                                      {"typeName", crate_token(&w->crate, "Mesh")},
+                                      {"properties", crate_token_list(&w->crate, names, count)}};
+    if (pictured) fields[3] = (CrateField){"primChildren", crate_token_list(&w->crate, children, 2)};
+    crate_spec(&w->crate, mesh, CRATE_PRIM, fields, pictured ? 4 : 3);
+    for (int i = 0; i < 2; i++)
+        put_uniform(w, mesh, uniforms[i][0], "token", crate_token(&w->crate, uniforms[i][1]));
+    put_uniform(w, mesh, uniforms[2][0], "bool", crate_inline(CRATE_BOOL, 1));
+    CrateValue values[USD_OWN];
+    values[USD_POINTS] = put_vectors(w, &part, s->position, 3);
+    values[USD_VELOCITIES] = put_vectors(w, &part, s->velocity, 3);
+    values[USD_NORMALS] = put_vectors(w, &part, s->normal, 3);
+    values[USD_ST] = put_vectors(w, &part, s->uv, 2);
+    values[USD_REST] = put_vectors(w, &part, s->rest_position, 3);
+    values[USD_EXTENT] = put_extent(w, &part);
+    put_colours(w, &part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
+    put_embers(w, &part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
+    put_faces(w, &part, &values[USD_COUNTS], &values[USD_INDICES]);
+    for (int i = 0; i < USD_OWN; i++)
+        put_sampled(w, mesh, usd_attributes[i].name, usd_attributes[i].type, usd_attributes[i].vertex, values[i]);
+    for (int i = 0; i < SURFACE_FIELDS; i++) {
+        const void *field = gather(w, &part, surface_field(s, &surface_fields[i]), 1);
+        const bool integer = surface_fields[i].integer;
+        put_sampled(w, mesh, primvars[i], integer ? "int[]" : "float[]", true,
+                    integer ? crate_ints(&w->crate, field, part.count) : crate_floats(&w->crate, 1, field, part.count));
+    }
+    if (!pictured) return;
+    put_uniform(w, mesh, "subsetFamily:materialBind:familyType", "token", crate_token(&w->crate, "nonOverlapping"));
+    put_subset(w, &part, mesh, children[0], true);
+    put_subset(w, &part, mesh, children[1], false);
+}
+
+static uint32_t put_group(UsdWriter *w, const char *name, uint32_t parent, const char *const *children, size_t count) {
+    const uint32_t prim = crate_path(&w->crate, name, false, parent);
+    CrateField fields[] = {{"specifier", crate_inline(CRATE_SPECIFIER, 0)},
+                           {"typeName", crate_token(&w->crate, "Xform")},
+                           {"primChildren", crate_token_list(&w->crate, children, count)}};
+    crate_spec(&w->crate, prim, CRATE_PRIM, fields, 3);
+    return prim;
+}
+
+static SingeResult put_stage(UsdWriter *w, int number, const char *path, SingeError *error) {
+    Crate *crate = &w->crate;
+    const uint32_t count = w->scene->sheet_count;
+    char name[USD_NAME];
+    const char *only[1] = {name};
+    usd_name(w->scene->name, name);
+    const uint32_t root = crate_path(crate, "", false, CRATE_NO_PARENT);
+    const float frame = (float)number;
+    CrateField fields[] = {{"defaultPrim", crate_token(crate, name)}, {"metersPerUnit", crate_double(1)},
+                           {"upAxis", crate_token(crate, "Z")}, {"startTimeCode", crate_double(frame)},
+                           {"endTimeCode", crate_double(frame)}, {"timeCodesPerSecond", crate_double(w->scene->fps)},
+                           {"framesPerSecond", crate_double(w->scene->fps)},
+                           {"primChildren", crate_token_list(crate, only, 1)}};
+    crate_spec(crate, root, CRATE_ROOT, fields, sizeof fields / sizeof *fields);
+    static const char *const sheets[] = {"sheets"};
+    const uint32_t top = put_group(w, name, root, sheets, 1);
+    char(*names)[USD_NAME] = store_new(w->surface->allocator, count, USD_NAME);
+    const char **list = store_new(w->surface->allocator, count, sizeof *list);
+    if (names && list) {
+        for (uint32_t i = 0; i < count; i++) {
+            usd_sheet_name(w->scene, i, names[i]);
+            list[i] = names[i];
+        }
+        const uint32_t group = put_group(w, sheets[0], top, list, count);
+        w->time = crate_time(crate, number);
+        for (uint32_t i = 0; i < count; i++) put_mesh(w, group, i);
+    } else {
+        crate->sink.failed = true;
+    }
+    store_free(w->surface->allocator, names, count, USD_NAME);
+    store_free(w->surface->allocator, list, count, sizeof *list);
+    return crate_write(crate, path, error);
+}
+
+SingeResult usd_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
+    UsdWriter writer = {.scene = scene, .surface = frame->surface};
+    crate_begin(&writer.crate, frame->surface->allocator);
+    sink_reserve(&writer.crate.sink, 4096 + 96 * (size_t)frame->surface->vertex_count); // mostly enough
+    SingeResult result = parts_make(&writer) ? parts_fill(&writer, path, error) : refuse_memory(error, "usd", path);
+    if (!result) result = put_stage(&writer, frame->number, path, error);
+    writer_free(&writer);
+    return result;
+}

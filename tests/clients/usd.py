@@ -1,0 +1,178 @@
+"""A burn by Singe, read by OpenUSD (PyPI's usd-core): every value, every validator, no line on standard error, what an
+interrupted run leaves, and sheets that are gone. Exit code 77 where there is no OpenUSD.
+
+usage: usd.py SINGE FOLDER    FOLDER is emptied
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+VENV = os.environ.get("SINGE_CLIENTS", os.path.join(HERE, "..", "..", "build", "clients", "usd", "bin", "python"))
+try:
+    import numpy as np
+    from pxr import Usd, UsdGeom, UsdShade, UsdValidation, UsdVol
+except ImportError:
+    if os.path.exists(VENV) and os.path.realpath(sys.executable) != os.path.realpath(VENV) and "--again" not in sys.argv:
+        os.execv(VENV, [VENV, *sys.argv, "--again"])
+    print("skipped: no OpenUSD; make check-clients installs it (PyPI's usd-core)")
+    sys.exit(77)
+
+from burn import CHECKED, FRAMES, SCALARS, VECTORS, Frame, make, same
+
+SHEETS = ("leaf", "strip")
+
+
+def attribute_name(name):
+    return name if name in ("points", "velocities", "normals") else "primvars:" + name
+
+
+def check_values(stage, out, frames):
+    for sheet, name in enumerate(SHEETS):
+        mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/burn/sheets/" + name))
+        get = lambda attribute: np.array(mesh.GetPrim().GetAttribute(attribute).Get(frame))
+        for frame in range(1, frames + 1):
+            cache = Frame(out, frame, sheet=sheet)
+            assert len(mesh.GetPointsAttr().Get(frame)) == len(cache.rows), (name, frame)
+            assert len(mesh.GetFaceVertexCountsAttr().Get(frame)) == len(cache.triangles), (name, frame)
+            if frame not in CHECKED:
+                continue
+            for attribute, columns in VECTORS.items():
+                same(get(attribute_name(attribute)), cache.stack(columns), (name, frame, attribute))
+            for attribute in SCALARS:
+                same(get(attribute_name(attribute)), cache.column(attribute), (name, frame, attribute))
+            same(get("faceVertexIndices"), cache.triangles.ravel(), (name, frame, "triangles"))
+            for primvar in ("displayColor", "ember"):
+                flat = UsdGeom.PrimvarsAPI(mesh).GetPrimvar(primvar).ComputeFlattened(frame)
+                assert len(flat) == len(cache.rows), (name, frame, primvar)
+            box = np.array(mesh.GetExtentAttr().Get(frame))
+            points = cache.stack("x y z")
+            same(box, np.stack([points.min(0), points.max(0)]), (name, frame, "extent"))
+        print("%s: every value of frames %s, counts of %d" % (name, CHECKED, frames))
+
+
+def check_subsets(stage, out):
+    leaf = UsdGeom.Mesh(stage.GetPrimAtPath("/burn/sheets/leaf"))
+    for frame in CHECKED:
+        parts = [np.array(UsdGeom.Subset(leaf.GetPrim().GetChild(name)).GetIndicesAttr().Get(frame), int)
+                 for name in ("fresh", "burnt")]
+        faces = np.sort(np.concatenate(parts))
+        assert (faces == np.arange(len(Frame(out, frame, sheet=0).triangles))).all()
+    assert len(parts[0]) > 100 and len(parts[1]) > 100, [len(part) for part in parts]
+    for name in ("fresh", "burnt"):
+        material, _ = UsdShade.MaterialBindingAPI(leaf.GetPrim().GetChild(name)).ComputeBoundMaterial()
+        assert material, name
+
+
+def check_rest(stage, out):
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (1, FRAMES, 24)
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1 and UsdGeom.GetStageUpAxis(stage) == "Z"
+    fields = [prim for prim in stage.Traverse() if prim.IsA(UsdVol.OpenVDBAsset)]
+    assert len(fields) == 4
+    for frame in range(1, FRAMES + 1):
+        for prim in fields:
+            path = prim.GetAttribute("filePath").Get(frame).resolvedPath
+            assert os.path.samefile(path, os.path.join(out, "gas", "burn.%04d.vdb" % frame)), path
+    ball = UsdGeom.Xformable(stage.GetPrimAtPath("/burn/things/shape0"))
+    x = [ball.ComputeLocalToWorldTransform(frame).ExtractTranslation()[0] for frame in (1, 13, 24)]
+    assert np.allclose(x, [-0.08, -0.07, -0.08 + 0.02 * 23 / 24], atol=1e-6), x
+    camera = UsdGeom.Camera(stage.GetPrimAtPath("/burn/camera")).GetCamera(1)
+    assert abs(camera.GetFieldOfView(camera.FOVVertical) - 34) < 1e-3
+    view = camera.frustum.ComputeViewDirection()
+    want = np.float64([0.02 - 0.12, 0.34, 0.05 - 0.2])
+    assert np.allclose(np.array(view), want / np.linalg.norm(want), atol=1e-5), view
+
+
+def validate(path):
+    context = UsdValidation.ValidationContext(UsdValidation.ValidationRegistry().GetOrLoadAllValidators())
+    errors = context.Validate(Usd.Stage.Open(path))
+    for error in errors:
+        print(path, error.GetName(), error.GetMessage())
+    assert not errors
+    return len(UsdValidation.ValidationRegistry().GetOrLoadAllValidators())
+
+
+def check_interrupted(singe, folder):
+    """Killed on its way: the root that there is names frames that are there, all whole."""
+    out = os.path.join(folder, "killed")
+    scene = os.path.join(folder, "burn.yaml")
+    run = subprocess.Popen([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], stdout=subprocess.DEVNULL)
+    sixth = os.path.join(out, "usd", "burn.0006.usdc")
+    while not os.path.exists(sixth) and run.poll() is None:
+        time.sleep(0.01)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    root = os.path.join(out, "burn.usda")
+    frames = 0
+    if os.path.exists(root):
+        stage = Usd.Stage.Open(root)
+        frames = int(stage.GetEndTimeCode())
+        check_values(stage, out, frames)
+    subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview", "--resume"], check=True,
+                   stdout=subprocess.DEVNULL)
+    same_files = all(open(os.path.join(out, name), "rb").read() == open(os.path.join(folder, "out", name), "rb").read()
+                     for name in ["burn.usda"] + ["usd/burn.%04d.usdc" % frame for frame in range(1, FRAMES + 1)])
+    assert same_files
+    print("killed after frame 6: its root names %d frames; gone on with, all files are the same" % frames)
+
+
+def check_gone(singe, folder):
+    """A sheet that is burnt at the end: the last frames have no vertices, and hold nothing of those before."""
+    scene = os.path.join(folder, "gone.yaml")
+    with open(scene, "w") as file:
+        file.write("""\
+name: burn
+frames: 12
+steps: 4
+pace: 40
+sheets:
+  - name: leaf
+    grid: {size: [2 cm, 2 cm], cells: [8, 8]}
+    drop_pieces_below: 3 cm2
+    material: {char_yield: 0, mass_loss: 50 %}
+sources: [{kind: spot, position: [0, 0, 0], radius: 5 cm, temperature: 1400 K, conductance: 2000}]
+gas: no
+output: {formats: [usd]}
+""")
+    out = os.path.join(folder, "gone")
+    subprocess.run([singe, "run", scene, "-o", out, "--quiet", "--no-preview"], check=True, stdout=subprocess.DEVNULL)
+    stage = Usd.Stage.Open(os.path.join(out, "burn.usda"))
+    counts = [len(UsdGeom.Mesh(stage.GetPrimAtPath("/burn/sheets/leaf")).GetPointsAttr().Get(frame))
+              for frame in range(1, 13)]
+    print("vertices of a sheet that burns away:", counts)
+    assert counts[0] > 0 and counts[-1] == 0
+
+
+def main():
+    singe, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    shutil.rmtree(folder, ignore_errors=True)
+    out = make(singe, folder, ["usd"], "--no-preview")
+    root = os.path.join(out, "burn.usda")
+    # what USD prints it prints past Python: standard error is looked at in a file
+    saved = os.dup(2)
+    with open(os.path.join(folder, "stderr.txt"), "wb+") as log:
+        os.dup2(log.fileno(), 2)
+        try:
+            stage = Usd.Stage.Open(root)
+            check_values(stage, out, FRAMES)
+            check_subsets(stage, out)
+            check_rest(stage, out)
+            count = validate(root)
+            for frame in CHECKED:
+                validate(os.path.join(out, "usd", "burn.%04d.usdc" % frame))
+            check_gone(singe, folder)
+            check_interrupted(singe, folder)
+        finally:
+            os.dup2(saved, 2)
+            log.seek(0)
+            said = log.read().decode(errors="replace")
+            sys.stderr.write(said)
+    assert not said, "OpenUSD has something to say"
+    print("OpenUSD %s: %d validators find nothing" % (".".join(map(str, Usd.GetVersion()[1:])), count))
+
+
+main()

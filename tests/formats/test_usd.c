@@ -1,0 +1,304 @@
+// Frames of the USD format: every value comes back by a reader of the tests' own, in the bytes and the time promised.
+#include "crate_reader.h"
+
+#include "formats/fields.h"
+#include "formats/lz4.h"
+#include "formats/output.h"
+
+#include <math.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+static char path[512];
+
+/// A sheet of side x side vertices, half of it burning, as values of its fields; `sheets` of them, vertices in turn.
+static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
+    const uint32_t count = side * side;
+    *s = (SingeSurface){.vertex_count = count, .triangle_count = 2 * (side - 1) * (side - 1)};
+    s->position = malloc(12 * count), s->normal = malloc(12 * count), s->uv = malloc(8 * count);
+    s->velocity = malloc(12 * count), s->rest_position = malloc(12 * count);
+    s->temperature = malloc(4 * count), s->temperature_peak = malloc(4 * count), s->mass = malloc(4 * count);
+    s->burn_rate = malloc(4 * count), s->char_fraction = malloc(4 * count), s->ash_fraction = malloc(4 * count);
+    s->burn = malloc(4 * count), s->time_ignited = malloc(4 * count), s->piece = malloc(4 * count);
+    s->source_vertex = malloc(4 * count), s->sheet = malloc(4 * count);
+    s->triangles = malloc(12 * s->triangle_count);
+    uint32_t seed = 1;
+    for (uint32_t v = 0; v < count; v++) {
+        const float x = (float)(v % side), y = (float)(v / side), hot = y > 0.5f * (float)side ? y / (float)side : 0;
+        for (int c = 0; c < 3; c++) {
+            seed = seed * 1664525u + 1013904223u;
+            const float noise = (float)(seed >> 8) * 0x1p-24f;
+            s->position[v][c] = (c == 0 ? x : c == 1 ? y : 0) * 1e-3f + noise * 1e-4f;
+            s->velocity[v][c] = noise - 0.5f, s->normal[v][c] = (float)(c == 2) + 0.01f * noise;
+            s->rest_position[v][c] = (c == 0 ? x : c == 1 ? y : 0) * 1e-3f;
+        }
+        const float noise = (float)(seed >> 8) * 0x1p-24f;
+        s->uv[v][0] = x / (float)side, s->uv[v][1] = y / (float)side;
+        s->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f;
+        s->temperature_peak[v] = s->temperature[v] + hot, s->mass[v] = 1 - 0.5f * hot * noise;
+        s->burn_rate[v] = hot * noise, s->char_fraction[v] = 0.3f * hot, s->ash_fraction[v] = 0.1f * hot * noise;
+        s->burn[v] = 1 - s->mass[v], s->time_ignited[v] = hot > 0 ? 0.5f + noise : -1;
+        s->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, s->source_vertex[v] = v % 5 ? (int32_t)v : -1;
+        s->sheet[v] = (int32_t)(v % (uint32_t)sheets);
+    }
+    uint32_t t = 0;
+    for (uint32_t y = 0; y + 1 < side; y++)
+        for (uint32_t x = 0; x + 1 < side; x++) {
+            const uint32_t a = y * side + x;
+            const uint32_t two[2][3] = {{a, a + 1, a + side + 1}, {a, a + side + 1, a + side}};
+            for (int k = 0; k < 2; k++, t++) memcpy(s->triangles[t], two[k], sizeof two[k]);
+        }
+}
+
+static SingeResult write_sheet(const SingeSurface *s, uint32_t sheets, const char *picture, SingeError *error) {
+    static const OutputSheet pair[2] = {{.name = "a b", .colour = {1, 1, 1}}, {.name = "a/b", .colour = {1, 0, 0}}};
+    OutputSheet list[2] = {pair[0], pair[1]};
+    list[0].picture = picture;
+    const OutputScene scene = {.name = "7 up", .fps = 24, .sheet_count = sheets, .sheets = list};
+    const OutputFrame frame = {.surface = s, .time = 1.5, .number = 37};
+    return usd_write_frame(path, &scene, &frame, error);
+}
+
+static Bytes written(const SingeSurface *s, uint32_t sheets, const char *picture) {
+    SingeError error;
+    Bytes bytes;
+    if (write_sheet(s, sheets, picture, &error)) fail_msg("%s", error.message);
+    assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+    unlink(path);
+    return bytes;
+}
+
+/// Compares an attribute of a mesh with the values of the vertices that its sheet has.
+static void check_attribute(const CrateFile *file, const SingeSurface *s, const char *mesh, int32_t sheet, const char *name,
+                            const void *values, int type, int width) {
+    char full[300];
+    double time;
+    size_t count, at = 0;
+    snprintf(full, sizeof full, "%s.%s", mesh, name);
+    uint32_t *read = crate_samples(file, full, type, width, &time, &count);
+    assert_true(time == 37);
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (s->sheet[v] != sheet) continue;
+        assert_true(at < count);
+        assert_memory_equal(read + (size_t)width * at++, (const uint32_t *)values + (size_t)width * v, 4 * (size_t)width);
+    }
+    assert_int_equal(at, count);
+    free(read);
+}
+
+static void check_mesh(const CrateFile *file, const SingeSurface *s, const char *mesh, int32_t sheet) {
+    assert_string_equal(crate_text(file, mesh, "typeName"), "Mesh");
+    check_attribute(file, s, mesh, sheet, "points", s->position, 24, 3);
+    check_attribute(file, s, mesh, sheet, "velocities", s->velocity, 24, 3);
+    check_attribute(file, s, mesh, sheet, "normals", s->normal, 24, 3);
+    check_attribute(file, s, mesh, sheet, "primvars:st", s->uv, 20, 2);
+    check_attribute(file, s, mesh, sheet, "primvars:rest", s->rest_position, 24, 3);
+    for (int i = 0; i < SURFACE_FIELDS; i++) {
+        char name[80];
+        snprintf(name, sizeof name, "primvars:%s", surface_fields[i].name);
+        check_attribute(file, s, mesh, sheet, name, surface_field(s, &surface_fields[i]),
+                        surface_fields[i].integer ? 3 : 8, 1);
+    }
+}
+
+static void check_triangles(const CrateFile *file, const SingeSurface *s, const char *mesh) {
+    char full[300];
+    double time;
+    size_t count;
+    snprintf(full, sizeof full, "%s.faceVertexIndices", mesh);
+    uint32_t *read = crate_samples(file, full, 3, 1, &time, &count);
+    assert_int_equal(count, 3 * s->triangle_count);
+    assert_memory_equal(read, s->triangles, 4 * count);
+    free(read);
+    snprintf(full, sizeof full, "%s.faceVertexCounts", mesh);
+    read = crate_samples(file, full, 3, 1, &time, &count);
+    assert_int_equal(count, s->triangle_count);
+    for (size_t i = 0; i < count; i++) assert_int_equal(read[i], 3);
+    free(read);
+}
+
+static void every_value_comes_back(void **state) {
+    (void)state;
+    SingeSurface s;
+    CrateFile file;
+    make_sheet(&s, 40, 1);
+    Bytes bytes = written(&s, 1, NULL);
+    crate_open(&file, bytes.data, bytes.size);
+    assert_string_equal(crate_text(&file, "", "upAxis"), "Z");
+    assert_string_equal(crate_text(&file, "", "defaultPrim"), "_7_up");
+    check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
+    check_triangles(&file, &s, "/_7_up/sheets/a_b");
+    crate_close(&file);
+    bytes_free(&bytes);
+    singe_surface_free(&s);
+}
+
+/// Two sheets whose vertices take turns, with names that become one.
+static void sheets_are_meshes_of_their_own(void **state) {
+    (void)state;
+    SingeSurface s;
+    CrateFile file;
+    SingeError error;
+    make_sheet(&s, 12, 2);
+    s.triangle_count = 0;
+    Bytes bytes = written(&s, 2, NULL);
+    crate_open(&file, bytes.data, bytes.size);
+    check_mesh(&file, &s, "/_7_up/sheets/a_b", 0);
+    check_mesh(&file, &s, "/_7_up/sheets/a_b_2", 1);
+    crate_close(&file);
+    bytes_free(&bytes);
+    s.triangle_count = 1; // of vertices 0, 1 and 13
+    assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
+    assert_non_null(strstr(error.message, "triangle 0 is of two sheets"));
+    s.triangle_count = 0, s.sheet[5] = 2;
+    assert_int_equal(write_sheet(&s, 2, NULL, &error), SINGE_ERROR_FORMAT);
+    assert_non_null(strstr(error.message, "vertex 5 is of sheet 2"));
+    singe_surface_free(&s);
+}
+
+/// With a picture every face is in one of two subsets: those that look as at the start, and the others.
+static void pictured_sheets_have_subsets(void **state) {
+    (void)state;
+    SingeSurface s;
+    CrateFile file;
+    double time;
+    size_t fresh, burnt;
+    make_sheet(&s, 30, 1);
+    Bytes bytes = written(&s, 1, "./a.png");
+    crate_open(&file, bytes.data, bytes.size);
+    uint32_t *a = crate_samples(&file, "/_7_up/sheets/a_b/fresh.indices", 3, 1, &time, &fresh);
+    uint32_t *b = crate_samples(&file, "/_7_up/sheets/a_b/burnt.indices", 3, 1, &time, &burnt);
+    assert_int_equal(fresh + burnt, s.triangle_count);
+    assert_true(fresh > s.triangle_count / 3 && burnt > s.triangle_count / 3);
+    for (size_t i = 0; i < fresh; i++) assert_true(s.temperature_peak[s.triangles[a[i]][0]] < 300);
+    free(a), free(b);
+    crate_close(&file);
+    bytes_free(&bytes);
+    singe_surface_free(&s);
+}
+
+static void nothing_left_is_a_frame_too(void **state) {
+    (void)state;
+    const SingeSurface none = {0};
+    CrateFile file;
+    Bytes bytes = written(&none, 1, "a.png");
+    crate_open(&file, bytes.data, bytes.size);
+    check_mesh(&file, &none, "/_7_up/sheets/a_b", 0);
+    check_triangles(&file, &none, "/_7_up/sheets/a_b");
+    crate_close(&file);
+    bytes_free(&bytes);
+}
+
+/// What lz4_pack makes, unpacked by the tests' reader; repeats are short.
+static void packed_bytes_come_back(void **state) {
+    (void)state;
+    static const size_t sizes[] = {0, 1, 12, 13, 14, 15, 16, 255, 270, 271, 5000, 70000, 300000};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+        for (int kind = 0; kind < 4; kind++) {
+            const size_t size = sizes[k];
+            uint8_t *in = malloc(size + 1), *packed = malloc(lz4_most(size) + 1), *out = malloc(size + 1);
+            uint32_t seed = 7;
+            for (size_t i = 0; i < size; i++) {
+                seed = seed * 1664525u + 1013904223u;
+                in[i] = (uint8_t)(kind == 0 ? 0 : kind == 1 ? seed >> 24 : kind == 2 ? i % 37 : i % 1000 ? i / 3 : seed >> 20);
+            }
+            packed[0] = 0;
+            const size_t length = lz4_pack(in, size, packed + 1);
+            assert_true(length <= lz4_most(size));
+            assert_int_equal(crate_unpack(packed, length + 1, out, size), size);
+            assert_memory_equal(out, in, size);
+            if (kind == 0 && size == 5000) assert_true(length < 60);
+            if (kind == 2 && size == 70000) assert_true(length < 400);
+            free(in), free(packed), free(out);
+        }
+}
+
+static size_t out_of_memory_countdown;
+static void *stingy(void *context, void *block, size_t old_size, size_t new_size) {
+    (void)context, (void)old_size;
+    if (!new_size) {
+        free(block);
+        return NULL;
+    }
+    return out_of_memory_countdown-- ? realloc(block, new_size) : NULL;
+}
+
+/// Each allocation fails once: an error and no file, or, where packing can do without, the same values.
+static void without_memory_there_is_no_file(void **state) {
+    (void)state;
+    SingeSurface s;
+    size_t failures = 0;
+    make_sheet(&s, 20, 1);
+    for (size_t n = 0; n < 1000; n++) {
+        SingeError error = {0};
+        s.allocator.resize = stingy;
+        out_of_memory_countdown = n;
+        const SingeResult result = write_sheet(&s, 1, NULL, &error);
+        const bool all = out_of_memory_countdown < 1000000;
+        s.allocator.resize = NULL;
+        assert_int_equal(access(path, F_OK) == 0, result == SINGE_OK);
+        unlink(path);
+        if (result) assert_int_equal(error.code, SINGE_ERROR_MEMORY), failures++;
+        else if (all) break;
+    }
+    assert_true(failures > 20 && failures < 900);
+    singe_surface_free(&s);
+}
+
+/// Seconds that the program itself has used, and the system for it (memory, the file).
+static double time_used(double *system) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    *system = (double)usage.ru_stime.tv_sec + 1e-6 * (double)usage.ru_stime.tv_usec;
+    return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
+}
+
+/// At 25,000 vertices a frame takes at most 5 ms of the program's time and 75 % of the bytes of the PLY.
+static void is_fast_and_small(void **state) {
+    (void)state;
+    SingeSurface s;
+    SingeError error;
+    Bytes ply;
+    make_sheet(&s, 158, 1);
+    enum { FRAMES = 20, TIMES = 4 };
+    double system[2], ply_system[2], mean = 1;
+    for (int times = 0; times < TIMES; times++) { // the least of some: others use the machine, too
+        const double own = time_used(&system[0]);
+        for (int i = 0; i < FRAMES; i++) assert_int_equal(write_sheet(&s, 1, NULL, &error), SINGE_OK);
+        mean = fmin(mean, (time_used(&system[1]) - own) / FRAMES);
+    }
+    const double begun = time_used(&ply_system[0]);
+    for (int i = 0; i < FRAMES; i++) assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
+    const double ply_mean = (time_used(&ply_system[1]) - begun) / FRAMES;
+    Bytes usd = written(&s, 1, NULL);
+    assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
+    assert_int_equal(file_read(path, (SingeAllocator){0}, &ply, &error), SINGE_OK);
+    unlink(path);
+    const double share = (double)usd.size / (double)ply.size;
+    printf("%u vertices: %.2f ms a frame (bar 5) and %.2f of the system, PLY %.2f and %.2f; %.0f %% of its bytes (bar 75)\n",
+           s.vertex_count, 1e3 * mean, 1e3 * (system[1] - system[0]) / FRAMES, 1e3 * ply_mean,
+           1e3 * (ply_system[1] - ply_system[0]) / FRAMES, 100 * share);
+    assert_true(share <= 0.75);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__OPTIMIZE__)
+    assert_true(mean <= 5e-3);
+#endif
+    bytes_free(&usd), bytes_free(&ply);
+    singe_surface_free(&s);
+}
+
+static int make_path(void **state) {
+    (void)state;
+    // in memory where that can be: what is timed is the writer, not the disk
+    snprintf(path, sizeof path, "%s/singe-usd-%ld.usdc", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm", (long)getpid());
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(packed_bytes_come_back),        cmocka_unit_test(every_value_comes_back),
+        cmocka_unit_test(sheets_are_meshes_of_their_own), cmocka_unit_test(pictured_sheets_have_subsets),
+        cmocka_unit_test(nothing_left_is_a_frame_too),   cmocka_unit_test(without_memory_there_is_no_file),
+        cmocka_unit_test(is_fast_and_small),
+    };
+    return cmocka_run_group_tests(tests, make_path, NULL);
+}
