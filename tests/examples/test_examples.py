@@ -177,14 +177,15 @@ class Letter(Example):
         self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles, {ash} vertices of ash"
         leaf = 1e4 * self.leaf(len(self.rows))
         self.say["leaf"] = f"{leaf:.0f} cm2 of char at last"
-        self.curls("60-79")
+        self.curls("50-66")
         self.told()
         self.assertGreaterEqual(leaf, 10)
         self.assertTrue(750 <= hottest <= 1050)  # of flame and embers; strips without edges keep to 950 (heat_front)
         # what office paper does, lying free
         self.assertTrue(4.4e-3 <= last["front_speed"] <= 7.0e-3)
         self.assertGreaterEqual(last["burnt_fraction"], 0.5)
-        self.assertGreaterEqual(last["pieces"], 2)
+        self.assertGreaterEqual(max(self.column("pieces")), 2)
+        self.assertGreaterEqual(last["pieces_freed"], 1)
         self.assertGreater(last["particles"], 100)
         self.assertGreater(ash, 100)
         self.assertGreater(last["holes_opened"], 0)
@@ -192,7 +193,7 @@ class Letter(Example):
         self.assertEqual(max(self.column("inverted_cells")), 0)
         # the demo stays small
         self.assertLessEqual(self.rows[0]["springs"], 110000)
-        self.assertEqual(len(self.rows), 120)
+        self.assertEqual(len(self.rows), 100)
 
 
 class LetterHanging(Example):
