@@ -32,7 +32,7 @@ void findings_add(Findings *findings, Fault fault, const char *format, ...) {
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    const char *more = findings->reported[fault] == REPORTED ? "; further ones of this kind are only counted" : "";
+    const char *more = findings->reported[fault] == REPORTED ? "; more of this kind are only counted" : "";
     findings_say(findings, true, "%s: %s%s", findings->file, text, more);
 }
 
@@ -114,7 +114,7 @@ static int32_t sheet_of(const CacheFrame *frame, uint32_t triangle) {
     return sheet;
 }
 
-/// Counts a pair that crosses from the start, and tells of it when it is one of the first.
+/// Counts a pair that crosses from the start, and reports it when it is one of the first.
 static void add_from_start(const CacheFrame *frame, uint32_t a, uint32_t b, Findings *findings) {
     const float *p = frame->position[frame->triangles[a][0]];
     if (findings->from_start++ < REPORTED && findings->begins)

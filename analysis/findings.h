@@ -34,7 +34,7 @@ typedef struct Findings {
     int reported[FAULT_COUNT];    ///< messages so far
 } Findings;
 
-/// Counts a fault, and tells of it when it is one of the first of its kind.
+/// Counts a fault, and reports it when it is one of the first of its kind.
 void findings_add(Findings *findings, Fault fault, const char *format, ...) SINGE_PRINTF(3, 4);
 
 /// Values that are not finite, missing properties, indices out of range.

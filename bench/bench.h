@@ -44,11 +44,11 @@ BenchFn bench_compare;
 BenchFn bench_width;
 /// Over thickness, resolution and time step: does it hold?
 BenchFn bench_stability;
-/// How much the look hangs on time step, substeps and resolution.
+/// How much the look depends on time step, substeps and resolution.
 BenchFn bench_look;
 /// What a strip that was folded and let go keeps of the fold.
 BenchFn bench_fold;
-/// The spectrum of the wrinkles of a burning edge, and how much its peak hangs on time step and resolution.
+/// The spectrum of the wrinkles of a burning edge, and how much its peak depends on time step and resolution.
 BenchFn bench_spectrum;
 
 #endif

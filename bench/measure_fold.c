@@ -119,7 +119,7 @@ static SingeResult fold_run(const BenchOptions *options, Fold *fold, bool crease
     SingeSim *sim;
     def.thread_count = options->threads, def.instructions = options->instructions;
     def.time_step = (float)fold->step;
-    def.solver.substeps = options->substeps; // 0: what the strip's firmness needs
+    def.solver.substeps = options->substeps; // 0: what the strip's stiffness needs
     def.solver.creases = creases;
     for (int axis = 0; axis < 3; axis++) def.gravity[axis] = 0;
     fold->inverted = 0;

@@ -1,4 +1,4 @@
-// How much the look hangs on numerical settings: rest shape, sag and wrinkles at twice and half the time step, twice
+// How much the look depends on numerical settings: rest shape, sag and wrinkles at twice and half the time step, twice
 // the substeps and half the cell size, against a base.
 //
 // Rest: a sheet hangs from two corner patches that come 10 cm nearer to each other, and comes to rest.
@@ -17,7 +17,7 @@
 #include "bench/geometry.h"
 #include "bench/hung_sheet.h"
 
-/// Enough for the default firmness at every setting (docs/equations.md, Firmness).
+/// Enough for the default stiffness at every setting (docs/equations.md, Stiffness).
 enum { SUBSTEPS = 16 };
 
 enum { POINTS = 41, LINES = 24, SAMPLES = 128 };

@@ -1,4 +1,4 @@
-// The spectrum of the wrinkles that burning leaves, and how much it hangs on numerical settings: at twice and half the
+// The spectrum of the wrinkles that burning leaves, and how much it depends on numerical settings: at twice and half the
 // time step and half the cell size it should stay, at twice the thickness it should not.
 //
 // A sheet hangs from its upper edge and burns from its lower one, lit all along. Four times from then on, lines along
@@ -115,7 +115,7 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId id;
     def.thread_count = options->threads, def.instructions = options->instructions, def.pace = 4;
-    def.solver.substeps = options->substeps; // 0: as many as firmness needs
+    def.solver.substeps = options->substeps; // 0: as many as stiffness needs
     def.time_step *= (float)step;
     sheet.material.temperature = (SingeParam){.value = 293, .to = 1100, .field = SINGE_FIELD_ATTRIBUTE,
                                               .attribute = "hot"};

@@ -49,7 +49,7 @@ static const struct {
      "A cloth that falls over a sphere in folds: milliseconds of a frame by stage, contact with itself, strain."},
     {"collapse", "bench collapse", bench_collapse,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SUBSTEPS) | OUTPUT,
-     "A ball, a closed mesh of six squares, that falls into itself under its weight: the same numbers."},
+     "A ball, a closed mesh of six squares, that collapses into self-contact under its weight: the same numbers."},
     {"memory", "bench memory", bench_memory, BENCH_BIT(SPRINGS) | BENCH_BIT(THREADS) | OUTPUT,
      "Bytes a spring: what a simulation holds, and its drawn mesh."},
     {"front", "bench front", bench_front, BENCH_BIT(MATERIAL) | BENCH_BIT(QUICK) | BENCH_BIT(THREADS) | OUTPUT,
@@ -66,7 +66,7 @@ static const struct {
     {"stability", "bench stability", bench_stability,
      BENCH_BIT(CELLS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) | BENCH_BIT(QUICK) | SOLVER |
          OUTPUT,
-     "Swing and strong shrink over thickness, resolution and time step: does it hold?"},
+     "Swing and strong shrinkage over thickness, resolution and time step: is the solver stable?"},
     {"look", "bench look", bench_look,
      BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(TIME) | BENCH_BIT(THREADS) | BENCH_BIT(SMOOTHING) |
          BENCH_BIT(QUICK) | SOLVER | OUTPUT,

@@ -16,13 +16,13 @@ enum { OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_COUNT };
 static const ArgOption check_options[OPT_COUNT] = {
     [OPT_FRAMES] = {"frames", 0, "N", "frames to estimate the time for"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "lays a value over the scene; may be repeated"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
 };
 
 static const ArgCommand check_command = {
     "check",
     "SCENE",
-    "Reads a scene with its meshes and pictures, builds it, and says what it consists of and costs.",
+    "Reads a scene with its meshes and images, builds it, and prints its size and cost.",
     check_options,
     OPT_COUNT,
     "Exit codes: 0 the scene is good; 1 a step of it fails, there is no memory, or standard output cannot be written;\n"
@@ -115,7 +115,7 @@ static void report_shell(const SingeCounts *c) {
 enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
 
 /// What a strip of the material does in steps of that length, a few seconds' work at most; a speed of 0 where it does
-/// not burn, and no end where that cannot be told. Fails only without memory.
+/// not burn, and no end where that cannot be known. Fails only without memory.
 static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
     setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE, setup.work_max = CHECK_STRIP_WORK;
@@ -136,7 +136,7 @@ static SingeResult report_front(const Scene *scene, const BenchMaterial *materia
     if (result) return result;
     if (!(front.speed > 0)) {
         if (front.end == STRIP_OUT) printf(": a level strip of it goes out");
-        if (front.end == STRIP_CUT) printf(": how fast it burns would take too long to find out");
+        if (front.end == STRIP_CUT) printf(": measuring its burning speed would take too long");
         return SINGE_OK;
     }
     printf(": a level front of %.3g mm/s and %.0f C", 1e3 * front.speed, front.hottest - 273.15);

@@ -21,14 +21,14 @@
 enum { OPT_SET, OPT_FRAMES, OPT_SHEET, OPT_ONLY_SHEET, OPT_EXR, OPT_GIF, OPT_THREADS, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption render_options[OPT_COUNT] = {
-    [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "lays a value over the scene; may be repeated"},
+    [OPT_SET] = {"set", 0, "preview.PATH=VALUE", "sets a value of the scene; may be repeated"},
     [OPT_FRAMES] = {"frames", 0, "A-B", "only these frames (or A alone); the video is made of all only"},
     [OPT_SHEET] = {"sheet", 0, "CxR", "also DIR/sheet.png, C by R frames spread over the run"},
     [OPT_ONLY_SHEET] = {"only-sheet", 0, NULL, "draws the frames of the sheet and writes nothing else"},
     [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
     [OPT_GIF] = {"gif", 0, NULL, "also DIR/preview.gif, of the frames that are drawn"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
 };
 
 static const ArgCommand render_command = {

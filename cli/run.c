@@ -13,17 +13,17 @@ enum { OPT_OUTPUT, OPT_FRAMES, OPT_THREADS, OPT_SET, OPT_RESUME, OPT_NO_PREVIEW,
 
 static const ArgOption run_options[OPT_COUNT] = {
     [OPT_OUTPUT] = {"output", 'o', "DIR", "folder of the cache [out/NAME]"},
-    [OPT_FRAMES] = {"frames", 0, "N", "frames to make, the start being the first"},
+    [OPT_FRAMES] = {"frames", 0, "N", "number of frames; the first is the start"},
     [OPT_THREADS] = {"threads", 0, "N", "threads [all]; the result does not depend on them"},
-    [OPT_SET] = {"set", 0, "PATH=VALUE", "lays a value over the scene; may be repeated"},
-    [OPT_RESUME] = {"resume", 0, NULL, "goes on from DIR/checkpoint.singe"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene; may be repeated"},
+    [OPT_RESUME] = {"resume", 0, NULL, "continues from DIR/checkpoint.singe"},
     [OPT_NO_PREVIEW] = {"no-preview", 0, NULL, "draws no pictures and makes no video"},
     [OPT_EXR] = {"exr", 0, NULL, "also DIR/exr/NAME.0001.exr, ...: the layers of each frame"},
-    [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
+    [OPT_QUIET] = {"quiet", 'q', NULL, "prints errors only"},
 };
 
 static const ArgCommand run_command = {
-    "run", "SCENE", "Burns what the scene file describes and leaves a cache, pictures, a video and numbers in DIR.",
+    "run", "SCENE", "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
     run_options, OPT_COUNT,
     "Ctrl-C ends the run after its step; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
     "interrupted, or its video did, 2 bad input."};
@@ -142,7 +142,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         return EXIT_FAILED;
     }
     if (!run->begun && !ours)
-        console_note(run->console, "what an earlier run left in %s is as it was", run->folder.path);
+        console_note(run->console, "the output of an earlier run in %s is unchanged", run->folder.path);
     char took[32];
     console_duration(run->totals->wall_seconds, took);
     console_note(run->console, "%s: %d of %d frames in %s", record->result, record->frames_done, run->job.scene->frames,
@@ -153,8 +153,8 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                  stats.particles);
     if (!stats.ledgers_close)
         console_warn(run->console,
-                     "the ledgers do not close: of heat, %.2g of the largest entry is missing, of mass %.2g (more than "
-                     "%g); are steps of fire so short that temperatures hardly change?",
+                     "the ledgers do not close: heat is off by %.2g of the largest entry, mass by %.2g (more than "
+                     "%g); steps of fire may be so short that temperatures hardly change",
                      stats.ledger_error, stats.mass_ledger_error, SINGE_LEDGER_BOUND);
     if (run->strained)
         console_warn(run->console,
@@ -166,7 +166,7 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
                  record->triangles, 100.0 * record->fine_triangles / (record->triangles ? record->triangles : 1),
                  1e3 * run->totals->output_seconds[TOTAL_SURFACE] / frames);
     if (!run->console->quiet) printf("%s\n", record->video ? run->folder.video : run->folder.path);
-    if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume goes on from here");
+    if (strcmp(record->result, "interrupted") == 0) console_note(run->console, "--resume continues from here");
     return strcmp(record->result, "complete") == 0 && video != VIDEO_FAILED ? EXIT_GOOD : EXIT_FAILED;
 }
 

@@ -2,7 +2,7 @@
 //
 // An earlier run is left alone until the first frame of the new one and its run.json stand beside it, whole, under
 // temporary names. Then the earlier run's checkpoint goes, run.json becomes the new run's, the earlier run's frames go,
-// the frame takes its name, and stats.csv starts anew: so frames of two runs never lie side by side.
+// the frame takes its name, and stats.csv starts again: so frames of two runs never lie side by side.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -68,7 +68,7 @@ static ExitCode resume(Run *run) {
     if (frame == 0) return EXIT_GOOD;
     run->sim = checkpoint.sim;
     if (frame > run->job.scene->frames) {
-        console_error(run->console, "the checkpoint is at frame %d, but only %d frames are asked for", frame,
+        console_error(run->console, "the checkpoint is at frame %d, but only %d frames are requested", frame,
                       run->job.scene->frames);
         return EXIT_INPUT;
     }
@@ -82,9 +82,9 @@ static ExitCode resume(Run *run) {
     run->record.resumed_from = run->record.frames_done = frame;
     run->first = frame + 1, run->step = checkpoint.progress.step;
     run->begun = true;
-    console_note(run->console, "going on from frame %d", frame);
+    console_note(run->console, "continuing from frame %d", frame);
     if (checkpoint.other_looks && run->pictures)
-        console_warn(run->console, "the preview is another now; singe render draws the frames of before anew");
+        console_warn(run->console, "the preview has changed; `singe render` draws the earlier frames again");
     return EXIT_GOOD;
 }
 

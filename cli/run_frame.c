@@ -11,7 +11,7 @@
 
 /// What takes less than this part of the run's time: a checkpoint is due when ten times its cost has passed.
 static const double checkpoint_share = 0.1;
-static const double checkpoint_every = 5; ///< s, however dear it is
+static const double checkpoint_every = 5; ///< s, however expensive it is
 
 // ---- steps
 
@@ -141,8 +141,8 @@ static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     }
     if (run->totals->crossed)
         console_warn(run->console,
-                     "%" PRIu64 " pairs of triangles cross from the start, the first near (%.4g, %.4g, %.4g) m; `singe "
-                     "verify` counts them apart", run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
+                     "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
+                 "verify` counts them separately", run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
     return SINGE_OK;
 }
 

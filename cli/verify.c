@@ -26,7 +26,7 @@ static const ArgOption verify_options[OPT_COUNT] = {
 };
 
 static const ArgCommand verify_command = {
-    "verify", "DIR", "Reads a cache again and counts crossings, inverted cells and other faults.", verify_options,
+    "verify", "DIR", "Reads a cache and counts crossings, inverted cells and other faults.", verify_options,
     OPT_COUNT, "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
 
 static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
@@ -236,7 +236,7 @@ static ExitCode verify_all(Verify *verify) {
 
 // ---- the cache
 
-/// Whether the run has told that it began with crossings.
+/// Whether the run has reported that it began with crossings.
 static bool began_crossed(const Bytes *record) {
     const char *totals, *value;
     size_t size;
@@ -260,7 +260,7 @@ static ExitCode find_folder(Verify *verify, const char *path) {
     if (text_json_member((const char *)bytes.data, bytes.size, "name", &value, &size))
         name = text_json_unquote(value, size);
     if (name) verify->folder = folder_name(path, name);
-    else console_error(&verify->console, "%s is not a record of a run: no \"name\"", record);
+    else console_error(&verify->console, "%s is not the record of a run: it has no \"name\"", record);
     verify->crossed = began_crossed(&bytes);
     bytes_free(&bytes);
     free(record);

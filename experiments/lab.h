@@ -59,7 +59,7 @@ typedef struct LabGrid {
     bool (*inside)(double x, double y); ///< whether a cell with this middle is there, or NULL: all
 } LabGrid;
 
-/// From the origin to sides along x and y; vertex i + j (cells[0] + 1). Inert but for what its material is told.
+/// From the origin to sides along x and y; vertex i + j (cells[0] + 1). Inert but for what its material is reported.
 LabGrid lab_grid(int across, int along, float cell);
 SINGE_NODISCARD SingeResult lab_build(const Lab *lab, const LabGrid *grid, SingeSim **sim, SingeError *error);
 

@@ -100,7 +100,7 @@ SingeResult paper_adaptive(Lab *lab, SingeError *error) {
         "elsewhere save a factor of %.2f at most, half way %.2f as measured, and strain at the seam is higher. "
         "Uniform cells of the same number as the graded ones are 1.2 times as large; their front is as fast, their "
         "edge is drawn as finely, and they curl as far where they curl most (the median curl is less, %.0f against "
-        "%.0f degrees). That is not worth meshing anew at every step, so cells are uniform.",
+        "%.0f degrees). That is not worth meshing again at every step, so cells are uniform.",
         saving, s[FINE].look.step_ms / s[GRADED].look.step_ms, look_curl(&s[EQUAL].look, 0.5),
         look_curl(&s[FINE].look, 0.5));
     report_bar(lab->report,

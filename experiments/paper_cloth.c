@@ -152,7 +152,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
                                          soft, 0.9, 1, 1 - firm, "than springs of 100 N/m"});
     report_bar(lab->report, &(ReportBar){"strand", "the same of our strands", shrink_share(&w[0], &w[2], 0), 0.9, 1,
                                          shrink_share(&w[0], &w[3], 0), "than springs of 100 N/m"});
-    report_bar(lab->report, &(ReportBar){"firm",
+    report_bar(lab->report, &(ReportBar){"stiff",
                                          "share of the moments in which springs of 100 N/m have higher wrinkles than "
                                          "the paper's method: they do not lose them",
                                          firm, 0.8, 1, shrink_share(&w[2], &w[1], 0), "springs of 1 N/m"});
@@ -273,7 +273,7 @@ SingeResult paper_fig10(Lab *lab, SingeError *error) {
 
 // ---- section 7.2: weights that vary over one sheet
 
-/// m, how far the outer 2 cm hang, of the firm half and of the soft one.
+/// m, how far the outer 2 cm hang, of the stiff half and of the soft one.
 static void weights_fall(const SingeView *view, double fall[2]) {
     double count[2] = {0};
     fall[0] = fall[1] = 0;
@@ -304,10 +304,10 @@ SingeResult paper_weights(Lab *lab, SingeError *error) {
         play_close(&play);
     }
     if (result) return result;
-    report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the firm one.",
+    report_text(lab->report, "The outer 2 cm hang %.1f mm on the soft side and %.1f mm on the stiff one.",
                 1e3 * fall[0][1], 1e3 * fall[0][0]);
     report_bar(lab->report,
-               &(ReportBar){"ratio", "fall of the soft end over that of the firm one", fall[0][1] / fall[0][0], 1.5,
+               &(ReportBar){"ratio", "fall of the soft end over that of the stiff one", fall[0][1] / fall[0][0], 1.5,
                             INFINITY, fall[1][1] / fall[1][0], "with one weight all over"});
     return SINGE_OK;
 }

@@ -123,7 +123,7 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
     grid.material.shrink_front = singe_param(0);
     grid.material.thickness = singe_param((float)disc_thickness);
     grid.material.damping = singe_param(4);
-    grid.solver.substeps = 0; // as firm as it should be
+    grid.solver.substeps = 0; // as stiff as it should be
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);
     if (result) return result;

@@ -120,7 +120,7 @@ typedef struct Image {
     SingeAllocator allocator;
 } Image;
 
-/// Reads PNG or JPEG, told apart by their first bytes; alpha is laid over white. At most 16384 × 16384.
+/// Reads PNG or JPEG, distinguished by their first bytes; alpha is laid over white. At most 16384 × 16384.
 SINGE_NODISCARD SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                        Image *image, SingeError *error);
 /// Writes an 8-bit RGB PNG file, whole or not at all.

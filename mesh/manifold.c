@@ -117,7 +117,7 @@ static void turn_faces(Work *work) {
 static const double PART_GAP = 0.03;
 
 /// Draws the copies of vertices, those from `first` on, back into their own faces: what lies on each other from the
-/// start could not be told from what has crossed.
+/// start could not be seen in what has crossed.
 static void draw_back(Work *work, uint32_t first) {
     const Faces *faces = &work->faces;
     const uint32_t copies = work->vertex_count - first;

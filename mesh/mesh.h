@@ -49,7 +49,7 @@ typedef struct MeshReport {
     uint32_t components;
     uint32_t count[MESH_REPAIRS];
     uint32_t first[MESH_REPAIRS];   ///< line, or else number from 0, of the first face or vertex it was done to
-    bool lines;                     ///< faces are told by line
+    bool lines;                     ///< faces are reported by line
 } MeshReport;
 
 MeshOptions mesh_default_options(void);

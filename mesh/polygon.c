@@ -1,7 +1,7 @@
 // Polygons cut into triangles that cover exactly their area.
 //
 // A polygon is looked at along its normal, the mean of its vertex products (Newell), on the plane of two axes. It may
-// touch itself: a hole is told by a bridge, a side that is gone along twice, and corners may meet in a vertex. The
+// touch itself: a hole is connected by a bridge, a side that is gone along twice, and corners may meet in a vertex. The
 // triangles cover each point as often as the polygon winds around it if all of them are turned as it is; that none lies
 // on another is looked at, too, so the points inside are covered once and all others never. What cannot be cut so
 // crosses itself.

@@ -106,7 +106,7 @@ static void join_around(Work *work, const uint32_t *halves, uint32_t size) {
     }
 }
 
-/// Parts the faces at an edge of more than two: two that hang together elsewhere stay together, and of the others those
+/// Parts the faces at an edge of more than two: two that are connected elsewhere stay together, and of the others those
 /// that go on into each other.
 static void cut_edge(Work *work, const uint32_t *halves, uint32_t size, uint32_t *set) {
     bool same_sheet = false;

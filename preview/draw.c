@@ -277,7 +277,7 @@ static void add_samples(const Preview *preview, Block *block, const int *active,
     }
     if (first == 1 && bare) samples = 1;
     bool on = first < samples && find_restless(preview, block, active, bare, more);
-    // where a shadow has its rim more rays are sent, and where there is none the first have told all
+    // where a shadow has its rim more rays are sent, and where there is none the first have reported all
     int rays = block->sunlit && block->shaded ? (bare ? RIM_RAYS : 1) : 0;
     for (int i = 0; i < LANES; i++) taken[i] = on && more[i] ? samples : first;
     for (int s = first; s < samples && on; s++) {

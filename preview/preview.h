@@ -65,7 +65,7 @@ typedef struct PreviewDef {
     float background[3];
     float exposure;          ///< multiplies before tone mapping
     float shutter;           ///< s that a frame is open, its time in the middle; 0: nothing blurs
-    float pace;              ///< how many times as fast as a real one fire burns: ages are told by it
+    float pace;              ///< how many times as fast as a real one fire burns: ages are reported by it
     uint32_t seed;
     const Image *const *pictures;  ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
     const float (*colours)[3];     ///< [sheet_count] tint of each sheet, linear

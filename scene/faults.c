@@ -1,4 +1,4 @@
-// What the library refuses about sheets, each sheet by itself, so that all are told in one go. Looked for only when
+// What the library refuses about sheets, each sheet by itself, so that all are reported in one go. Looked for only when
 // a scene is refused anyway: a good one is built once.
 #include "scene/faults.h"
 

@@ -129,7 +129,7 @@ static void check_attribute(Loader *loader, const char *key, const SingeParam *p
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
-    if (file->location.file) // what stands in other files than the scene is not told
+    if (file->location.file) // what stands in other files than the scene is not reported
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
     else
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,

@@ -1,4 +1,4 @@
-// Mistakes in a scene, collected with their places.
+// Errors in a scene, collected with their places.
 #ifndef SCENE_MESSAGES_H
 #define SCENE_MESSAGES_H
 
@@ -18,12 +18,12 @@ typedef struct SceneText {
     bool was_read;
 } SceneText;
 
-/// Adds a mistake at a place; one in a material file that several sheets use is told once. Never fails: what memory
+/// Adds an error at a place; one in a material file that several sheets use is reported once. Never fails: what memory
 /// does not suffice for is counted in left_out.
 void message_add(SceneMessages *messages, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 
-/// Tells the log a warning with its place. A log that is zeroed is told nothing.
+/// Writes a warning with its place to the log. A zeroed log receives nothing.
 void message_warn(const SingeLog *log, const SceneText *text, SceneLocation location, const char *format, ...)
     SINGE_PRINTF(4, 5);
 

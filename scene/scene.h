@@ -1,6 +1,6 @@
 // Scenes: what a scene file describes, apart from its syntax, and the way from a file to a simulation.
 //
-//   scene_read  file → Scene      every mistake at once, each with its place
+//   scene_read  file → Scene      every error at once, each with its place
 //   scene_load  Scene → meshes and pictures
 //   scene_build Scene, meshes, pictures → SingeSim
 //
@@ -26,20 +26,20 @@ typedef struct SceneLocation {
     int file;         ///< number of the material file that it is in, 0 for the scene's own
 } SceneLocation;
 
-/// One mistake. `source` and the caret are absent (NULL, 0) where there is no line to show.
+/// One error. `source` and the caret are absent (NULL, 0) where there is no line to show.
 typedef struct SceneMessage {
     char *origin; ///< "letter.yaml:12:9", "letter.yaml" or "--set frames=x"
     char *text;   ///< what is wrong and what was expected
     SceneLocation location;
     char *source; ///< the line of the file, or NULL
-    int caret;    ///< column of `source`, from 1, that the mistake begins at; 0 for none
+    int caret;    ///< column of `source`, from 1, that the error begins at; 0 for none
 } SceneMessage;
 
-/// All mistakes of a call, in the order of the file. Zero it before the first use.
+/// All errors of a call, in the order of the file. Zero it before the first use.
 typedef struct SceneMessages {
     uint32_t count;
     SceneMessage *items;
-    uint32_t left_out; ///< mistakes beyond the first 200, counted only
+    uint32_t left_out; ///< errors beyond the first 200, counted only
 } SceneMessages;
 
 /// Prints each as "ORIGIN: error: TEXT", the source line and a caret under it.
@@ -209,7 +209,7 @@ typedef struct Scene {
 // ---- syntax
 
 /// Reads a scene file (YAML, and so JSON). `sets` are texts PATH=VALUE laid over the file. On failure
-/// *scene is NULL and *messages holds every mistake. Results: SINGE_ERROR_FORMAT for mistakes in the scene,
+/// *scene is NULL and *messages holds every error. Results: SINGE_ERROR_FORMAT for errors in the scene,
 /// SINGE_ERROR_FILE when the file itself cannot be read, SINGE_ERROR_LIMIT above 1 MiB,
 /// SINGE_ERROR_MEMORY.
 SINGE_NODISCARD SingeResult scene_read(const char *path, const char *const *sets, int set_count, Scene **scene,
@@ -282,7 +282,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 
 /// Makes the simulation: sheets, commit, sources, colliders, pins. Allocator, log, tasks and thread_count
 /// are taken from `hooks`. On failure *sim is NULL and *messages names the scene's object: each sheet that is refused,
-/// or the first other object. What is certain to have no effect is told to the log of `hooks`, with its place.
+/// or the first other object. What is certain to have no effect is reported to the log of `hooks`, with its place.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
 

@@ -27,24 +27,24 @@ static const SchemaRow regularisation_rows[] = {
 };
 static const Schema schema_regularisation = {
     .title = "regularisations", .size = 4 * sizeof(float), ROWS(regularisation_rows),
-    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. It gives "
-           "like a compliance that grows with the square of the substep; firmness is the material's `compliance`."};
+    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. It acts as a "
+           "compliance that grows with the square of the substep. The sheet's stiffness is the material's `compliance`."};
 
 static const SchemaRow solver_rows[] = {
     {"method", ROW_ENUM, DIM_NONE, AT(SingeSolverDef, method), .names = method_names,
      .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; "
             "all colours in one system; or Hooke's law. The defaults below are those of `strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(0, 1000),
-     .doc = "parts of a step; firm, thick sheets of small cells need more ([equations.md](equations.md#firmness)); 0: "
-            "as many as these need, by their red compliance"},
+     .doc = "substeps of a step; stiff, thick sheets of small cells need more ([equations.md](equations.md#stiffness)); "
+            "0: as many as the red compliance needs"},
     {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
-     .doc = "of all colours, a substep"},
+     .doc = "projections of all colours per substep"},
     {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),
-     .doc = "of the springs' colours, each once; the last is held best"},
+     .doc = "order of the springs' colours, each once; the last is satisfied best"},
     {"regularisation", ROW_MAP, DIM_NONE, AT(SingeSolverDef, regularisation), .sub = &schema_regularisation,
      .doc = "by colour of spring"},
     {"attachments", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, attachments),
-     .doc = "`strand`: keeps vertices within their distance along the sheet from what is pinned"},
+     .doc = "`strand`: keeps vertices within their geodesic distance of the pins"},
     {"early_exit", ROW_BOOL, DIM_NONE, AT(SingeSolverDef, early_exit),
      .doc = "`paper`, `paper-literal`, `all-at-once`: stops where the error is below `tolerance` of the lengths"},
     {"tolerance", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, tolerance), WITHIN(1e-12, 1),
@@ -54,46 +54,46 @@ static const SchemaRow solver_rows[] = {
     {"smoothing", ROW_FLOAT, DIM_RATE, AT(SingeSolverDef, smoothing), WITHIN(0, 1e6),
      .doc = "internal friction: rate at which second differences of velocity along strands are lost"},
     {"smoothing_length", ROW_FLOAT, DIM_LENGTH, AT(SingeSolverDef, smoothing_length), WITHIN(0, 1000),
-     .doc = "distance of the places they are taken over, and over neighbours besides"},
+     .doc = "distance of the nodes they are taken over; neighbours are always included"},
     {"height_min", ROW_FLOAT, DIM_NONE, AT(SingeSolverDef, height_min), WITHIN(0, 1),
      .doc = "smallest height of a cell's centre over its corners, in thicknesses; 0 is off, and cells may be inverted"},
     {"height_gain", ROW_FLOAT, DIM_FRACTION, AT(SingeSolverDef, height_gain), WITHIN(0, 1),
-     .doc = "share of a height's error that is mended in a substep"},
+     .doc = "share of a height's error that is corrected in a substep"},
 };
 static const Schema schema_solver = {
     .title = "the solver", .size = sizeof(SingeSolverDef), ROWS(solver_rows), .choice = "method",
     .chosen = chosen_solver,
-    .doc = "How springs are kept at their lengths. Only the name of a method will do: `solver: paper`. Keys that are "
-           "not given suit the method ([equations.md](equations.md#the-papers-solver))."};
+    .doc = "How springs are kept at their lengths. The name of a method is enough: `solver: paper`. Keys that are not "
+           "given take the method's defaults ([equations.md](equations.md#the-papers-solver))."};
 
 static const SchemaRow gas_rows[] = {
     {"enabled", ROW_BOOL, DIM_NONE, AT(SingeGasDef, enabled), .doc = "no: sheets burn as in still air"},
     {"cell_size", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, cell_size), WITHIN(0, 1),
      .doc = "side of a cell of its grid; 0: 8.7 mm for a sheet of A4, in proportion to others"},
     {"height", ROW_FLOAT, DIM_LENGTH, AT(SingeGasDef, height), WITHIN(0.01, 100),
-     .doc = "room for it above the sheets as they start"},
+     .doc = "height of the grid above the sheets at the start"},
     {"conductance", ROW_FLOAT, DIM_CONDUCTANCE, AT(SingeGasDef, conductance), FROM(0),
-     .doc = "how well it heats each side of a sheet that is cooler; more makes fire climb faster"},
+     .doc = "heat transfer to each side of a cooler sheet; a larger value makes fire climb faster"},
     {"radiated", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, radiated), WITHIN(0, 0.95),
      .doc = "share of the flames' power that leaves as radiation"},
     {"soot", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, soot), WITHIN(0, 1), .doc = "mass of smoke over the mass burnt"},
 };
 static const Schema schema_gas = {
     .title = "the gas", .size = sizeof(SingeGasDef), ROWS(gas_rows), .choice = "enabled",
-    .doc = "What burns sends hot gas up. It heats what is above, lifts ash and flakes, "
-           "and carries flame and smoke. `gas: no` is without."};
+    .doc = "Burning releases hot gas. The gas rises, heats what is above, lifts ash and flakes, and carries flame and "
+           "smoke. `gas: no` turns it off."};
 
 static const SchemaRow contact_rows[] = {
     {"enabled", ROW_BOOL, DIM_NONE, AT(SingeContactDef, enabled), .doc = "no: sheets pass through themselves"},
     {"thickness", ROW_FLOAT, DIM_LENGTH, AT(SingeContactDef, thickness), WITHIN(1e-6, 1),
-     .doc = "distance that is kept between surfaces, and 2/5 of the smallest cell at most; not the material's "
-            "thickness, which is that of the model"},
+     .doc = "distance kept between surfaces, at most 2/5 of the smallest cell; not the material's thickness, which is "
+            "the distance between the model's layers"},
     {"friction", ROW_FLOAT, DIM_NONE, AT(SingeContactDef, friction), WITHIN(0, 1000), .doc = "Coulomb's coefficient"},
 };
 static const Schema schema_contact = {
     .title = "contact of sheets", .size = sizeof(SingeContactDef), ROWS(contact_rows), .choice = "enabled",
-    .doc = "Sheets do not pass through themselves nor each other. `contact: no` is "
-           "the paper, where they do. Colliders have a friction of their own."};
+    .doc = "Sheets do not pass through themselves or each other. With `contact: no` they do, as in the paper. Colliders "
+           "have their own friction."};
 
 static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
@@ -106,43 +106,43 @@ static const Schema schema_output = {
 
 static const SchemaRow scene_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(Scene, name),
-     .doc = "of the outputs; the scene file's name without its ending by default"},
+     .doc = "name of the outputs; by default the scene file's name without its extension"},
     {"frames", ROW_INT, DIM_NONE, AT(Scene, frames), WITHIN(1, 1000000),
-     .doc = "how many to make; the first is the start, so that N frames span (N - 1)/fps"},
-    {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames a second"},
-    {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "steps of the simulation a frame"},
+     .doc = "number of frames; the first is the start, so N frames span (N - 1)/fps"},
+    {"fps", ROW_FLOAT, DIM_FRAME_RATE, AT(Scene, fps), .min = 1e-3, .max = 1e5, .doc = "frames per second"},
+    {"steps", ROW_INT, DIM_NONE, AT(Scene, steps), WITHIN(1, 100000), .doc = "simulation steps per frame"},
     {"pace", ROW_FLOAT, DIM_NONE, AT(Scene, sim.pace), WITHIN(1e-6, 1e6),
      .doc = "seconds of fire per second of motion; 1 is real, 4 burns four times as fast"},
     {"seed", ROW_UINT64, DIM_NONE, AT(Scene, sim.seed),
-     .doc = "of ragged edges, and for the preview; noise and wind have seeds of their own"},
+     .doc = "seed of ragged edges and of the preview; noise and wind have their own seeds"},
     {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), KELVIN,
-     .doc = "of the air and all around"},
+     .doc = "temperature of the air and the surroundings"},
     {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, WITHIN(-1e4, 1e4),
      .doc = "z is up"},
     {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), WITHIN(0, 1000), .doc = "for drag and wind"},
     {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), WITHIN(1e-9, 1),
-     .doc = "to which the heat equation is solved, relative; a step stops after 200 iterations and warns once"},
+     .doc = "relative tolerance of the heat equation; a step stops after 200 iterations and warns once"},
     {"detail", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_detail), WITHIN(0, 1000),
-     .doc = "how finely the drawn mesh is cut near the front: distance of the points that are asked what has burnt, a "
-            "cell's side over 23 at least; and bent cells everywhere, on a smooth surface; 0: flat cells, asked at their "
-            "own corners and centres, as in the paper"},
+     .doc = "resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a cell's side. "
+            "Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres, as in the "
+            "paper"},
     {"raggedness", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_raggedness), WITHIN(0, 1000),
-     .doc = "how far noise eats into burnt edges at most, and no farther than half a cell; acts with `detail` only"},
+     .doc = "maximum depth of noise at burnt edges, at most half a cell; needs `detail`"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
-     .flags = ROW_REQUIRED, .doc = "what burns, at least one"},
+     .flags = ROW_REQUIRED, .doc = "sheets that burn, at least one"},
     {"sources", ROW_LIST, DIM_NONE, AT(Scene, sources), EXTRA(Scene, source_count), .sub = &schema_source,
-     .doc = "what heats"},
+     .doc = "heat sources"},
     {"colliders", ROW_LIST, DIM_NONE, AT(Scene, colliders), EXTRA(Scene, collider_count), .sub = &schema_collider,
-     .doc = "what is in the way"},
-    {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin, .doc = "what holds"},
+     .doc = "solids that sheets collide with"},
+    {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin, .doc = "constraints that hold parts of a sheet"},
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},
     {"creases", ROW_BOOL, DIM_NONE, AT(Scene, sim.solver.creases),
-     .doc = "yes: sharp bends stay, by the material's `crease_radius` and `crease_share` (solver `strand`); no: sheets "
-            "spring back, as in the paper"},
+     .doc = "yes: sharp bending is partly plastic, by the material's `crease_radius` and `crease_share` (solver "
+            "`strand`); no: bending is elastic, as in the paper"},
     {"tearing", ROW_BOOL, DIM_NONE, AT(Scene, tearing),
-     .doc = "sheets tear where they are pulled at with more than the material's `strength`; needs the method `strand`"},
+     .doc = "sheets tear where the line force exceeds the material's `strength`; needs the method `strand`"},
     {"gas", ROW_MAP, DIM_NONE, AT(Scene, sim.gas), .sub = &schema_gas, .doc = "hot gas, flames and smoke"},
     {"contact", ROW_MAP, DIM_NONE, AT(Scene, sim.contact), .sub = &schema_contact,
      .doc = "contact of sheets with themselves and each other"},

@@ -28,7 +28,7 @@ static const SchemaRow weight_rows[] = {
 };
 static const Schema schema_weight = {
     .title = "weights", .size = sizeof(SceneMaterial), ROWS(weight_rows),
-    .doc = "How firmly springs are held to their length, W of eq 19, by colour of spring: 1 is full, small is soft."};
+    .doc = "Weight of the springs' constraints, W of eq 19, by colour of spring: 1 is full, smaller is softer."};
 
 static const SchemaRow compliance_rows[] = {
     PARAM("red", compliance[SINGE_RED], DIM_COMPLIANCE, FROM(0), "centre to corner: thickness, shear across it"),
@@ -41,8 +41,8 @@ static const SchemaRow compliance_rows[] = {
 };
 static const Schema schema_compliance = {
     .title = "compliances", .size = sizeof(SceneMaterial), ROWS(compliance_rows),
-    .doc = "How far a spring gives under a force, by colour of spring; 0 is unyielding. What that is for a sheet, and "
-           "the substeps that firm sheets need: [equations.md](equations.md#firmness)."};
+    .doc = "Elongation of a spring per force, by colour of spring; 0 is rigid. What it means for a sheet, and "
+           "the substeps that stiff sheets need: [equations.md](equations.md#stiffness)."};
 
 #define NUMBER(name, member, dim, range_, text)                                                                        \
     { name, ROW_FLOAT, dim, AT(SceneMaterial, def.member), range_, .doc = text }
@@ -128,8 +128,8 @@ static const SchemaRow material_rows[] = {
     PARAM("fibre_shrink", fibre_shrink, DIM_NONE, WITHIN(0.1, 10),
           "shrinkage across the fibres over that along them; 1: the same in all directions"),
     {"ablate", ROW_BOOL, DIM_NONE, AT(SceneMaterial, def.ablate), .doc = "no: nothing is removed (Fig 4 b)"},
-    {"weight", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_weight, .doc = "firmness by colour of spring"},
-    {"compliance", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_compliance, .doc = "give by colour of spring"},
+    {"weight", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_weight, .doc = "weight by colour of spring"},
+    {"compliance", ROW_MAP, DIM_NONE, .offset = 0, .sub = &schema_compliance, .doc = "compliance by colour of spring"},
     PARAM("char_weight", char_weight, DIM_FRACTION, WITHIN(0, 1), "factor on the weight of what is burnt to mass_min"),
     PARAM("drag", drag, DIM_NONE, FROM(0), "coefficient of the air's drag, quadratic in the speed along the normal"),
     PARAM("damping", damping, DIM_RATE, FROM(0), "of all motion"),

@@ -52,10 +52,10 @@ static const SchemaRow grid_rows[] = {
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "how many cells along x and y"},
     {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
-     .doc = "how far vertices lie off the grid, of a cell: folds and fronts then find no lines to follow; 0 is "
+     .doc = "displacement of vertices off the grid, in cells, so that folds and fronts follow no grid lines; 0 is "
             "regular"},
     {"displacement", ROW_FLOAT, DIM_LENGTH, AT(SceneGrid, wear.displacement), WITHIN(0, 1e3),
-     .doc = "root mean square height of the smooth waves in which the sheet lies from the start; 0 is flat"},
+     .doc = "root mean square displacement of the rest shape by smooth waves; 0 is flat"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
 };
 static const Schema schema_grid = {
@@ -125,7 +125,7 @@ static const SchemaRow source_rows[] = {
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .length = 3,
      .kinds = BALL, .flags = ROW_SHORT, LOCATION, .doc = "its centre, when it does not move; this or `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneSource, keys), EXTRA(SceneSource, key_count), .kinds = BALL,
-     .sub = &schema_key, .doc = "its way; this or `position`"},
+     .sub = &schema_key, .doc = "its trajectory; this or `position`"},
     {"texture", ROW_FILE, DIM_NONE, AT(SceneSource, texture), .kinds = TEXTURE, .flags = ROW_REQUIRED,
      .doc = "PNG or JPEG over the sheets' uv: white is the full flux, black none"},
     SOURCE("flux", flux, DIM_FLUX, TEXTURE, FROM(0), "into each of the sheet's two layers where the texture is white"),
@@ -159,10 +159,10 @@ static const SchemaRow collider_rows[] = {
     {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
      .doc = "what the numbers of the mesh file are: `m`, `cm`, `mm`, `in` or `ft`"},
     {"picture", ROW_FILE, DIM_NONE, AT(SceneCollider, picture), .kinds = HEIGHTFIELD, .flags = ROW_REQUIRED,
-     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's middle, "
+     .doc = "PNG or JPEG of the heights seen from above, x to the right and y up: a height at each pixel's centre, "
             "straight between"},
     {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.size), .length = 2, .kinds = HEIGHTFIELD, WITHIN(1e-6, 1e4),
-     .doc = "of the rectangle, from the first pixels' middles to the last's, along x and y"},
+     .doc = "of the rectangle, from the first pixels' centres to the last's, along x and y"},
     {"heights", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, heights), .length = 2, .kinds = HEIGHTFIELD,
      WITHIN(-1e3, 1e3), .doc = "own z where the picture is black, and where it is white"},
     {"position", ROW_POSITION, DIM_LENGTH, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
@@ -170,7 +170,7 @@ static const SchemaRow collider_rows[] = {
     {"rotation", ROW_ROTATION, DIM_ANGLE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .length = 3,
      .flags = ROW_SHORT, TURN, .doc = "about x, then y, then z, when it does not move; instead of `path`"},
     {"path", ROW_LIST, DIM_NONE, AT(SceneCollider, keys), EXTRA(SceneCollider, key_count), .sub = &schema_key,
-     .doc = "its way"},
+     .doc = "its trajectory"},
     COLLIDER("friction", friction, DIM_NONE, 0, WITHIN(0, 1000), "Coulomb's coefficient"),
     COLLIDER("offset", offset, DIM_LENGTH, 0, WITHIN(0, 1000), "distance that sheets keep from the surface"),
     COLLIDER("temperature", temperature, DIM_TEMPERATURE, 0, KELVIN, "matters when `conductance` is not 0"),
@@ -200,14 +200,14 @@ static const SchemaRow pin_rows[] = {
     {"sheet", ROW_TEXT, DIM_NONE, AT(ScenePin, sheet),
      .doc = "name of the sheet, or its number from 0; the first by default"},
     {"points", ROW_POINTS, DIM_LENGTH, AT(ScenePin, points), EXTRA(ScenePin, point_count), .length = 3, ANY,
-     .doc = "places [x, y, z] in the world at the start"},
+     .doc = "points [x, y, z] in the world at the start"},
     {"radius", ROW_FLOAT, DIM_LENGTH, AT(ScenePin, radius), WITHIN(0, 1e6),
      .doc = "what is this near to one of the points is held, and the nearest vertex of each in any case; a point that "
             "misses the sheet by a tenth of its diagonal is warned of"},
     {"vertices", ROW_INDICES, DIM_NONE, AT(ScenePin, vertices), EXTRA(ScenePin, vertex_count), WITHIN(0, 4294967294.0),
      .doc = "numbers of the mesh's vertices, from 0"},
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
-     .doc = "how what is held moves, relative to the path's place at the start; held still without"},
+     .doc = "how what is held moves, relative to the path's pose at the start; held still without"},
 };
 const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,

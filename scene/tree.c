@@ -176,7 +176,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
     return true;
 }
 
-// What is wrong ends the tree, but all faults of the syntax are told.
+// What is wrong ends the tree, but all faults of the syntax are reported.
 static void builder_run(Builder *builder, YamlEvents *events) {
     YamlEvent event = {0};
     while (event.kind != YAML_END && (!builder->bad || event.kind == YAML_FAULT)) {
@@ -261,7 +261,7 @@ const char *node_describe(const Node *node, char *buffer, size_t size) {
     }
     if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null")))
         return "nothing";
-    if (node->location.file) // what stands in other files than the scene is not told
+    if (node->location.file) // what stands in other files than the scene is not reported
         return "this value";
     snprintf(buffer, size, "'%s'", shown(node->text).text);
     return buffer;

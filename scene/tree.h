@@ -18,7 +18,7 @@ typedef struct Node {
     struct Node *first, *last, *next;
 } Node;
 
-/// Reads one YAML document. NULL after a mistake or when out of memory. `origin` has the numbers of the --set or the
+/// Reads one YAML document. NULL after an error or when out of memory. `origin` has the numbers of the --set or the
 /// file for places.
 Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, size_t size, SceneLocation origin,
                 SceneMessages *messages);

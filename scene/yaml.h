@@ -40,7 +40,7 @@ typedef struct YamlEvents {
     size_t at;
 } YamlEvents;
 
-/// Reads a text of at least one byte. `name` is for messages. Mistakes in the text are events. Errors:
+/// Reads a text of at least one byte. `name` is for messages. Errors in the text are events. Errors:
 /// SINGE_ERROR_MEMORY; SINGE_ERROR_FORMAT where libfyaml crashed or did not come to an end; SINGE_ERROR_STATE where
 /// it was interrupted. In a process that has threads it is read here, not in a child.
 SINGE_NODISCARD SingeResult yaml_read(const char *name, const char *bytes, size_t size, YamlEvents *events,

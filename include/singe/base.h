@@ -4,7 +4,7 @@
 /// has the size that the caller's header knows. Fields are only ever appended; a smaller Def from an older
 /// header is accepted and the fields it lacks take their defaults, of a larger one from a newer header the
 /// unknown fields are not read. This holds for a Def inside another, too. All other structs keep their size
-/// while SINGE_VERSION_MAJOR does: what Defs are made of (parameters, pictures, keys, hooks) and what a
+/// while SINGE_VERSION_MAJOR does: what Defs are made of (parameters, textures, keys, hooks) and what a
 /// simulation gives (views, statistics, surfaces). Enumerators keep their values for ever.
 ///
 /// Units are SI and kelvin throughout. Nothing here depends on the locale.

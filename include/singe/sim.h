@@ -120,7 +120,7 @@ typedef struct SingeEvent {
     float position[3]; ///< m
 } SingeEvent;
 
-/// What happened in the last step, *count events. Owned by the simulation and valid until the next step; none after a
+/// The events of the last step, *count of them. Owned by the simulation and valid until the next step; none after a
 /// load or in a clone: events are not saved.
 SINGE_API const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count);
 
@@ -148,12 +148,12 @@ typedef struct SingeTimers {
     double projection_bytes;    ///< bytes read and written, counted from the source: what a cold cache would move
     // of the stage dynamics, contact of sheets with themselves and each other
     double contact_seconds;
-    uint64_t contact_searches;  ///< for cells that are near each other
-    uint64_t contact_repulsions;    ///< pairs of points that a substep pushed apart
-    uint64_t contact_stops;     ///< pairs of cells whose ways in a step were cut short, as they would have crossed
-    uint64_t contact_unresolved; ///< pairs that could not be kept apart: pins that cross hold both
-    uint64_t contact_dropped;   ///< pairs that there was no room to look at
-    uint64_t contact_pairs;     ///< pairs of cells near each other, summed over steps
+    uint64_t contact_searches;  ///< of the broad phase
+    uint64_t contact_repulsions; ///< pairs of points that a substep pushed apart
+    uint64_t contact_stops;     ///< pairs of cells stopped by continuous collision detection (CCD)
+    uint64_t contact_unresolved; ///< pairs that CCD could not keep apart: pins hold both
+    uint64_t contact_dropped;   ///< pairs beyond the capacity of the lists, not checked
+    uint64_t contact_pairs;     ///< pairs of cells that the broad phase found, summed over steps
 } SingeTimers;
 
 /// All 0 before the commit.
@@ -180,7 +180,7 @@ typedef struct SingeStats {
     /// ends.
     double strain_mean, strain_p99, strain_max;
     uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
-    uint32_t intersecting_cells;        ///< that crossed others, or lay in their place, at the start and have not parted
+    uint32_t intersecting_cells;        ///< intersecting or coincident initially, and not separated since
     double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
     float thickening;              ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
@@ -193,7 +193,7 @@ typedef struct SingeStats {
 
 SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
 
-/// What a committed simulation consists of.
+/// Counts of a committed simulation's elements.
 typedef struct SingeCounts {
     uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
     double mean_strand_length;  ///< springs per strand
@@ -240,14 +240,14 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_surface(SingeSim *sim, SingeSurf
 SINGE_API void singe_surface_free(SingeSurface *surface);
 
 /// The hot gas about what burns: cubes of side `cell` along the axes of space, x fastest. Cell (i, j, k) is entry
-/// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its middle.
+/// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its centre.
 typedef struct SingeGas {
     uint32_t size[3];         ///< cells; all 0 where the simulation has no gas
     float origin[3];          ///< m, lower corner of cell (0, 0, 0)
     float cell;               ///< m
     const float *temperature; ///< K
     const float *smoke;       ///< kg/m3 of soot
-    const float *flame;       ///< W/m3 of heat set free
+    const float *flame;       ///< W/m3, heat release rate
     const float (*velocity)[3]; ///< m/s
 } SingeGas;
 

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/// A grey picture over the uv square. Rows run from the top (v = 1) to the bottom (v = 0); sampled
+/// A grey texture over the uv square. Rows run from the top (v = 1) to the bottom (v = 0); sampled
 /// bilinearly, clamped at the border.
 typedef struct SingeTexture {
     int width, height;   ///< pixels, at least 1 each
@@ -43,7 +43,7 @@ typedef enum SingeFieldKind {
 
 /// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, the
 /// straight line between (and beyond, for an attribute outside [0, 1]). Without a field: `value`.
-/// Centres of cells take a picture or noise at their own place and the mean of their corners'
+/// Centres of cells take a texture or noise at their own position and the mean of their corners'
 /// attributes.
 typedef struct SingeParam {
     float value;           ///< in the parameter's unit and range, as `to` and all between
@@ -141,10 +141,10 @@ typedef struct SingeMaterialDef {
     SingeParam char_weight;                ///< factor on the weight of what is burnt to m_min, 0 to 1
     SingeParam drag;                       ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
     SingeParam damping;                    ///< 1/s, of all velocities, >= 0
-    /// m, where solver.creases: of what is bent sharper than this radius a part stays, >= 0; 0: never. The model is
-    /// thicker than the real sheet, and creases at radii larger in proportion
+    /// m, where solver.creases: bending beyond this radius is partly plastic, >= 0; 0: never. The model is thicker than
+    /// the real sheet, so it creases at proportionally larger radii
     SingeParam crease_radius;
-    SingeParam crease_share;               ///< of the curvature beyond that, what stays, 0 to 1
+    SingeParam crease_share;               ///< plastic share of the curvature beyond that, 0 to 1
 
     // tearing, where the solver has it on
     SingeParam strength;      ///< N/m, the line force at which it tears before it burns, > 0, may be INFINITY
@@ -180,7 +180,7 @@ typedef struct SingeSheetDef {
     const float *positions;    ///< [3 * vertex_count] m, each within 1e15
     uint32_t cell_count;
     const uint32_t *cells;     ///< [4 * cell_count], vertex indices
-    const float *uv;           ///< [2 * vertex_count] or NULL (then pictures are refused)
+    const float *uv;           ///< [2 * vertex_count] or NULL (then textures are refused)
     uint32_t attribute_count;
     const SingeAttribute *attributes; ///< [attribute_count]
     SingeMaterialDef material;
@@ -235,10 +235,10 @@ typedef struct SingeSourceDef {
     uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
     const SingePoseKey *path;  ///< [path_count] positions only
     SingeTexture texture;      ///< texture source
-    /// W/m2 into each layer where the picture is white, at most 1e15 with picture and strength; below 0 it cools, down
+    /// W/m2 into each layer where the texture is white, at most 1e15 with texture and strength; below 0 it cools, down
     /// to 1 K
     float flux;
-    uint32_t strength_count;   ///< picture: key frames that multiply `flux`; 0 means 1
+    uint32_t strength_count;   ///< texture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;     ///< not saved: set it again after a load
     void *callback_context;
@@ -354,7 +354,7 @@ typedef enum SingeSolverMethod {
 typedef struct SingeSolverDef {
     size_t struct_size;
     SingeSolverMethod method;
-    int substeps; ///< per step, 1 to 1000, or 0 for the least with which red springs are as firm as they should be
+    int substeps; ///< per step, 1 to 1000, or 0 for the fewest that give red springs their full stiffness
     int projections;                           ///< of all colours, per substep, 1 to 1000
     SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
     float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; 1e-6 to 1e6
@@ -366,7 +366,7 @@ typedef struct SingeSolverDef {
     float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
     float height_min;       ///< smallest height of a centre over its corners, in thicknesses, 0 to 1; 0 is off
     float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
-    bool creases;           ///< bends sharper than the material's crease_radius stay (strand)
+    bool creases;           ///< bending beyond the material's crease_radius is partly plastic (strand)
     /// sheets tear where the line force in them exceeds the material's `strength` (strand; the others never do); a part
     /// of the vertices is kept in reserve, which views show after each sheet's own
     bool tearing;
@@ -413,7 +413,7 @@ static inline SingeGasDef singe_default_gas(void) {
 /// Contact of sheets with themselves and each other (docs/equations.md). Colliders have a friction of their own.
 typedef struct SingeContactDef {
     size_t struct_size;
-    bool enabled;    ///< no: they pass through themselves, as in the paper
+    bool enabled;    ///< false: sheets pass through themselves, as in the paper
     /// m, distance that is kept between surfaces, > 0 to 1, and 2/5 of the smallest cell at most. It is not the
     /// material's `thickness`, which lies between the two layers of the model
     float thickness;

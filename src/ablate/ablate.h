@@ -17,7 +17,7 @@ float ablate_level(const Shell *shell, const State *state, uint32_t particle);
 /// first; a caller that reads pieces before the first step calls it too.
 void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 
-/// Whether what was read back fits together: springs that are left and counted at their ends, pieces that hang together
+/// Whether what was read back fits together: springs that are left and counted at their ends, pieces that are connected
 /// by them, and ids enough for all that they may still fall into. The shell has torn as it had.
 bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate);
 
@@ -27,7 +27,7 @@ bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate
 SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state, Pool *pool, float heat_ambient,
                         AblateState *ablate, EventList *events, SingeError *error);
 
-/// Labels the pieces anew after a tear; small loose ones go, and those that came free are reported.
+/// Labels the pieces again after a tear; small loose ones go, and those that came free are reported.
 void ablate_torn(AblatePlan *plan, const Shell *shell, const State *state, float heat_ambient, AblateState *ablate,
                  EventList *events);
 

@@ -54,7 +54,7 @@ static void piece_measure(AblatePlan *plan, const Shell *shell, const AblateStat
 }
 
 /// Marks a sheet's small loose pieces; its largest stays whatever its size. The root of a piece is a
-/// corner: no centre hangs on without one, and corners come first.
+/// corner: no centre depends on without one, and corners come first.
 static bool mark_small(AblatePlan *plan, const Sheet *sheet) {
     uint32_t first = sheet->vertex_first, last = first + sheet->vertex_count, largest = SHELL_NONE;
     bool any = false;

@@ -67,7 +67,7 @@ static void sort_into_grid(CollisionPlan *plan) {
     clear_buckets(plan);
     uint64_t count = 0;
     for (; plan->edge > 0; plan->edge *= 1.3f) {
-        if (!(plan->edge < 1e30f)) plan->edge = 0; // a place is not finite: the step will tell
+        if (!(plan->edge < 1e30f)) plan->edge = 0; // a position is not finite: the step will tell
         else if ((count = fill_grid(plan, false)) <= plan->sizes.entries) break;
         clear_buckets(plan);
     }
@@ -92,7 +92,7 @@ static inline float slab_gap(const CollisionSlab *a, const CollisionSlab *b) {
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance) {
     const CollisionBox *p = &plan->boxes[a], *q = &plan->boxes[b];
     Float4 displacement = q->displacement - p->displacement, zero = {0};
-    // b's box, on its way relative to a
+    // b's box, on its displacement relative to a
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
     Float4 apart = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);

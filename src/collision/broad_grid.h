@@ -6,14 +6,14 @@
 
 typedef Float4Mask Cube; ///< three whole numbers
 
-/// Rounds down; places too far for whole numbers share the last cube.
+/// Rounds down; positions too far for whole numbers share the last cube.
 static inline Cube collision_cube(Float4 p, float inverse_edge) {
     Float4 max = float4_all(1e9f), q = float4_max(float4_min(p * inverse_edge, max), -max);
     Cube whole = __builtin_convertvector(q, Cube);
     return whole + (__builtin_convertvector(whole, Float4) > q); // a mask is -1
 }
 
-/// Cubes from one to another; more than `most` also where two of them would have one key, or a place is not finite.
+/// Cubes from one to another; more than `most` also where two of them would have one key, or a position is not finite.
 static inline uint64_t collision_cubes(Cube first, Cube last, uint64_t max) {
     uint64_t x = (uint64_t)((int64_t)last[0] - first[0]) + 1, y = (uint64_t)((int64_t)last[1] - first[1]) + 1;
     uint64_t z = (uint64_t)((int64_t)last[2] - first[2]) + 1;

@@ -2,7 +2,7 @@
 //
 // A cell is a box that moves along: its box at the search, widened by half of thickness + slack, on the way that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
-// long as no corner leaves its way by more than half the slack; ccd.c watches that.
+// long as no corner leaves its displacement by more than half the slack; ccd.c watches that.
 #include "common/error.h"
 #include "collision/collision_plan.h"
 

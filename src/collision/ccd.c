@@ -1,10 +1,10 @@
-// No way through: continuous detection at the end of a step.
+// Continuous collision detection (CCD) at the end of a step: no displacement leads through another cell.
 //
-// Every corner has gone from x0, where the step began, to x1. What meets on these ways (ccd_pairs.c) goes otherwise
+// Every corner has gone from x0, where the step began, to x1. What meets on these displacements (ccd_pairs.c) goes otherwise
 // (ccd_zones.c). As other cells may then be in the way, this is repeated with what has changed.
 //
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
-// search is repeated for this step's own ways.
+// search is repeated for this step's own displacements.
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"
@@ -73,7 +73,7 @@ void ccd_mark_around(const Ccd *ccd, uint32_t v) {
     for (uint32_t f = shell->fan_first[v]; f < shell->fan_first[v + 1]; f++) ccd_mark_changed(ccd, shell->fan[f]);
 }
 
-/// Marks the cells that have been moved since the guard was here before in this step.
+/// Marks the cells that have been moved since CCD was here before in this step.
 static void mark_moved(const Ccd *ccd) {
     const CollisionPlan *plan = ccd->plan;
     ccd_forget_changed(ccd->plan);
@@ -121,7 +121,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 // ---- the step's end
 
-/// Searches for the ways of this step.
+/// Searches for the displacements of this step.
 static SingeResult search_again(Ccd *ccd, const State *state, Pool *pool, float h) {
     CollisionPlan *plan = ccd->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
@@ -155,7 +155,7 @@ static uint32_t list_strayed(CollisionPlan *plan) {
     return count;
 }
 
-/// Lists what cells that have left their boxes may have met; all anew where these are many. *first is the first pair
+/// Lists what cells that have left their boxes may have met; all again where these are many. *first is the first pair
 /// that is new.
 static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, float h, uint32_t *first) {
     CollisionPlan *plan = ccd->plan;

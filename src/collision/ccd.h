@@ -1,4 +1,4 @@
-// What the files of the guard share: ccd.c has the whole, ccd_pairs.c what meets, ccd_zones.c what is done
+// What the files of CCD share: ccd.c has the whole, ccd_pairs.c what meets, ccd_zones.c what is done
 // about it.
 #ifndef COLLISION_CCD_H
 #define COLLISION_CCD_H
@@ -21,7 +21,7 @@ void ccd_forget_changed(CollisionPlan *plan);
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell);
 void ccd_mark_around(const Ccd *ccd, uint32_t v);
 
-/// Nodes of a cell on their way through the step.
+/// Nodes of a cell on their displacement through the step.
 typedef struct Swept {
     Float4 position[5], displacement[5], low[5], high[5]; ///< of nodes
     NarrowBoxes boxes;
@@ -31,7 +31,7 @@ typedef struct Swept {
 void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *a, Swept *b);
 
 /// Looks at pairs from `first` on, or at the `count` ones of plan->active: where two meet, notes after what share of
-/// the step's way, and what meets. Lists them in plan->active; returns how many.
+/// the step's displacement, and what meets. Lists them in plan->active; returns how many.
 uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first);
 uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count);
 

@@ -1,9 +1,9 @@
-// Which cells meet on their ways.
+// Which cells meet on their displacements.
 //
 // Every corner has gone from x0, where the step began, to x1. A pair of cells that were at least d apart at x0 and have
 // moved since by less, relative to each other, cannot have met:
 //
-//   |mean way of a - mean way of b| + deviation of a + deviation of b < d
+//   |mean displacement of a - mean displacement of b| + deviation of a + deviation of b < d
 //
 // Cells that share a side or a corner are free where they can be shown not to cross as the step ends, by their normals
 // or by a plane between them (feature_distance.c). What is left is swept, feature by feature.
@@ -60,7 +60,7 @@ static void sweep_all_nodes(const Ccd *ccd, CollisionPair *pair, uint32_t c, con
                             const unsigned same[4], int kind) {
     for (int i = 0; i < 5; i++) {
         if (!collision_owns_node(ccd->plan, c, i)) continue;
-        // of one cell, the middle is in all triangles
+        // of one cell, the centroid is in all triangles
         unsigned meet = i < 4 ? 15 & ~narrow_around(same[i]) : pair->a == pair->b ? 0 : 15;
         if (meet) meet &= four_meet(&q->boxes.triangles, p->low[i] - ccd->plan->gap, p->high[i] + ccd->plan->gap);
         for (; meet; meet &= meet - 1) {
@@ -89,7 +89,7 @@ static void sweep_all_edges(const Ccd *ccd, CollisionPair *pair, const Swept *p,
     }
 }
 
-/// Finds the share of the step's way that two cells can go before they meet, and what meets.
+/// Finds the share of the step's displacement that two cells can go before they meet, and what meets.
 static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
@@ -116,7 +116,7 @@ static bool own_is_free(const Ccd *ccd, uint32_t cell) {
     return displacement * displacement * (float4_dot(one, one) + float4_dot(two, two)) < float4_dot(area, area);
 }
 
-/// Of four pairs, those that are free by how far apart they are, or, as they hang together, by their normals, of which
+/// Of four pairs, those that are free by how far apart they are, or, as they are connected, by their normals, of which
 /// feature_distance.c has the proof: bits.
 static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
@@ -139,7 +139,7 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     return free;
 }
 
-/// Cells that hang together, by a plane that parts them at both ends of the step, and has not been turned over: then
+/// Cells that are connected, by a plane that parts them at both ends of the step, and has not been turned over: then
 /// they have not passed through each other about what they share.
 static bool plane_parts(const Ccd *ccd, const CollisionPair *pair) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];

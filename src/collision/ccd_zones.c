@@ -1,14 +1,14 @@
-// What is done where ways meet.
+// What is done where displacements meet.
 //
 // An impact moves the two points that meet apart, each by what it weighs. Where many rounds of impacts have not parted
 // all, the corners of both cells form a zone, with all zones that they touch, and go
 //
-//   x0 + u + a (x1 - x0 - u),   u the mean way of the zone by mass,
+//   x0 + u + a (x1 - x0 - u),   u the mean displacement of the zone by mass,
 //
-// with a the share of the way that was free: the zone keeps its momentum and loses what would have closed it. A zone
+// with a the share of the displacement that was free: the zone keeps its momentum and loses what would have closed it. A zone
 // that meets again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as one piece (the impact
 // zones of Provot, 1997). Zones are only ever joined, and shares lessened, so the rounds end. Held corners go their own
-// way.
+// displacement.
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -100,7 +100,7 @@ static void impact(const Ccd *ccd, const CollisionPair *pair) {
     normal = normal / distance;
     Float4 end = impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->dynamics->position);
     Float4 slip = end - impact_slip(ccd, pair, wa, wb, (const float(*)[4])ccd->plan->start);
-    // where impacts before this one have changed the ways, these are farther apart by now than where they met
+    // where impacts before this one have changed the displacements, these are farther apart by now than where they met
     float repulsion = fminf(distance, 2 * ccd->plan->gap) + IMPACT_PART * ccd->plan->gap - float4_dot(end, normal);
     if (repulsion <= 0) return;
     slip -= float4_dot(slip, normal) * normal;
@@ -127,7 +127,7 @@ static uint32_t zone_root(CollisionPlan *plan, uint32_t v) {
     return v;
 }
 
-/// Puts a vertex into a zone of its own, with all of its way, unless it is in one.
+/// Puts a vertex into a zone of its own, with all of its displacement, unless it is in one.
 static void zone_enter(const Ccd *ccd, uint32_t v) {
     CollisionPlan *plan = ccd->plan;
     if (plan->zone[v] != SHELL_NONE) return;
@@ -137,7 +137,7 @@ static void zone_enter(const Ccd *ccd, uint32_t v) {
     memcpy(plan->goal[v], ccd->dynamics->position[v], sizeof *plan->goal);
 }
 
-/// Joins the corners of a pair that meets, and lessens their share of the way.
+/// Joins the corners of a pair that meets, and lessens their share of the displacement.
 static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
     CollisionPlan *plan = ccd->plan;
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
@@ -152,12 +152,12 @@ static void zone_join(const Ccd *ccd, const CollisionPair *pair, int round) {
         if (other < root) plan->zone[root] = other, root = other;
         else plan->zone[other] = root;
     }
-    // in the first round the share is what was free; later the zone's own ways have changed
+    // in the first round the share is what was free; later the zone's own displacements have changed
     float less = round == 0 ? 0.9f * pair->hit : round < ZONE_PATIENCE ? 0.5f * share : 0;
     plan->share[root] = fminf(share, less);
 }
 
-/// Mean ways by mass; those of held corners count alone where there are any.
+/// Mean displacements by mass; those of held corners count alone where there are any.
 static void zone_drift(const Ccd *ccd) {
     CollisionPlan *plan = ccd->plan;
     for (uint32_t k = 0; k < plan->stopped_count; k++) plan->drift[plan->stopped[k]] = (Float4){0};

@@ -5,10 +5,10 @@
 //
 //   in every substep   points of two cells that are nearer than the contact thickness are pushed apart, with friction
 //                      (repulsion.c)
-//   at the step's end  no way from the last step's places to the present ones may lead through another cell: where it
+//   at the step's end  no straight path from the last step's positions to the present ones may lead through another cell: where it
 //                      does, what meets goes only as far as is free (ccd.c). That is a guarantee, not a force
 //
-// Both look at pairs of cells that are near, which are found anew when cells have used up the motion that the last
+// Both look at pairs of cells that are near, which are found again when cells have used up the motion that the last
 // search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. Where there are more
 // pairs than a list has room for, it grows (collision_capacity.c).
 #ifndef COLLISION_COLLISION_H
@@ -35,7 +35,7 @@ SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const
 void collision_plan_forget(CollisionPlan *plan);
 
 /// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
-/// where sheets crowd, lists grow. Then the step is to be undone; the next one searches anew.
+/// where sheets crowd, lists grow. Then the step is to be undone; the next one searches again.
 SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
 
 /// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
@@ -50,7 +50,7 @@ typedef struct CollisionCounters {
     uint64_t searches;   ///< for pairs that are near
     uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
     uint64_t repulsions;     ///< pairs of points that a substep had to push apart, summed over substeps
-    uint64_t stops;      ///< pairs of cells whose way was cut short
+    uint64_t stops;      ///< pairs of cells whose displacement was cut short
     uint64_t looks;      ///< pairs of cells that were looked at again, as a round had moved one of them
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room

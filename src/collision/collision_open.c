@@ -2,7 +2,7 @@
 //
 // A pair's distance is kept as a bound: it is at least that of the last time it was measured, less what the two cells
 // have moved against each other since. Only where the bound does not tell that all features stay apart in this step are
-// they looked at. So what is found hangs on the pair's places and speeds alone, not on when it was measured.
+// they looked at. So what is found depends on the pair's positions and speeds alone, not on when it was measured.
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/narrow_phase.h"
@@ -28,7 +28,7 @@ typedef struct Opening {
 
 // ---- how cells move
 
-/// Whether a cell is as the last step's guard has left, and measured, it.
+/// Whether a cell is as the last step's CCD has left, and measured, it.
 static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
     Float4Mask moved = {0};
     for (int i = 0; i < 4; i++) moved |= float4_load(x[corner[i]]) != float4_load(plan->end[corner[i]]);
@@ -186,7 +186,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     float nearest;
     int count = narrow_features(job->shell, pair, &look.a, &look.b, &far, near, &nearest);
     float doubt = narrow_error_bound(&look.a) + narrow_error_bound(&look.b);
-    if (doubt > 0.5f * plan->gap) nearest -= doubt; // the guard leaves a gap itself, which has room for less
+    if (doubt > 0.5f * plan->gap) nearest -= doubt; // CCD leaves a gap itself, which has room for less
     if (far.edges && nearest > pair->distance) pair->distance = nearest;
     if (count == 0) return;
     node_velocities(job, pair->a, look.speed_a);

@@ -11,14 +11,14 @@
 enum { COLLISION_STEPS = 10 };
 /// Buckets, pairs or cells that a thread works on together.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
-/// Room for a cell, of each list. Lists of pairs and pushes grow where that is too little, by COLLISION_GROWTH, or to
+/// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or to
 /// COLLISION_LIST_MIN items where that is more.
 enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
 
 /// What meets.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
-/// A cell's box at the search, in a frame that goes with the mean of its corners' ways over plan->steps, and that way,
+/// A cell's box at the search, in a frame that goes with the mean of its corners' displacements over plan->steps, and that displacement,
 /// with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
 typedef struct CollisionBox {
     Float4 low, high, displacement;
@@ -43,11 +43,11 @@ typedef struct CollisionEntry {
 /// Two cells whose boxes meet. Features are nodes of one against triangles of the other, and edges against edges.
 typedef struct CollisionPair {
     uint32_t a, b;
-    /// the cell by which two hang together: a where they share a side or are one, one that shares a side with each
+    /// the cell by which two are connected: a where they share a side or are one, one that shares a side with each
     /// where they share a corner; else SHELL_NONE
     uint32_t bridge;
     float distance;   ///< m, at least that at plan->start
-    float hit;        ///< of the step's way, the share after which they meet; 2: never
+    float hit;        ///< of the step's displacement, the share after which they meet; 2: never
     uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
     uint8_t kind;     ///< COLLISION_NODE_OF_A, COLLISION_NODE_OF_B or COLLISION_EDGES
 } CollisionPair;
@@ -80,7 +80,7 @@ typedef struct OutsideEntry {
     uint32_t next;       ///< of the same bucket, or SHELL_NONE
 } OutsideEntry;
 
-/// How a cell moves: mean of its corners' ways since plan->start in m, and of their velocities as the step opened in
+/// How a cell moves: mean of its corners' displacements since plan->start in m, and of their velocities as the step opened in
 /// m/s, with the largest deviation of one as fourth; and its normals, as of feature_normals.
 enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_MOTIONS };
 
@@ -109,13 +109,13 @@ struct CollisionPlan {
     float thickness;  ///< m, of contact; at most 2/5 of a sheet's typical cell
     float *thin;      ///< [cells] m, the same; at most 2/5 of this cell's shortest side
     float slack_max; ///< m, that cells may move otherwise than foreseen before the search is repeated
-    float gap;        ///< m, that ways keep free in front of what they would meet
-    float noise;      ///< m, that rounding moves places by
+    float gap;        ///< m, that displacements keep free in front of what they would meet
+    float noise;      ///< m, that rounding moves positions by
 
     // the last search: part of a snapshot
     uint32_t searched;       ///< 0: never
     uint32_t restless;       ///< many cells have left their boxes since: search as the next step opens
-    uint64_t step;           ///< it was for the way from this step's start
+    uint64_t step;           ///< it was for the displacement from this step's start
     float (*position)[4];       ///< [vertices] m
     float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
@@ -133,7 +133,7 @@ struct CollisionPlan {
     uint32_t pair_capacity, repulsion_capacity;
     CollisionBox *boxes;         ///< [cells]
     CollisionSlab *slabs;        ///< [cells]
-    Float4 *rest;              ///< [cells] middle at rest, and how far a corner is from it
+    Float4 *rest;              ///< [cells] centroid at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
     CollisionEntry *entries;     ///< [sizes.entries] by bucket
@@ -145,14 +145,14 @@ struct CollisionPlan {
 
     // the step
     float (*start)[4];       ///< [vertices] m
-    float (*end)[4];         ///< [vertices] m, where the guard has left them, if it has been here in this step:
+    float (*end)[4];         ///< [vertices] m, where CCD has left them, if it has been here in this step:
     bool closed;
     float (*want)[4];        ///< [vertices] m, where the step has brought them
     float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
     Float4 (*motion)[COLLISION_MOTIONS]; ///< [cells]
     uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
-    float *share;            ///< [vertices] at a root: of their ways within the zone, what they go
-    Float4 *drift;             ///< [vertices] at a root: mean way of the zone; fourth: its mass
+    float *share;            ///< [vertices] at a root: of their displacements within the zone, what they go
+    Float4 *drift;             ///< [vertices] at a root: mean displacement of the zone; fourth: its mass
     uint32_t *stopped;       ///< [stopped_count] vertices in zones
     uint32_t stopped_count;
     uint8_t *changed;        ///< [cells] that the last round has moved
@@ -172,7 +172,7 @@ struct CollisionPlan {
     CollisionCounters counters;
 };
 
-/// Finds the pairs for plan->place, speed, alive. Their distances are those at plan->place. SINGE_ERROR_MEMORY: then
+/// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY: then
 /// there are none.
 SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
@@ -186,18 +186,18 @@ void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64
 /// Blocks in which pairs are looked at.
 static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + COLLISION_BLOCK - 1) / COLLISION_BLOCK; }
 
-/// Makes room for `wanted` pairs or pushes, or as many as there may be at most; plan->found_pairs and plan->found lose
+/// Makes room for `wanted` pairs or repulsions, or as many as there may be at most; plan->found_pairs and plan->found lose
 /// what they hold. False when out of memory.
 bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted);
 bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted);
 
-/// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->place.
+/// Whether the search has listed two cells, a before b; *distance is at most how far apart they are at plan->position.
 bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, float *distance);
 
 /// See CollisionPair.bridge.
 uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
-/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their way from
+/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their displacement from
 /// plan->start to `x`. SINGE_ERROR_MEMORY.
 SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
                                  const float (*x)[4]);
@@ -215,7 +215,7 @@ static inline Float4 collision_mean(const Float4 vector[4]) {
 
 /// Ways of a cell's corners since plan->start, as their mean.
 static inline Float4 collision_displacement(const CollisionPlan *plan, const uint32_t corner[4], const float (*x)[4]) {
-    Float4 displacement[4]; // fourths: of places inverse masses, which count for nothing
+    Float4 displacement[4]; // fourths: of positions inverse masses, which count for nothing
     for (int i = 0; i < 4; i++) displacement[i] = float4_load(x[corner[i]]) - float4_load(plan->start[corner[i]]);
     return collision_mean(displacement);
 }

@@ -33,12 +33,12 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
 
 Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weight[3]) {
     triangle_weights(p, a, b, c, weight);
-    // a triangle without area has no weights in its middle: then its first corner stands for it
+    // a triangle without area has no weights in its centroid: then its first corner stands for it
     if (!(weight[0] + weight[1] + weight[2] > 0.5f)) weight[0] = 1, weight[1] = weight[2] = 0;
     return p - mix3(a, b, c, weight);
 }
 
-// ---- cells that hang together
+// ---- cells that are connected
 //
 // Two cells that share a side or a corner do not cross where
 //
@@ -49,7 +49,7 @@ Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weigh
 //   Magnenat-Thalmann, Efficient self-collision detection, 1994, with the condition on the contour made one on angles).
 //
 // For seen along the first one's mean normal n, all triangles of both are turned the same way, so that each cell is
-// a star about its middle, and its corners' angles, which are at most 115 degrees seen along its own normal, are less
+// a star about its centroid, and its corners' angles, which are at most 115 degrees seen along its own normal, are less
 // than 2 atan(tan 57.5 / cos c) plus 2 c tan c, c half the cone. At 35 degrees that is below 135: both are convex, on
 // either side of the line through a shared side. At 20 degrees it is below 120: three cells around a corner, two of
 // which share a side each with the third, take less than a full turn, and convex ones stay within their angles.
@@ -140,7 +140,7 @@ static float sweep_distance(const FeatureSweep *sweep, float time) {
     return sqrtf(float4_dot(apart, apart));
 }
 
-/// The fastest that the two can come nearer in: their longest ways, without what is common to all.
+/// The fastest that the two can come nearer in: their longest displacements, without what is common to all.
 static float sweep_approach(const FeatureSweep *sweep) {
     Float4 mean = 0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
     float length[4];
@@ -149,7 +149,7 @@ static float sweep_approach(const FeatureSweep *sweep) {
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
 
-/// How long from `time` on two planes across the shortest way between the two keep them `keep` apart, which move along
+/// How long from `time` on two planes across the shortest displacement between the two keep them `keep` apart, which move along
 /// with the nearest of their points.
 static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     Float4 x[4], normal = sweep_apart(sweep, time, x);

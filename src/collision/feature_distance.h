@@ -13,13 +13,13 @@ Float4 feature_from_triangle(Float4 p, Float4 a, Float4 b, Float4 c, float weigh
 /// From the nearest point of segment c-d to that of a-b, which are at c + t (d - c) and a + s (b - a) (Ericson 5.1.9).
 Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t);
 
-/// Four points and their ways: a node and a triangle, or two edges.
+/// Four points and their displacements: a node and a triangle, or two edges.
 typedef struct FeatureSweep {
     Float4 position[4], displacement[4];
     bool edges;
 } FeatureSweep;
 
-/// The share of its way, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is. What is
+/// The share of its displacement, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is. What is
 /// as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li, Kaufman and
 /// Jiang, Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest
 /// approach; or, where that does not get on, than planes between the two allow.

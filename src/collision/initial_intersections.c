@@ -1,4 +1,4 @@
-// What crosses, or lies in the same place, from the start: it is left alone until it has parted. Sheets in one place
+// What crosses, or lies in the same position, from the start: it is left alone until it has parted. Sheets in one place
 // have no side to be kept on. Cells that cross one another, or are joined by others that do, are a group: pairs within
 // a group are left alone, pairs of two groups are not.
 #include "collision/narrow_phase.h"
@@ -9,7 +9,7 @@
 
 enum { GROUP_MAX = UINT8_MAX }; // groups beyond count as the last
 
-/// Whether two cells that do not hang together are as near as rounding can tell.
+/// Whether two cells that are not connected are as near as rounding can tell.
 static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
     if (pair->bridge != SHELL_NONE) return false;
     const float(*x)[4] = (const float(*)[4])plan->position;
@@ -60,7 +60,7 @@ static void number_groups(CollisionPlan *plan, uint32_t *joined, bool first) {
 }
 
 void initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
-    uint32_t *joined = plan->outside; // free until the guard: of a cell that crosses one of its group, no higher than it
+    uint32_t *joined = plan->outside; // free until CCD: of a cell that crosses one of its group, no higher than it
     if (!first && plan->counters.intersecting == 0) return;
     memset(joined, 0xff, plan->cell_count * sizeof *joined);
     for (uint32_t k = 0; k < plan->pair_count; k++) {

@@ -1,4 +1,4 @@
-// Four vectors at once, and boxes around a cell's four triangles, sides and lines to its middle.
+// Four vectors at once, and boxes around a cell's four triangles, sides and lines to its centroid.
 #ifndef COLLISION_NARROW_LANES_H
 #define COLLISION_NARROW_LANES_H
 
@@ -68,7 +68,7 @@ typedef struct NarrowBoxes {
     FourBoxes triangles, sides, spokes;
 } NarrowBoxes;
 
-/// Of a cell whose corners and middle are somewhere from `low` to `high`.
+/// Of a cell whose corners and centroid are somewhere from `low` to `high`.
 static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high, NarrowBoxes *out) {
     FourVectors min = four_all(centroid_low), max = four_all(centroid_high);
     out->sides = (FourBoxes){four_min(low, four_turned(low)), four_max(high, four_turned(high))};

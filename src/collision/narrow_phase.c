@@ -1,5 +1,5 @@
 // Nearest points of all features of two cells: a node against the four triangles of the other at once, an edge against
-// its four sides and against the four lines to its middle. The regions are those of Ericson, Real-time collision
+// its four sides and against the four lines to its centroid. The regions are those of Ericson, Real-time collision
 // detection (2005), 5.1.5 and 5.1.9, as in feature_distance.c, but chosen by masks.
 #include "collision/narrow_phase.h"
 
@@ -35,7 +35,7 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     Float4Mask at_a = (d1 <= 0) & (d2 <= 0), at_b = (d3 >= 0) & (d4 <= d3), at_c = (d6 >= 0) & (d5 <= d6);
     u = float4_select(at_c, zero, u), v = float4_select(at_c, one, v);
     u = float4_select(at_b, one, u), v = float4_select(at_b, zero, v);
-    // a triangle without area has no weights in its middle: then its first corner stands for it
+    // a triangle without area has no weights in its centroid: then its first corner stands for it
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
     out.u = float4_select(at_a, zero, u), out.v = float4_select(at_a, zero, v);
     out.apart = four_along(four_along(ap, -out.u, ab), -out.v, ac);
@@ -81,7 +81,7 @@ static void cell_boxes(NarrowCell *cell) {
 }
 
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b) {
-    const Float4 *p = a->node, *q = b->node; // the middles lie between
+    const Float4 *p = a->node, *q = b->node; // the centroids lie between
     Float4 low_a = float4_min(float4_min(p[0], p[1]), float4_min(p[2], p[3]));
     Float4 high_a = float4_max(float4_max(p[0], p[1]), float4_max(p[2], p[3]));
     Float4 low_b = float4_min(float4_min(q[0], q[1]), float4_min(q[2], q[3]));
@@ -96,7 +96,7 @@ static float apart_along(const NarrowCell *a, const NarrowCell *b) {
     float square = float4_dot(normal, normal);
     if (!(square > 0)) return -1;
     FourVectors n = four_all(normal);
-    Float4 p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the middles lie between
+    Float4 p = four_dot(n, a->corner), q = four_dot(n, b->corner); // the centroids lie between
     float above = float4_smallest(p) - float4_largest(q), below = float4_smallest(q) - float4_largest(p);
     return (above > below ? above : below) / sqrtf(square);
 }
@@ -124,7 +124,7 @@ typedef struct Search {
     NearFeatures *near;
     int count;
     float far;            ///< m, that is looked
-    Float4 square;          ///< least so far of each of the four
+    Float4 square;          ///< smallest so far of each of the four
     Float4 listed, beside;  ///< squares of what a FeatureRange tells; beside is -1 for edges
 } Search;
 

@@ -9,7 +9,7 @@ typedef struct NarrowCell {
     Float4 node[5];        ///< fourth numbers are 0
     FourVectors corner;  ///< 0 to 3
     FourVectors turned;  ///< 1, 2, 3, 0
-    uint32_t owned;      ///< bit i: node i is this cell's, the middle too; bit 8 + i: edge i
+    uint32_t owned;      ///< bit i: node i is this cell's, the centroid too; bit 8 + i: edge i
     NarrowBoxes boxes;
 } NarrowCell;
 
@@ -39,14 +39,14 @@ float narrow_error_bound(const NarrowCell *cell);
 
 /// How far features are looked for.
 typedef struct FeatureRange {
-    float measured; ///< m, to tell the least distance; see narrow_error_bound
+    float measured; ///< m, to tell the smallest distance; see narrow_error_bound
     float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other
     float beside;   ///< m, at most as far: of a node beside a triangle
     bool edges;     ///< they count
 } FeatureRange;
 
 /// Lists nodes and triangles, and edges, that share no node and are near; each is counted by the cell that owns it.
-/// *nearest is the least distance of all, or far->measured. Returns how many are listed, NARROW_MAX at most.
+/// *nearest is the smallest distance of all, or far->measured. Returns how many are listed, NARROW_MAX at most.
 int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b, const FeatureRange *far,
                    NearFeatures *near, float *nearest);
 

@@ -8,7 +8,7 @@
 // one after another. g is the thickness, or, of what is nearer already, so much more than it has that the two part by
 // COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C| (Coulomb), as contact with
 // colliders does. A virtual centre stands for its four corners by quarters. What lies
-// nearer at rest than twice the thickness (the lips of a tear) is kept apart by four times the guard's gap only.
+// nearer at rest than twice the thickness (the edges of a tear) is kept apart by four times CCD's gap only.
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 

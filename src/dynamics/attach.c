@@ -11,7 +11,7 @@
 // Sources are up to ATTACH_SOURCES held vertices of a sheet, each as far as possible from those before it. Lengths
 // are those of the springs' targets over the cells that are left, measured again every ATTACH_PERIOD steps while a
 // sheet burns. What has grown longer, where the fire has cut a way off, counts at once; what has shrunk goes to its new
-// length step by step till the next measurement, for a length that shortens at once jerks what hangs on it; so does
+// length step by step till the next measurement, for a length that shortens at once jerks what depends on it; so does
 // what a source that takes over from one that has burnt finds too far, and what has gone too far while a tight sheet
 // that may tear was left to its springs. What has come free of a source is let go at the end of the step. A sheet whose
 // mesh may stretch by its compliance has no attachments.
@@ -144,7 +144,7 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
 }
 
 /// A step of what shortens, so that it arrives when the next measurement is due or as fast as may be: all at once would
-/// jerk what hangs on it.
+/// jerk what depends on it.
 static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_t step) {
     if (attachments->settled) return;
     attachments->settled = true;

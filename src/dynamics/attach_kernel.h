@@ -1,7 +1,7 @@
 // The attachments of vertices, LANES at a time. Included by a file per instruction set, as strand_kernel.h is.
 #include "dynamics/attach.h"
 
-/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no place satisfies both
+/// Where sources p and q are farther apart than the sheet between them, by the ratio f, no position satisfies both
 /// spheres of what lies near the line between them: there both lengths grow, as if the sheet were stretched, by at
 /// most f and so far that the spheres overlap by a margin.
 static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTACH_SOURCES]) {

@@ -21,7 +21,7 @@ typedef struct Centroid {
 /// Of the offset, how much cells keep: less than all, so that what lies on something flat is left to its particles.
 static const float CENTROID_SHARE = 0.875f;
 
-/// Whether a place is nearer to a collider than that.
+/// Whether a position is nearer to a collider than that.
 static bool centroid_is_near(const MovingCollider *moving, float limit, Float3 point) {
     const Collider *collider = moving->collider;
     Float3 from = float3_sub(point, moving->after.position), normal;
@@ -51,7 +51,7 @@ static void centroid_cell(const Centroid *job, const uint32_t corner[4]) {
     float3_store(point, mean);
     for (uint32_t c = 0; c < job->collider_count; c++) {
         const MovingCollider *collider = &job->plan->colliders[c];
-        // nothing of a plane lies between places outside of it
+        // nothing of a plane lies between positions outside of it
         if (collider->collider->def.kind == SINGE_COLLIDER_PLANE) continue;
         float offset = CENTROID_SHARE * collider->collider->def.offset;
         if (centroid_is_near(collider, offset, float3_load(point)))

@@ -5,17 +5,17 @@
 // over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
 //
-// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its way
-// over the collider in this substep is longer than its distance, the way is followed from its start, in the collider's
+// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its displacement
+// over the collider in this substep is longer than its distance, the displacement is followed from its start, in the collider's
 // frame, by steps that the distance allows (contact_enters); what enters goes back to the plane that touches the
 // surface there.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
-/// m/s, relative to a collider: what is faster may pass what is smaller than its way in a substep.
+/// m/s, relative to a collider: what is faster may pass what is smaller than its displacement in a substep.
 static const float CONTACT_SPEED = 20;
 
-/// Parts of the way that it is followed in at most.
+/// Parts of the displacement that it is followed in at most.
 enum { CONTACT_STEPS = 128 };
 
 /// As far outside of a surface as this, of the offset or in m, counts as there.
@@ -60,7 +60,7 @@ typedef struct Entry {
     float distance;
 } Entry;
 
-/// Follows the way from `from`, outside, to `to`, in the collider's frame.
+/// Follows the displacement from `from`, outside, to `to`, in the collider's frame.
 static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Entry *entry) {
     float skin = fmaxf(CONTACT_SKIN * collider->def.offset, CONTACT_SKIN_MIN);
     Float3 displacement = float3_sub(to, from);
@@ -68,7 +68,7 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
     while (done < length) {
         Entry next = {.position = float3_mad(from, displacement, done / length)};
         next.distance = collider_distance(collider, next.position, length - done, &next.normal);
-        if (next.distance >= length - done) return false; // the rest of the way is free
+        if (next.distance >= length - done) return false; // the rest of the displacement is free
         bool began = done > 0, turned = began && entry->distance < min && float3_dot(entry->normal, next.normal) < -0.5f;
         if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
         *entry = next;
@@ -78,12 +78,12 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
     return false;
 }
 
-/// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is along which way.
+/// Moves a particle out of a collider, in its frame. Returns by how much, or 0; *normal is the direction of it.
 static float contact_out(const Collider *collider, float offset, Float3 from, Float3 *to, Float3 *normal) {
     float displacement = float3_length(float3_sub(*to, from));
     float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
-    // behind a plane, however far, the way out is up
+    // behind a plane, however far, the displacement out is up
     if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
         (distance >= offset || float3_dot(entry.normal, *normal) < 0.5f)) {
         float depth = offset - entry.distance - float3_dot(float3_sub(*to, entry.position), entry.normal);
@@ -106,7 +106,7 @@ bool contact_particle(const MovingCollider *moving, float offset, Float3 previou
     if (depth <= 0) return false;
     normal = quat_rotate(moving->after.rotation, normal);
     Float3 x = float3_add(float3_load(position), quat_rotate(moving->after.rotation, float3_sub(out, local)));
-    // slip: the particle's way less the collider's way at this place
+    // slip: the particle's displacement less the collider's at this position
     Float3 displacement = float3_sub(x, previous);
     Float3 carried = float3_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
     Float3 slip = float3_sub(displacement, carried);

@@ -1,6 +1,6 @@
 // Plastic creases: what is bent sharper than a radius keeps a part of the bend.
 //
-// Geometry. Two cells meet at an edge, their middles at the distances p and q from it along the sheet: the bend between
+// Geometry. Two cells meet at an edge, their centroids at the distances p and q from it along the sheet: the bend between
 // them is spread over the arc s = p + q. theta is the angle from one cell's normal n to the other's, positive where the
 // sheet folds away from the centres:
 //
@@ -58,7 +58,7 @@
 /// s, how long a bend must last.
 static const float CREASE_TIME = 0.02f;
 
-/// Share of the way to where l(theta) is flat or 0 that is left to a crease, so that it stays firm.
+/// Share of the way to where l(theta) is flat or 0 that is left to a crease, so that it stays stiff.
 static const float CREASE_HOLDS = 0.85f;
 
 /// Least lever of a creased spring, -sin psi, over that in a flat sheet. With less of it the force for the same moment

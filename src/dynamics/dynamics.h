@@ -13,7 +13,7 @@
 typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
-    SingeSolverDef solver;   ///< substeps 0: as many as the sheets' firmness needs
+    SingeSolverDef solver;   ///< substeps 0: as many as the sheets' stiffness needs
     SingeContactDef contact;
     float time_step;         ///< s
     SingeInstructions instructions;

@@ -63,7 +63,7 @@ typedef struct Paper Paper;
 /// Where two cells meet that a green spring joins, as they lie at rest (crease.c).
 typedef struct Hinge {
     uint8_t side[2]; ///< of the cell at each of the spring's ends
-    float arc;       ///< m, s, from middle to middle along the sheet
+    float arc;       ///< m, s, from centroid to centroid along the sheet
     float angle;     ///< rad, theta_0
     float twist;     ///< rad, tau_0
     float max;      ///< rad, beta
@@ -106,7 +106,7 @@ typedef struct Between {
     uint32_t collider_count; ///< in plan->colliders, to be touched
     bool closes;             ///< eq 13 of the substep behind
     bool opens;              ///< eq 8 and 9 of the substep ahead
-    bool attaches;           ///< to sources at their places in the substep ahead
+    bool attaches;           ///< to sources at their positions in the substep ahead
 } Between;
 
 /// One pass over the particles. Returns the number of contacts.
@@ -186,7 +186,7 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end);
 
-/// Contact and friction of one place that was at `previous` when the substep began, at that offset from the surface;
+/// Contact and friction of one position that was at `previous` when the substep began, at that offset from the surface;
 /// false where it touches nothing.
 bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 

@@ -33,7 +33,7 @@ static void heap_put(Geodesic *search, uint32_t at, uint32_t vertex) {
     search->position[vertex] = at;
 }
 
-/// Moves a vertex up to its place, after its distance has become smaller.
+/// Moves a vertex up to its position, after its distance has become smaller.
 static void heap_rise(Geodesic *search, const float *distance, uint32_t vertex) {
     uint32_t at = search->position[vertex];
     for (; at > 0; at = (at - 1) / 2) {

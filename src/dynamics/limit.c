@@ -1,6 +1,6 @@
 // No cell of a mesh that does not stretch ends a step far larger than it should be. Strands are projected once a
 // substep: what meets at vertices where no strand runs on, among cells far smaller than their neighbours or in threads
-// of char that something heavy hangs on, may be left several times as long. So after the substeps sides and diagonals
+// of char that something heavy depends on, may be left several times as long. So after the substeps sides and diagonals
 // (blue and yellow springs) longer than LIMIT_SIDE or LIMIT_DIAGONAL times their targets l, here s l, are shortened one
 // by one:
 //
@@ -10,10 +10,10 @@
 // mu = max((v_b - v_a) . u, 0)/(w_a + w_b). Both keep linear and angular momentum. A count says which blocks of
 // springs have some; sweeps go over those, and then it is counted again. Nearly all steps end with the first count.
 //
-// That is done in every step. The guard against crossing, which comes after, takes ways back towards where the step
+// That is done in every step. CCD against crossing, which comes after, takes displacements back towards where the step
 // began: what was too long then would be so again.
 //
-// Where a spring has burnt, what hangs on its cell may pull it open: held there, it would stretch what is whole beside
+// Where a spring has burnt, what depends on its cell may pull it open: held there, it would stretch what is whole beside
 // it.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"

@@ -1,6 +1,6 @@
 // Springs that tears have taken out of their strands. A strand is a chain in a lane, each node shared by two springs:
 // where a split has given one of them another end, it is gone from its lane (weight 0) and goes on here, and so do the
-// springs that a tear makes for its second lip. They are projected one by one, in order, after the strands of their
+// springs that a tear makes for its second edge. They are projected one by one, in order, after the strands of their
 // colour: the constraint is that of strand_kernel.h on a chain of one spring,
 //
 //   mu = W E/((w_a + w_b) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D),   x_a += w_a d mu,  x_b -= w_b d mu

@@ -38,7 +38,7 @@ static inline void smooth_triple(const Smooth *job, uint32_t a, uint32_t b, uint
     float4_store(job->velocity[c], vc - wc * j);
 }
 
-/// All triples of a strand whose outer nodes are `reach` springs from the middle one, and no spring between is gone.
+/// All triples of a strand whose outer nodes are `reach` springs from the centroid one, and no spring between is gone.
 static void smooth_strand(const Smooth *job, uint32_t begin, uint32_t end, uint32_t reach) {
     const uint32_t(*ends)[2] = job->set->ends;
     uint32_t run = 0; // springs in a row that are there
@@ -66,7 +66,7 @@ static void smooth_range(void *task, int begin, int end) {
     }
 }
 
-/// Strands of a family that make about 2,048 springs: the least a thread is given.
+/// Strands of a family that make about 2,048 springs: the smallest a thread is given.
 static int smooth_grain(const SpringSet *set, uint32_t family) {
     uint32_t first = set->family_first[family], last = set->family_first[family + 1];
     uint32_t springs = set->strand_first[last] - set->strand_first[first];

@@ -11,7 +11,7 @@
 //
 // r is its floor, the `regularisation`. a comes of one projection of a colour a substep, which leaves the colours in
 // each other's way where forces change from spring to spring, as those of red do under transverse shear: 2.5 (measured)
-// for red and 0 for the others. This is taken from c_spring, so that the sum does not hang on h, as far as it goes:
+// for red and 0 for the others. This is taken from c_spring, so that the sum does not depend on h, as far as it goes:
 //
 //   h <= sqrt(c_spring m/(a + r))
 //

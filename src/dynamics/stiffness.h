@@ -1,4 +1,4 @@
-// What makes a sheet as firm as its material says, whatever the cells and the step (docs/equations.md, Firmness).
+// What makes a sheet as stiff as its material says, whatever the cells and the step (docs/equations.md, Stiffness).
 #ifndef DYNAMICS_STIFFNESS_H
 #define DYNAMICS_STIFFNESS_H
 
@@ -22,7 +22,7 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regu
 /// Compliance of a spring, m/N.
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring);
 
-/// The least number of substeps in a step of h seconds for which all red springs of this regularisation can be as firm
+/// The smallest number of substeps in a step of h seconds for which all red springs of this regularisation can be as stiff
 /// as they should.
 int stiffness_substeps(const Shell *shell, float h, float regularisation);
 

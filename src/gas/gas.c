@@ -3,7 +3,7 @@
 //   carry    lightness, fuel, smoke and momentum go with the flow (advect.c)
 //   feed     what left the sheets since the last step comes in as fuel (gas_sheets.c)
 //   burn     fuel burns as air comes to it; it heats and makes smoke (flame.c)
-//   meet     sheets are warmed, and cool the gas; their air is told to the dynamics (gas_sheets.c)
+//   meet     sheets are warmed, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
 //   force    buoyancy, swirl (force.c)
 //   project  a pressure makes the flow's divergence that of the expansion, past sheets and colliders (project.c)
 #include "gas/gas_plan.h"

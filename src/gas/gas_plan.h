@@ -5,7 +5,7 @@
 //
 //   L = 1 - Ta/T = 1 - rho/rho_a,   heat per volume = GAS_HEAT L,   GAS_HEAT = 353 cp = 355 kJ/m3
 //
-// which is carried like a density, lifts with g L, and grows by q/GAS_HEAT where q W/m3 are set free, while
+// which is carried like a density, lifts with g L, and grows by q/GAS_HEAT where q W/m3 are released, while
 // the gas expands by just as much: div u = q/GAS_HEAT (low Mach number, ideal gas).
 #ifndef GAS_GAS_PLAN_H
 #define GAS_GAS_PLAN_H
@@ -33,7 +33,7 @@ typedef enum GasField {
     GAS_CARRIED = GAS_VELOCITY + 3,
     GAS_THROUGH = GAS_CARRIED, ///< three
     GAS_PRESSURE = GAS_THROUGH + 3, ///< m/s: times rho_a cell/dt it is Pa
-    GAS_FLAME,     ///< W/m3 set free, in motion's time
+    GAS_FLAME,     ///< W/m3 released, in motion's time
     GAS_FIELDS,
 } GasField;
 

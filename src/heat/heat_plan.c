@@ -1,7 +1,7 @@
 // Memory of the stage.
 #include "heat/heat_plan.h"
 
-/// More is a mistake in the material: on cells of a millimetre its front would be a nanometre thick.
+/// More is an error in the material: on cells of a millimetre its front would be a nanometre thick.
 static const float PLAN_THICKENING_MAX = 1e6f;
 /// m2/s, times a step and a temperature it is still a float.
 static const float PLAN_CONDUCTANCE_MAX = 1e20f;
@@ -147,7 +147,7 @@ static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     }
 }
 
-/// Follows a few splits by what is around them: what building all anew would give, to the bit (heat_torn). False where
+/// Follows a few splits by what is around them: what building all again would give, to the bit (heat_torn). False where
 /// that cannot be.
 static bool follow_splits(HeatPlan *plan, const Shell *shell, const State *state, uint32_t first) {
     const ShellSplit *splits = state->tear.splits;

@@ -124,9 +124,9 @@ bool heat_operator_may_change(const Shell *shell, uint32_t cell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell);
-/// Writes it anew for a shell that has torn; `length` and `fill`, [particles], are scratch.
+/// Writes it again for a shell that has torn; `length` and `fill`, [particles], are scratch.
 void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length);
-/// Writes a row anew, for springs that tears have changed; `list` is scratch for the springs of it.
+/// Writes a row again, for springs that tears have changed; `list` is scratch for the springs of it.
 /// False where it has no room for all.
 bool heat_matrix_row(HeatPlan *plan, const Shell *shell, uint32_t row, uint32_t *list);
 void heat_matrix_free(Memory *memory, HeatPlan *plan);
@@ -135,7 +135,7 @@ void heat_matrix_follow(HeatPlan *plan, const Shell *shell, const AblateState *a
 
 /// Lists which groups conduct with which (rest.c).
 SingeResult heat_rest_create(Memory *memory, HeatPlan *plan);
-/// The same anew, of all or of one group; `seen`, [groups], is scratch.
+/// The same again, of all or of one group; `seen`, [groups], is scratch.
 void heat_rest_rebuild(HeatPlan *plan, uint32_t *seen);
 void heat_rest_update(HeatPlan *plan, uint32_t group, uint32_t *seen);
 void heat_rest_free(Memory *memory, HeatPlan *plan);

@@ -38,7 +38,7 @@ static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32
                                          (yellow[springs->yellow[k & 1]] == 0);
 }
 
-/// Room for what tears may bring: a second lip of an edge at every vertex, and all that a spare vertex may get.
+/// Room for what tears may bring: a second copy of an edge at every vertex, and all that a spare vertex may get.
 static void matrix_reserve(const HeatPlan *plan, const Shell *shell, uint32_t *length) {
     enum { SPARE = 16 };
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
@@ -236,7 +236,7 @@ static const HeatTwin *matrix_twin(const HeatMatrix *matrix, uint32_t spring) {
     return low < matrix->twin_count && matrix->twins[low].spring == spring ? &matrix->twins[low] : NULL;
 }
 
-/// Empties an entry of a spring that is gone. Twins are told apart by their values; equal ones need not be.
+/// Empties an entry of a spring that is gone. Twins are distinguished by their values; equal ones need not be.
 static void matrix_cut(HeatMatrix *matrix, uint32_t row, uint32_t column, uint32_t spring) {
     const HeatTwin *twin = matrix_twin(matrix, spring);
     for (uint32_t k = 0; k < heat_row_width(matrix, row); k++) {

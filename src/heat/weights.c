@@ -19,7 +19,7 @@
 //
 // which keeps (1), and a linear T as steady as s is small. So every conductance is 0 or more, and the matrix is an
 // M-matrix: T never leaves the range that it has. Removal takes whole springs, which leaves it one. A tear parts the
-// two cells of a side; each then has to do without the other, and is mixed anew.
+// two cells of a side; each then has to do without the other, and is mixed again.
 //
 // c2: with k = c p^2 and z = (cos, sin) of twice the angle of p, (1) is a balance of directions,
 //

@@ -117,7 +117,7 @@ typedef struct Shell {
     // what tears have changed; all 0 where sheets cannot tear
     uint32_t spare_count;          ///< of all sheets
     uint32_t split_count;          ///< splits done: whoever keeps something of the topology compares it
-    uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second lip
+    uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second edge
     uint32_t *edge_origin;         ///< [edge_spare_count] the blue spring that it was torn from
     uint32_t moved[SINGE_COLOUR_COUNT]; ///< springs that a split has given another end, or made, at most
 } Shell;

@@ -30,8 +30,8 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
     float gravity = float3_length(float3_load(def->gravity));
     if (gravity * h * h > fall_max * sheet->cell_size)
         sim_log(sim, SINGE_LOG_WARNING,
-                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: it will stretch; more substeps or a "
-                "smaller time step help",
+                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; use more substeps or a "
+                "smaller time step",
                 index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
 }
 
@@ -42,7 +42,7 @@ static void sim_log_solver(const SingeSim *sim) {
     const char *each = solver->method == SINGE_SOLVER_ALL_AT_ONCE ? "system" : "colour";
     if (solver->method == SINGE_SOLVER_STRAND) {
         if (solver->substeps == 0)
-            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' firmness",
+            sim_log(sim, SINGE_LOG_INFO, "solver: %d substeps for the sheets' stiffness",
                     dynamics_plan_substeps(sim->dynamics));
         return;
     }
@@ -76,15 +76,15 @@ void sim_log_short_of_spares(SingeSim *sim) {
     if (sim->tear_warned) return;
     sim->tear_warned = true;
     sim_log(sim, SINGE_LOG_WARNING,
-            "tearing: a sheet has used up the vertices it has in reserve and tears no further (said once)");
+            "tearing: a sheet has used its reserve of vertices and tears no further (reported once)");
 }
 
 void sim_log_unconverged(SingeSim *sim) {
     if (sim->heat_warned) return;
     sim->heat_warned = true;
     sim_log(sim, SINGE_LOG_WARNING,
-            "heat: steps are too long for conduction to come to heat_tolerance in 200 iterations; a smaller time_step "
-            "or pace, or a larger tolerance, helps (said once)");
+            "heat: conduction does not converge to heat_tolerance in 200 iterations; use a smaller time_step or pace, or "
+            "a larger tolerance (reported once)");
 }
 
 void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
@@ -92,32 +92,32 @@ void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {
         sim->intersecting_warned = true;
         const float *at = sim->shell.rest_position[sim->shell.cells[contacts->intersecting_first][0]];
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: %u cells have crossings with others, or lie in the same place, as the simulation starts, one "
-                "near (%.4g, %.4g, %.4g) m; they are left alone until they have parted",
+                "contact: %u cells intersect or coincide with others as the simulation starts, one near (%.4g, %.4g, "
+                "%.4g) m; they are ignored until they have separated",
                 contacts->intersecting, (double)at[0], (double)at[1], (double)at[2]);
     }
     if (contacts->unresolved && !sim->crossing_warned) {
         sim->crossing_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: at %.4g s cells could not be kept apart: what holds them pulls them through each other, or "
-                "they began on top of each other (said once)",
+                "contact: at %.4g s cells could not be kept apart: pins pull them through each other, or they "
+                "intersected initially (reported once)",
                 sim->state.time);
     }
     if (contacts->dropped && !sim->crowd_warned) {
         sim->crowd_warned = true;
         sim_log(sim, SINGE_LOG_WARNING,
-                "contact: at %.4g s sheets lie too thick on each other for the lists; some may cross (said once)",
+                "contact: at %.4g s there are more pairs than the lists can hold; sheets may cross (reported once)",
                 sim->state.time);
     }
 }
 
 void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position) {
     sim_log(sim, SINGE_LOG_WARNING,
-            "collider %u: %.3g %% of the sheets begin inside it, up to %.3g m deep, at (%.4g, %.4g, %.4g) m: it throws "
-            "them out in the first step, which stretches them",
+            "collider %u: %.3g %% of the sheets begin inside it, up to %.3g m deep, at (%.4g, %.4g, %.4g) m: the "
+            "first step pushes them out, which stretches them",
             collider, 100 * share, (double)depth, (double)position.x, (double)position.y, (double)position.z);
 }
 
 void sim_log_turned(const SingeSim *sim, uint32_t collider) {
-    sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been turned", collider);
+    sim_log(sim, SINGE_LOG_INFO, "collider %u: its mesh was inside out and has been flipped", collider);
 }

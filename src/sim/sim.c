@@ -20,7 +20,7 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
     if (!in_range(solver->tolerance, 1e-12f, 1)) return "solver.tolerance must be between 1e-12 and 1";
     if (!in_range(solver->stiffness, 1e-6f, 1e9f)) return "solver.stiffness must be between 1e-6 and 1e9 N/m";
     if (solver->substeps < 0 || solver->substeps > 1000)
-        return "solver.substeps must be between 1 and 1000, or 0 for as many as firmness needs";
+        return "solver.substeps must be between 1 and 1000, or 0 for as many as the stiffness needs";
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         int colour = (int)solver->order[i];
         if (colour < 0 || colour >= SINGE_COLOUR_COUNT || seen[colour])

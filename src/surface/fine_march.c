@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/// surface_cut of a fine side: a few micrometres, which floats tell apart some metres from the origin and nobody sees.
+/// surface_cut of a fine side: a few micrometres, which floats distinguish some metres from the origin and nobody sees.
 #define NEAREST 0.03125f
 
 /// How many times as long as at rest it may be.

@@ -1,11 +1,11 @@
-// Where a place is drawn: burnt edges crumble.
+// Where a position is drawn: burnt edges crumble.
 //
 // Noise of the rest position r(x), 0 to `reach` and fixed to the paper, says how far the edge is eaten at x:
 //
 //   L(x) = min { S(x), S(x + r u_1), S(x + r u_2), S(x + r u_3) },   u_i three directions 120 degrees apart
 //
 // with S the lesser of the smooth level m' and of what the cells that are left give (fine_spline.c), and the angle of
-// the directions another noise. What is drawn is L >= 0: about the places farther than r from the edge of S. As S
+// the directions another noise. What is drawn is L >= 0: about the positions farther than r from the edge of S. As S
 // never grows, nor does L, whatever the front's width and speed: what is gone stays gone, the edge stands still where
 // the fire does, and the noise moves it by a length. Nothing is drawn outside S >= 0. The mass drawn is that of the
 // place where L is taken, so that char follows the edge.
@@ -48,7 +48,7 @@ Float3 fine_askew(Float3 p) {
                -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
-/// The noise at a place: how far it eats, m, and the direction, as an angle.
+/// The noise at a position: how far it eats, m, and the direction, as an angle.
 static float eaten(const Fine *fine, FineLocation location, const FineSheet *sheet, float *angle) {
     Float3 p = float3_scale(fine_askew(fine_rest(fine->shell, location)), 1 / NOISE_SIZE);
     float sum = 0, strength = NOISE_GAIN;
@@ -69,7 +69,7 @@ static float half_at_most(float length, float axis) {
     return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0;
 }
 
-/// S at a place.
+/// S at a position.
 static float smooth_level(const Fine *fine, FineLocation location) {
     float level = fine_spline_at(fine->shell, &fine->splines[SPLINE_LEVEL], location);
     if (fine->flags[location.cell] & FINE_WHOLE) return level;

@@ -244,7 +244,7 @@ static void mark_split(void *context, int begin, int end) {
 /// Decides how cells and their sides are drawn.
 static void points_settle(Fine *fine) {
     const Shell *shell = fine->shell;
-    uint32_t *split_side = fine->bent_side; // the two change places; back where a side belongs to a split cell
+    uint32_t *split_side = fine->bent_side; // the two change positions; back where a side belongs to a split cell
     fine->bent_side = fine->side_point, fine->side_point = split_side;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         fine->splits[c] = fine->bent[c];
@@ -261,7 +261,7 @@ static void points_settle(Fine *fine) {
     }
 }
 
-/// The value at a place of a cell that is not split: on the same side of the level as at `particle`.
+/// The value at a position of a cell that is not split: on the same side of the level as at `particle`.
 static FineValue bent_value(const Fine *fine, uint32_t particle, FineLocation location) {
     const FineValue *there = &fine->values[particle];
     if (fine->flags[location.cell] & FINE_EVEN) return *there;

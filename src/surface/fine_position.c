@@ -1,4 +1,4 @@
-// Where the surface is drawn. A place of a cell lies on one of its four flat triangles, at T; it is drawn over it on the
+// Where the surface is drawn. A position of a cell lies on one of its four flat triangles, at T; it is drawn over it on the
 // patches of fine_patch.c, in the direction m that the flat triangles' normals at its corners are blended to:
 //
 //   x = T + s h m,   h = ((S(u, v) - T) . n)/(m . n)
@@ -8,25 +8,25 @@
 // differ a little, n is m. The normal is that of S nearest to T: at
 // (u, v) and the step along the tangents that brings S there. s is 1 but where corners' shares fade.
 //
-// What does not cross as it is must not cross as it is drawn. So no place leaves its triangle farther than a tenth of the
+// What does not cross as it is must not cross as it is drawn. So no position leaves its triangle farther than a tenth of the
 // shortest side, less than half the contact thickness, and less than half of what another surface is away; and shares
 // fade
 //
 //   where a triangle at the corner leans away from its normal, or is thin, as when a cell collapses or is crumpled;
-//   at the lips of a tear until they have parted.
+//   at the edges of a tear until they have parted.
 //
-// Lips lie at one place until they part. What is drawn of them is cut otherwise on either side, so their corners are
+// Tear edges lie at one position until they part. What is drawn of them is cut otherwise on either side, so their corners are
 // drawn back from each other, by a small share of a cell's side.
 #include "surface/surface_fine.h"
 
 #include <string.h>
 
-/// How far a place leaves its triangle at most, of the shortest side at its corners; of how far another surface is.
+/// How far a position leaves its triangle at most, of the shortest side at its corners; of how far another surface is.
 #define BULGE_MAX 0.1f
 #define ROOM_SHARE 0.4f
-/// How far the corners of lips at one place are drawn back, of the cell's side: less than contact keeps free.
+/// How far the corners of tear edges at one place are drawn back, of the cell's side: less than contact keeps free.
 #define TEAR_EDGE 1e-3f
-/// Lips this near are at one place; and apart, when their corners have their shares again.
+/// Tear edges this near are at one position; and apart, when their corners have their shares again.
 #define TEAR_EDGES_CLOSED 1e-2f
 #define TEAR_EDGES_OPEN 0.2f
 /// What is nearer to its flat triangle, of the shortest side, is drawn on it.
@@ -46,7 +46,7 @@ static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->abla
 /// 0 at `low` and below, 1 at `high`.
 static float fade(float value, float low, float high) { return fmaxf(0, fminf((value - low) / (high - low), 1)); }
 
-/// Towards the middle of the cells that a vertex has.
+/// Towards the centroid of the cells that a vertex has.
 static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
     const Shell *shell = fine->shell;
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
@@ -68,7 +68,7 @@ static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
     return fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
 }
 
-/// A torn side, of which this is the one lip and that the other. Where it ends, its lips open no faster than at its
+/// A torn side, of which this is the one tear edge and that the other. Where it ends, its tear edges open no faster than at its
 /// other end.
 static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]) {
     float share[2] = {1, 1}, min = 0;
@@ -124,7 +124,7 @@ static float allowed(Float3 doubled, float longest, Float3 normal) {
     return fade(float3_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
-/// Lessens the shares where triangles lean away from the normals or are thin, and how far places may go to a part of the
+/// Lessens the shares where triangles lean away from the normals or are thin, and how far positions may go to a part of the
 /// shortest side. The normals are in place.
 static void gather_shares(Fine *fine) {
     const Shell *shell = fine->shell;
@@ -172,7 +172,7 @@ void fine_position(Fine *fine) {
         fine->bent[c] = (uint8_t)(is_alive(fine, c) ? parts_of(fine, c) : 1);
 }
 
-// ---- one place
+// ---- one position
 
 static Float3 weigh(const Float3 corner[3], const float weight[3]) {
     return float3_mad(float3_mad(float3_scale(corner[0], weight[0]), corner[1], weight[1]), corner[2], weight[2]);
@@ -197,7 +197,7 @@ static Float3 normal_beneath(const FinePatch *patch, float u, float v, float du,
     return across(&point);
 }
 
-/// A number of the vertices at a place: straight between the corners, and the mean of all four at the centre.
+/// A number of the vertices at a position: straight between the corners, and the mean of all four at the centre.
 static float blend_corners(const uint32_t at[4], const FineLocation *location, const float *value) {
     float centre = 0.25f * ((value[at[0]] + value[at[1]]) + (value[at[2]] + value[at[3]]));
     return location->weight[0] * value[at[location->side]] + location->weight[1] * value[at[(location->side + 1) & 3]] +

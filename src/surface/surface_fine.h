@@ -28,14 +28,14 @@ typedef struct Spline {
     float *corner; ///< [vertices]
 } Spline;
 
-/// A place on the sheet: a triangle of a cell and the weights of its corners side, side + 1 and the cell's centre.
+/// A position on the sheet: a triangle of a cell and the weights of its corners side, side + 1 and the cell's centre.
 typedef struct FineLocation {
     uint32_t cell;
     uint8_t side;
     float weight[3];
 } FineLocation;
 
-/// What a place is drawn by.
+/// What a position is drawn by.
 typedef struct FineValue {
     float level, mass;
 } FineValue;
@@ -69,7 +69,7 @@ typedef struct Fine {
     Spline splines[SPLINE_COUNT];
     float *raw_level;        ///< [particles] m'; below 0 for what is gone
     float *cell_value;       ///< [cells] scratch of the splines
-    float *low;              ///< [cells] the level's least coefficient
+    float *low;              ///< [cells] the level's smallest coefficient
     float (*axes)[2];        ///< [cells] m, lengths of a cell's two axes at rest
     uint8_t *flags;          ///< [cells] FINE_NEAR and the like
     uint32_t *cell_point;    ///< [cells] first of its points; where FINE_NEAR
@@ -112,16 +112,16 @@ void fine_spline(const Fine *fine, const float *values, Spline *spline);
 /// The same for what is 1 in cells that are left and -1 in others.
 void fine_spline_cells(const Fine *fine, Spline *spline);
 
-/// The least and the greatest coefficient of a cell: the spline lies between them.
+/// The smallest and the greatest coefficient of a cell: the spline lies between them.
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high);
 
 float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
 
-/// The place that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
+/// The position that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
 /// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
 FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
 
-/// A place in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
+/// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).
 void fine_coordinates(FineLocation location, float *x, float *y);
 
 /// The level that this spline stands for: below 0 from a little within the cells that are left outwards, in smooth
@@ -133,7 +133,7 @@ static inline float fine_whole_level(float whole) { return 0.5f * (whole - 0.25f
 /// How many octaves of the noise points with this spacing (m) can show.
 int fine_octaves(float spacing);
 
-/// The level and the mass that a place is drawn by.
+/// The level and the mass that a position is drawn by.
 FineValue fine_value(const Fine *fine, FineLocation location);
 
 /// A place at rest, and a vector rotated out of every plane that sheets and their grids may lie in.
@@ -145,7 +145,7 @@ Float3 fine_askew(Float3 p);
 /// Fills SPLINE_TEAR_EDGE where sheets have torn, and marks the cells there, which have their other flags.
 void fine_tear_edges(Fine *fine);
 
-/// The level that tears give a place in a marked cell: below 0 is not drawn.
+/// The level that tears give a position in a marked cell: below 0 is not drawn.
 float fine_tear_level(const Fine *fine, FineLocation location);
 
 // ---- fine_points.c
@@ -206,7 +206,7 @@ FinePoint fine_patch_at(const FinePatch *patch, float u, float v);
 /// Works out where the surface is, and how finely bent cells are to be drawn.
 void fine_position(Fine *fine);
 
-/// Position and unit normal at a place, with the patch of its cell.
+/// Position and unit normal at a position, with the patch of its cell.
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
                    float normal[3]);
 

@@ -51,7 +51,7 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
     weight[2] = 1 - weight[0] - weight[1];
 }
 
-/// The side in whose triangle a drawn triangle lies: where the least weight of its middle is largest.
+/// The side in whose triangle a drawn triangle lies: where the smallest weight of its centroid is largest.
 static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
     Float3 centroid = {0, 0, 0};
     for (int k = 0; k < 3; k++) centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));

@@ -48,7 +48,7 @@ typedef struct Measure {
     int from;   ///< which of plan->smooth is read
 } Measure;
 
-/// The middle of a cell's corners at rest: where its centre is, seen along the normal.
+/// The centroid of a cell's corners at rest: where its centre is, seen along the normal.
 static Float3 centroid(const Shell *shell, uint32_t cell) {
     const uint32_t *corner = shell->cells[cell];
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;

@@ -1,10 +1,10 @@
-// What a split does to the State: the new particle is what the old one was, and the lips of the tear part a little.
+// What a split does to the State: the new particle is what the old one was, and the edges of a tear part a little.
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
 
 #include <string.h>
 
-/// How far each lip moves towards the middle of its own cells, of the way there: lips are never in one place, so that
+/// How far each edge of a tear moves towards the centroid of its own cells, of the way there: they are never in one place, so that
 /// contact can tell their sides from the start. It is less than contact keeps free (collision/collision_plan.h), for it does
 /// not look at what moves here.
 static const float TEAR_EDGE_GAP = 0.002f;
@@ -57,7 +57,7 @@ static void tear_edge_state(const Shell *shell, State *state, const TornEdge *to
     for (int end = 0; end < 2; end++) state->ablate.degree[shell->springs[SINGE_GREEN].ends[torn->green][end]]--;
 }
 
-/// From a lip to the mean of its cells' corners.
+/// From a tear edge to the mean of its cells' corners.
 static Float3 tear_edge_displacement(const Shell *shell, const State *state, uint32_t vertex) {
     Float3 sum = {0, 0, 0};
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
@@ -78,8 +78,8 @@ static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t on
     return false;
 }
 
-/// Parts two lips that are in one place, each towards its cells. Where the sheet is crumpled there, these may lie across
-/// the other lip: then along the first of 26 directions in which they do not cross.
+/// Parts two edges of a tear that are in one place, each towards its cells. Where the sheet is crumpled there, these may lie across
+/// the other one: then along the first of 26 directions in which they do not cross.
 static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
     enum { DIRECTIONS = 27 };
     float *x = state->dynamics.position[one], *y = state->dynamics.position[two];

@@ -6,7 +6,7 @@
 #include "shell/split.h"
 #include "tear/tear.h"
 
-/// What cells hold that hang together by a vertex alone, of the strength.
+/// What cells hold that are connected by a vertex alone, of the strength.
 static const float TEAR_HINGE = 0.25f;
 
 /// A symmetric tensor: xx, yy, zz, yz, zx, xy.
@@ -40,7 +40,7 @@ struct TearPlan {
     uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;    ///< [pool_blocks(cells)]
     uint32_t sheet_count;
-    float safe;         ///< N/m, nothing tears below: the least strength of all, as char or weakened
+    float safe;         ///< N/m, nothing tears below: the smallest strength of all, as char or weakened
     float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
     float *min;       ///< [sheets] that factor where it is pulled farther apart than it reaches
 };

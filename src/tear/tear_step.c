@@ -4,7 +4,7 @@
 // cells is nearer to tearing. The cells around it are parted along two of its edges, or one where the sheet is open
 // there already. While tears run in a piece, no other begins there, and of those that could begin, one does.
 //
-// Cells that hang together by a vertex alone, for what lay between them has burnt, part where they are pulled at with
+// Cells that are connected by a vertex alone, for what lay between them has burnt, part where they are pulled at with
 // TEAR_HINGE of the strength.
 //
 // A tear is to run along t, across the direction of N_1, but can along sides of cells only, an edge a step. So of the
@@ -24,7 +24,7 @@
 //
 // with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
 // it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
-// strengths are then lowered, all by one factor, so that the least is half of this.
+// strengths are then lowered, all by one factor, so that the smallest is half of this.
 #include "common/random.h"
 #include "tear/tear_plan.h"
 
@@ -37,7 +37,7 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 /// In TearPlan.leader.
 #define LEADER_RUNS (UINT32_MAX - 1)
 
-/// The least line force across an edge that tears, of N_1: that of edges within 10 degrees of its direction.
+/// The smallest line force across an edge that tears, of N_1: that of edges within 10 degrees of its direction.
 static const float EDGE_MIN = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
@@ -50,7 +50,7 @@ float tear_carried(const Shell *shell, uint32_t index, float h) {
     return (float)(mass / area) * sheet->cell_size * sheet->cell_size / (h * h) * STEP_CARRIES;
 }
 
-/// A sheet's least strength.
+/// A sheet's smallest strength.
 static float weakest(const Sheet *sheet, Field strength) {
     float min = INFINITY;
     for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++)
@@ -137,7 +137,7 @@ static void choose_leaders(TearPlan *plan, const State *state) {
     }
 }
 
-/// The cells of a fan in turning order, those that hang together with the first; none of a fan without cells.
+/// The cells of a fan in turning order, those that are connected with the first; none of a fan without cells.
 typedef struct Turn {
     int count, at[SPLIT_FAN];
     bool closed;
@@ -234,7 +234,7 @@ static int open_edge(const TearEdge *edges, int count, Float3 displacement) {
     return open;
 }
 
-/// Cells that hang together with others by the vertex alone, for what lay between them has burnt; 0 where there are
+/// Cells that are connected with others by the vertex alone, for what lay between them has burnt; 0 where there are
 /// none.
 static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn) {
     int start[2] = {-1, -1};
@@ -326,7 +326,7 @@ static void separate(Shell *shell, State *state, uint32_t vertex) {
         ShellSplit split = {vertex, smaller_part(&fan, &turn, 0, turn.count), SHELL_NONE};
         if (!split_is_possible(shell, &fan, &split)) return;
         tear_split(shell, state, &fan, &split, &result);
-        if (!(split.cells & 1u << turn.at[0])) return; // the rest went, and may hang together at the new vertex alone
+        if (!(split.cells & 1u << turn.at[0])) return; // the rest went, and may be connected at the new vertex alone
     }
 }
 

@@ -1,5 +1,5 @@
 // Signed distance from what lies below a grid of heights over its own x-y rectangle: all (x, y, z) with z < h(x, y).
-// Each cell of the grid is two triangles, split from its node of least x and y to the opposite one. The rectangle's
+// Each cell of the grid is two triangles, split from its node of smallest x and y to the opposite one. The rectangle's
 // edges are walls that go down without end.
 //
 // The surface straight above or below is |z - h| away, so only cells that near can hold the foot; blocks of cells whose
@@ -86,7 +86,7 @@ static uint32_t height_cell(const HeightSolid *solid, int axis, float x, float *
     return cell;
 }
 
-/// Height of the surface at a place, clamped to the rectangle, and its normal there.
+/// Height of the surface at a position, clamped to the rectangle, and its normal there.
 static float height_at(const HeightSolid *solid, float x, float y, Float3 *normal) {
     float s, t;
     uint32_t i = height_cell(solid, 0, x, &s), j = height_cell(solid, 1, y, &t);
@@ -177,7 +177,7 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     float above = p.z - height_at(solid, p.x, p.y, normal);
     bool inside = over && above < 0;
     if (limit == 0) return inside ? -1 : 1;
-    // straight up or down, or at the foot over the nearest place of the rectangle, there is some surface
+    // straight up or down, or at the foot over the nearest position of the rectangle, there is some surface
     double slack = 1e-6 * (double)(solid->half[0] + solid->half[1] + float3_length(p)); // heights are rounded
     double max = (double)float3_length(float3(out.x, out.y, above)) + slack;
     if (!inside) max = fmin(max, (double)limit); // what is not found is not nearer

@@ -14,7 +14,7 @@ typedef struct HeightSolid {
     float step[2];   ///< m, from node to node
     float low, high; ///< of the heights
     uint32_t blocks[2];
-    float (*ranges)[2]; ///< [blocks] least and most height of HEIGHT_BLOCK by HEIGHT_BLOCK cells
+    float (*ranges)[2]; ///< [blocks] smallest and largest height of HEIGHT_BLOCK by HEIGHT_BLOCK cells
 } HeightSolid;
 
 SingeResult height_solid_create(Memory *memory, uint32_t columns, uint32_t rows, const float *heights,

@@ -4,7 +4,7 @@
 //   two, or the sum of a vertex's weighed by their angles
 //
 // (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right for
-// every mesh that does not pass through itself. A grid of distances at its cells' middles spares the tree of triangles
+// every mesh that does not pass through itself. A grid of distances at its cells' centroids spares the tree of triangles
 // (mesh_tree.c) what is far: the distance changes by no more than the way, so that at p
 //
 //   |d(p)| >= |d(c)| - |p - c|,   and the sign is that at c where this is above 0,
@@ -143,7 +143,7 @@ void mesh_solid_free(Memory *memory, MeshSolid *solid) {
     *solid = (MeshSolid){0};
 }
 
-/// What the grid knows: *least of the distance's size, *most of it, and the sign where least is above 0.
+/// What the grid knows: the smallest and the largest size of the distance, and its sign where the smallest is above 0.
 static float solid_look(const MeshSolid *solid, const int at[3], Float3 p, float *min, float *max) {
     size_t index = ((size_t)at[2] * (size_t)solid->cells[1] + (size_t)at[1]) * (size_t)solid->cells[0] + (size_t)at[0];
     float coarse = solid->coarse[index];

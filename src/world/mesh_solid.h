@@ -37,11 +37,11 @@ typedef struct MeshSolid {
     float cell;                ///< m, side of the cells of the grid
     int32_t cells[3];
     Float3 origin;
-    float *coarse;             ///< signed distances at the middles of the cells
+    float *coarse;             ///< signed distances at the centroids of the cells
     bool turned;               ///< it was inside out
 } MeshSolid;
 
-/// Checks and copies a mesh, and builds what its distances need. Vertices at the same place become one, triangles
+/// Checks and copies a mesh, and builds what its distances need. Vertices at the same position become one, triangles
 /// without extent that this leaves go; a mesh that is inside out is turned. Errors name the triangle or vertex.
 SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                               const uint32_t *triangles, MeshSolid *solid, SingeError *error);

@@ -1,6 +1,6 @@
 // The nearest of many triangles, by a tree of boxes, four side by side: a node's boxes and a leaf's triangles are
 // looked at in one go (Wald et al., Getting rid of packets, 2008, for rays). Halves of equal size along the longest
-// axis of the middles; a leaf is full but for the last, so that counts tell how many nodes there are.
+// axis of the centroids; a leaf is full but for the last, so that counts tell how many nodes there are.
 #include "world/mesh_solid.h"
 
 #include <string.h>
@@ -37,7 +37,7 @@ static void tree_box(const TreeBuild *build, uint32_t first, uint32_t count, Flo
         }
 }
 
-/// The axis along which the middles reach farthest.
+/// The axis along which the centroids reach farthest.
 static int tree_axis(const TreeBuild *build, uint32_t first, uint32_t count) {
     int best = 0;
     float max = -1;

@@ -44,7 +44,7 @@ class Begin(Case):
             with self.subTest(most=most):
                 _, err = self.limited(*self.other_run(*args), most=most - 1)
                 self.assertIn("File too large", err)
-                self.assertIn("is as it was", err)
+                self.assertIn("is unchanged", err)
                 self.assertEqual(self.tree("o"), before)
         self.assertEqual(self.run_scene("o", "--resume", "--frames", "7", *args, preview=True)[1].count("frame 6"), 1)
 

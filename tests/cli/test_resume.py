@@ -79,7 +79,7 @@ class Resume(Case):
             with open(self.path("k", name), "w") as file:
                 file.write("half")
         _, err = self.run_scene("k", "--resume")
-        self.assertIn("going on from frame 9", err)
+        self.assertIn("continuing from frame 9", err)
         self.same_as_whole("k")
         self.assertEqual(self.record("k")["resumed_from"], 9)
 
@@ -105,7 +105,7 @@ class Resume(Case):
         self.run_scene("whole", "--quiet")
         done = self.interrupted(signal.SIGINT)
         _, err = self.run_scene("i", "--resume", preview=True)
-        self.assertIn(f"going on from frame {done}", err)
+        self.assertIn(f"continuing from frame {done}", err)
         self.same_as_whole("i")
 
     def test_terminate(self):
@@ -130,7 +130,7 @@ class Resume(Case):
                              ("interrupted", done, done))
             self.singe("verify", self.path(out))
             stopped += self.record(out)["totals"]["steps"] % 300 != 0
-            self.assertIn(f"going on from frame {done}", self.run_scene(out, "--resume")[1])
+            self.assertIn(f"continuing from frame {done}", self.run_scene(out, "--resume")[1])
             self.same_as_whole(out)
         self.assertGreater(stopped, 0, "never stopped within a frame")
 
@@ -249,7 +249,7 @@ class Resume(Case):
         self.run_scene("o", "--resume", "--frames", "3")
         self.picture("sky.png", 101)
         _, err = self.run_scene("o", "--resume", "--frames", "4", preview=True)
-        self.assertEqual("the preview is another now" in err, HAS_PREVIEW)
+        self.assertEqual("the preview has changed" in err, HAS_PREVIEW)
         self.run_scene("whole", "--frames", "4", "--quiet")
         self.same_as_whole("o")
 

@@ -394,7 +394,7 @@ class Verify(Case):
         self.verify()
         _, err, rows = self.verify("--stretch", "1", expect=1)
         self.assertGreater(rows[-1]["stretched_edges"], 0)
-        self.assertIn("further ones of this kind are only counted", err)
+        self.assertIn("more of this kind are only counted", err)
         self.assertEqual(err.count("mm at rest"), 3)
 
     def test_refusals(self):

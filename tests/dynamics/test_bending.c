@@ -3,7 +3,7 @@
 //   w = rho g l^4 / (8 D) + rho g l^2 / (2 S)
 //
 // for small w: rho the mass per area, l the free length, S = 1/c_red the stiffness of transverse shear, which no more
-// than D may hang on cells and substeps.
+// than D may depend on cells and substeps.
 #include "support/support.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ static void shear(void **unused) {
         }
 }
 
-/// The table of docs/equations.md, Firmness.
+/// The table of docs/equations.md, Stiffness.
 static int print_table(void) {
     const double stiffnesses[] = {1e-3, 2.5e-4};
     const int substeps[] = {3, 4, 5, 6, 12, 24};

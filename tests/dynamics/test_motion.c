@@ -155,7 +155,7 @@ static void angular_momentum(const Bench *bench, double spin[3]) {
 static double spin_left(int axis, float smoothing, bool bent) {
     Bench bench;
     SingeMaterialDef material = plain();
-    material.compliance[SINGE_GREEN] = singe_param(1); // a cloth: what is firm swings between bends as it turns
+    material.compliance[SINGE_GREEN] = singe_param(1); // a cloth: what is stiff swings between bends as it turns
     Quads quads = quads_grid(20, 20, 0.01f, 0.01f, false);
     for (uint32_t v = 0; bent && v < quads.vertex_count; v++) { // an arc of 1 rad
         float *p = quads.positions + 3 * v, angle = 5 * (p[0] - 0.1f);
@@ -221,7 +221,7 @@ static double open_crushed(uint32_t seed) {
 }
 
 /// Springs crushed to nearly nothing push back no harder than their length: the sheet opens and stays together.
-/// How much stays crumpled hangs on chance: 4 to 25 %, 14 % in the mean of 48.
+/// How much stays crumpled depends on chance: 4 to 25 %, 14 % in the mean of 48.
 static void test_crushed_sheet_opens(void **unused) {
     (void)unused;
     double mean = 0;

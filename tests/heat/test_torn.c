@@ -1,4 +1,4 @@
-// A heat matrix that follows tears row by row is the one that is built anew, to the bit.
+// A heat matrix that follows tears row by row is the one that is built again, to the bit.
 #include "rig.h"
 
 #include "heat/heat_plan.h"

@@ -64,7 +64,7 @@ static void t_junctions_are_closed(void **state) {
     assert_int_equal(made.report.count[MESH_JUNCTION], 1);
     assert_int_equal(made.report.first[MESH_JUNCTION], 9);
     assert_int_equal(made.report.components, 1);
-    // a vertex that lies on a side but belongs to what hangs on a point there is no junction
+    // a vertex that lies on a side but belongs to what depends on a point there is no junction
     mesh_free(&made.mesh);
 }
 
@@ -249,7 +249,7 @@ static void one_sided_surfaces_are_cut(void **state) {
     mesh_free(&made.mesh);
 }
 
-// Sides of three faces and more of one sheet, which hang together elsewhere as well.
+// Sides of three faces and more of one sheet, which are connected elsewhere as well.
 static void sheets_that_meet_themselves_are_cut(void **state) {
     (void)state;
     text.size = 0; // a tent on a sheet, whose feet are two of the sheet's rows: each row has three faces
@@ -264,7 +264,7 @@ static void sheets_that_meet_themselves_are_cut(void **state) {
     assert_int_equal(made.mesh.cell_count, 24);
     assert_manifold(&made.mesh);
     mesh_free(&made.mesh);
-    // a sheet with a loop that is pinched shut at one side, which has four faces that hang together all around
+    // a sheet with a loop that is pinched shut at one side, which has four faces that are connected all around
     static const double x[] = {-2, -1, -0.2, -0.5, 0.5, 0.2, 1, 2}, z[] = {0, 0, 0, 1, 1, 0, 0, 0};
     text.size = 0;
     for (int j = 0; j < 6; j++)

@@ -1,4 +1,4 @@
-// The lens and the shutter: what blurs, what does not, and that nothing hangs on threads.
+// The lens and the shutter: what blurs, what does not, and that nothing depends on threads.
 
 #include "fixture.h"
 #include "synthetic.h"

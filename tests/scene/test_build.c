@@ -69,7 +69,7 @@ static void test_sim(void **state) {
     scene_free(scene);
 }
 
-// What the library refuses is told at the object that it is about.
+// What the library refuses is reported at the object that it is about.
 static void test_refused(void **state) {
     (void)state;
     Scene *scene = good_scene(SHEET "pins:\n  - {vertices: [0]}\n  - {vertices: [99999]}\n", NULL, 0);
@@ -87,7 +87,7 @@ static void test_refused(void **state) {
     scene_free(scene);
 }
 
-// Files that are there but are not what they should be: every one is told, at the line of its name.
+// Files that are there but are not what they should be: every one is reported, at the line of its name.
 static void test_bad_files(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[64];
@@ -255,7 +255,7 @@ static const char nut[] = "v -2 -2 0\nv 2 -2 0\nv 2 0 0\nv 1 0 0\nv 1 -1 0\nv -1
                           "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10\nf 1 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
                           "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
 
-/// Meshes and pictures of heights become colliders and shapes; what is not closed is told at its collider.
+/// Meshes and pictures of heights become colliders and shapes; what is not closed is reported at its collider.
 static void test_solids(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", text[600], path[100];

@@ -208,7 +208,7 @@ static void test_secrets(void **state) {
     folder_remove(&folder);
 }
 
-/// One mistake, with its place and its line.
+/// One error, with its place and its line.
 static void expect_mistake(const Folder *folder, const char *line, const char *origin, const char *says, int count) {
     char text[400];
     Scene *scene = NULL;

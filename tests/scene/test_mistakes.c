@@ -1,4 +1,4 @@
-// Bad scenes: each mistake at its exact place, all at once, and no bytes that crash the reader.
+// Bad scenes: each error at its exact place, all at once, and no bytes that crash the reader.
 #include "parsing.h"
 
 static SceneMessages failing(const char *text, size_t size, const char *base_dir, const char *const *sets,
@@ -360,7 +360,7 @@ static void test_limits(void **state) {
     messages = failing(text, 100000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     expect_origin_prefix(&messages, "bad.yaml:1:");
     scene_messages_free(&messages);
-    for (unsigned i = 0; i < 50000; i++) // unknown keys without end: the first 200 are told, the rest counted
+    for (unsigned i = 0; i < 50000; i++) // unknown keys without end: the first 200 are reported, the rest counted
         snprintf(text + 10 * i, 11, "k%07u:\n", i % 10000000);
     messages = failing(text, 500000, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     assert_int_equal(messages.count, 200);

@@ -194,7 +194,7 @@ static void the_log_has_no_locale(void **state) {
     assert_non_null(strstr(heard.last[SINGE_LOG_WARNING], "33.3 ms"));
 }
 
-/// What was made is told at the commit; a step too long for the cells is warned of.
+/// What was made is reported at the commit; a step too long for the cells is warned of.
 static void the_log_hears_of_the_commit(void **state) {
     (void)state;
     for (int slow = 0; slow < 2; slow++) {
@@ -261,7 +261,7 @@ static void count_warnings(void *context, SingeLogLevel level, const char *line)
     *(int *)context += level == SINGE_LOG_WARNING && strstr(line, "iterations") != NULL;
 }
 
-/// Steps too long for the solver of the heat equation are taken all the same, and one line tells of it.
+/// Steps too long for the solver of the heat equation are taken all the same, and one line reports it.
 static void warns_once_of_conduction_cut_short(void **state) {
     (void)state;
     int warnings = 0;

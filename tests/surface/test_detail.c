@@ -190,7 +190,7 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
     }
 }
 
-/// Tears the sheet along y = row from its border on, up to `length` cells far; the lips stay at one place.
+/// Tears the sheet along y = row from its border on, up to `length` cells far; the tear edges stay at one place.
 static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
     BurningSheet *b = d->sheet;
     for (uint32_t i = 0; i < length; i++) {
@@ -207,7 +207,7 @@ static void tear_along(Drawing *d, uint32_t row, uint32_t length) {
     }
 }
 
-/// The level cuts either lip otherwise; what is drawn of the one ends before the other.
+/// The level cuts either tear edge otherwise; what is drawn of the one ends before the other.
 static void tear_edges_at_one_point_are_drawn_apart(void **unused) {
     (void)unused;
     SingeMaterialDef material = plain_material();

@@ -1,4 +1,4 @@
-// Lips of a tear part without crossing each other, however crumpled the sheet is there.
+// Tear edges part without crossing each other, however crumpled the sheet is there.
 #include "ablate/burning_sheet.h"
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
@@ -18,7 +18,7 @@ static bool any_cross(const BurningSheet *b) {
     return cross;
 }
 
-/// Where the middle lip would go if nothing were in its way: a little towards the mean of its cells' corners.
+/// Where the middle tear edge would go if nothing were in its way: a little towards the mean of its cells' corners.
 static Float3 mean_displacement(const BurningSheet *b, uint32_t vertex) {
     const Shell *shell = &b->shell;
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];

@@ -144,7 +144,7 @@ static void pulled_apart_it_tears_at_its_weakest_line(void **unused) {
     assert_int_equal(left, 0);
     check_surface(sim);
     check_view(sim);
-    // each lip of the tear has the weak line's vertices
+    // each tear edge of the tear has the weak line's vertices
     for (uint32_t v = (ALONG + 1) * (ACROSS + 1); v < view.vertex_count; v++)
         if (view.particle_flags[v] & SINGE_ALIVE)
             assert_true(fabsf(view.rest_position[v][0] - WEAK * side) < 0.5f * side);
@@ -189,7 +189,7 @@ static void tubes_tear_around(void **unused) {
     singe_sim_destroy(sim);
 }
 
-/// The lips of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how far
+/// The tear edges of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how far
 /// their middle leaves the weak line, root mean square.
 typedef struct TearEdges {
     double apart, wanders, min, area;

@@ -7,7 +7,7 @@ static void set_write_nodes(StrandSet *set, const SpringSet *springs, uint32_t n
         for (uint32_t g = set->family_first[f]; g < set->family_first[f + 1]; g++) {
             const StrandGroup *group = &set->groups[g];
             uint32_t *node = set->node + (size_t)group->row * STRAND_LANES;
-            // groups that are solved side by side write to places of their own
+            // groups that are solved side by side write to positions of their own
             for (uint32_t i = 0; i < (group->rows + 1) * STRAND_LANES; i++)
                 node[i] = 4 * (nowhere + g - set->family_first[f]);
         }
