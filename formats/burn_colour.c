@@ -65,5 +65,5 @@ void ember_colour(uint8_t step, float colour[3]) {
     static const float wavelength[3] = {0.61f, 0.55f, 0.465f}; // um
     const float temperature = 800 + 600 * ((float)step - 0.5f) / (EMBER_STEPS - 2);
     for (int c = 0; c < 3; c++)
-        colour[c] = step ? 6 * expf(14388 / 0.61f / 1200 - 14388 / wavelength[c] / temperature) : 0;
+        colour[c] = step ? 2.5f * expf(14388 / 0.61f / 1200 - 14388 / wavelength[c] / temperature) : 0;
 }

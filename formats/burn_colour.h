@@ -18,7 +18,9 @@ static inline uint8_t ember_step(float temperature) {
     const float step = 1 + (temperature - 800) / 600 * (EMBER_STEPS - 2);
     return (uint8_t)(step < EMBER_STEPS - 1 ? step : EMBER_STEPS - 1);
 }
-/// Linear light that an ember gives off, 6 in red at 1200 K, by its black body's colour.
+/// What has burnt less does not glow: it is in a flame.
+#define EMBER_BURNT 0.15f
+/// Linear light that an ember gives off, 2.5 in red at 1200 K, by its black body's colour.
 void ember_colour(uint8_t step, float colour[3]);
 
 #endif

@@ -158,10 +158,16 @@ SINGE_NODISCARD SingeResult ply_read_surface(const char *name, const uint8_t *by
 
 // ---- the gas: one OpenVDB file per frame (docs/formats.md)
 
-/// A gas of one's own. `view` points at its arrays.
+/// What files have instead of soot and of heat set free, so that renderers take them as they are: extinction (1/m) and
+/// flame in units of 10 MW/m3, of which flames have 0 to 1 and few cells more.
+#define GAS_EXTINCTION 8700.0f ///< m2/kg of soot
+#define GAS_FLAME_UNIT 1e7f    ///< W/m3
+
+/// A gas of one's own. `view` points at its arrays. `smoke` and `flame` are what those of the file come to.
 typedef struct Gas {
     SingeGas view; ///< size 0: none
     float *temperature, *smoke, *flame;
+    float *extinction, *flame_share; ///< as the file has them
     float (*velocity)[3];
     SingeAllocator allocator;
 } Gas;

@@ -48,15 +48,31 @@ SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *erro
     gas->temperature = store_new(gas->allocator, count, sizeof *gas->temperature);
     gas->smoke = store_new(gas->allocator, count, sizeof *gas->smoke);
     gas->flame = store_new(gas->allocator, count, sizeof *gas->flame);
+    gas->extinction = store_new(gas->allocator, count, sizeof *gas->extinction);
+    gas->flame_share = store_new(gas->allocator, count, sizeof *gas->flame_share);
     gas->velocity = store_new(gas->allocator, count, sizeof *gas->velocity);
-    if (!gas->temperature || !gas->smoke || !gas->flame || !gas->velocity) return refuse_memory(error, "gas", name);
+    if (!gas->temperature || !gas->smoke || !gas->flame || !gas->extinction || !gas->flame_share || !gas->velocity)
+        return refuse_memory(error, "gas", name);
     gas_fill(gas, coolest);
     memset(gas->smoke, 0, count * sizeof *gas->smoke);
     memset(gas->flame, 0, count * sizeof *gas->flame);
+    memset(gas->extinction, 0, count * sizeof *gas->extinction);
+    memset(gas->flame_share, 0, count * sizeof *gas->flame_share);
     memset(gas->velocity, 0, count * sizeof *gas->velocity);
     gas->view.temperature = gas->temperature, gas->view.smoke = gas->smoke, gas->view.flame = gas->flame;
     gas->view.velocity = (const float (*)[3])gas->velocity;
     return SINGE_OK;
+}
+
+bool gas_decode(Gas *gas) {
+    size_t count = gas_cells(&gas->view);
+    float sum = 0; // of zeros, unless something is not finite
+    for (size_t i = 0; i < count; i++) {
+        gas->smoke[i] = gas->extinction[i] / GAS_EXTINCTION;
+        gas->flame[i] = gas->flame_share[i] * GAS_FLAME_UNIT;
+        sum += 0 * gas->smoke[i] + 0 * gas->flame[i];
+    }
+    return sum == 0;
 }
 
 static bool values_are_finite(const SingeGas *gas) {
@@ -64,22 +80,24 @@ static bool values_are_finite(const SingeGas *gas) {
     float sum = 0; // of zeros, unless something is not finite
     for (size_t i = 0; i < count; i++) {
         const float *v = gas->velocity[i];
-        sum += 0 * gas->temperature[i] + 0 * gas->smoke[i] + 0 * gas->flame[i] + 0 * v[0] + 0 * v[1] + 0 * v[2];
+        sum += 0 * gas->temperature[i] + 0 * (GAS_EXTINCTION * gas->smoke[i]) + 0 * gas->flame[i] + 0 * v[0] +
+               0 * v[1] + 0 * v[2];
     }
     return sum == 0;
 }
 
-static void copy_block(const SingeGas *gas, const uint32_t block[3], Gas *copy) {
+/// Still air in a block.
+static void clear_block(Gas *gas, const uint32_t block[3], float coolest) {
     uint32_t low[3], high[3];
-    gas_block_box(gas, block, low, high);
+    gas_block_box(&gas->view, block, low, high);
     for (uint32_t z = low[2]; z < high[2]; z++)
-        for (uint32_t y = low[1]; y < high[1]; y++) {
-            size_t i = gas_index(gas, low[0], y, z), count = high[0] - low[0];
-            memcpy(copy->temperature + i, gas->temperature + i, count * sizeof *gas->temperature);
-            memcpy(copy->smoke + i, gas->smoke + i, count * sizeof *gas->smoke);
-            memcpy(copy->flame + i, gas->flame + i, count * sizeof *gas->flame);
-            memcpy(copy->velocity + i, gas->velocity + i, count * sizeof *gas->velocity);
-        }
+        for (uint32_t y = low[1]; y < high[1]; y++)
+            for (uint32_t x = low[0]; x < high[0]; x++) {
+                size_t i = gas_index(&gas->view, x, y, z);
+                gas->temperature[i] = coolest;
+                gas->smoke[i] = gas->flame[i] = gas->extinction[i] = gas->flame_share[i] = 0;
+                gas->velocity[i][0] = gas->velocity[i][1] = gas->velocity[i][2] = 0;
+            }
 }
 
 SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, SingeError *error) {
@@ -98,12 +116,22 @@ SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocator, Gas *copy, S
         gas_free(copy);
         return result;
     }
+    memcpy(copy->temperature, gas->temperature, count * sizeof *gas->temperature);
+    memcpy(copy->velocity, gas->velocity, count * sizeof *gas->velocity);
+    for (size_t i = 0; i < count; i++) {
+        copy->extinction[i] = GAS_EXTINCTION * gas->smoke[i];
+        copy->flame_share[i] = gas->flame[i] / GAS_FLAME_UNIT;
+    }
+    if (!gas_decode(copy)) {
+        gas_free(copy);
+        return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "a value is too large for a file");
+    }
     const uint32_t *n = gas->size;
     uint32_t block[3];
     for (block[2] = 0; block[2] * GAS_BLOCK < n[2]; block[2]++)
         for (block[1] = 0; block[1] * GAS_BLOCK < n[1]; block[1]++)
             for (block[0] = 0; block[0] * GAS_BLOCK < n[0]; block[0]++)
-                if (gas_block_holds(gas, block, coolest)) copy_block(gas, block, copy);
+                if (!gas_block_holds(&copy->view, block, coolest)) clear_block(copy, block, coolest);
     return SINGE_OK;
 }
 
@@ -112,6 +140,8 @@ void gas_free(Gas *gas) {
     store_free(gas->allocator, gas->temperature, count, sizeof *gas->temperature);
     store_free(gas->allocator, gas->smoke, count, sizeof *gas->smoke);
     store_free(gas->allocator, gas->flame, count, sizeof *gas->flame);
+    store_free(gas->allocator, gas->extinction, count, sizeof *gas->extinction);
+    store_free(gas->allocator, gas->flame_share, count, sizeof *gas->flame_share);
     store_free(gas->allocator, gas->velocity, count, sizeof *gas->velocity);
     *gas = (Gas){.allocator = gas->allocator};
 }

@@ -36,6 +36,8 @@ float gas_coolest(const SingeGas *gas);
 bool gas_shape_is_good(const SingeGas *gas);
 /// Sets every temperature.
 void gas_fill(Gas *gas, float coolest);
+/// Fills smoke and flame in from what the file has. False where one is not finite.
+bool gas_decode(Gas *gas);
 /// Makes the arrays for gas->view.size, filled with still air.
 SINGE_NODISCARD SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *error);
 

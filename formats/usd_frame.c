@@ -153,7 +153,8 @@ static void put_embers(UsdWriter *w, const Part *part, CrateValue *palette, Crat
     int32_t entries[EMBER_STEPS], found = 0;
     memset(entries, 0xff, sizeof entries);
     for (uint32_t i = 0; i < part->count; i++) {
-        const uint8_t step = ember_step(w->surface->temperature[part->vertices[i]]);
+        const uint32_t v = part->vertices[i];
+        const uint8_t step = w->surface->burn[v] > EMBER_BURNT ? ember_step(w->surface->temperature[v]) : 0;
         if (entries[step] < 0) {
             ember_colour(step, colours[found]);
             entries[step] = found++;
@@ -229,7 +230,9 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     const SingeSurface *s = w->surface;
     const Part part = part_of(w, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
-    const char *names[ATTRIBUTES_MOST + 4], *children[] = {"fresh", "burnt"};
+    const char *names[ATTRIBUTES_MOST + 4];
+    // the first is that of all faces where a program binds no subsets, such as Blender from the second frame on
+    const char *children[] = {"burnt", "fresh"};
     char primvars[SURFACE_FIELDS][40], name[USD_NAME];
     size_t count = 0;
     for (int i = 0; i < 3; i++) names[count++] = uniforms[i][0];
@@ -269,8 +272,8 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     }
     if (!pictured) return;
     put_uniform(w, mesh, "subsetFamily:materialBind:familyType", "token", crate_token(&w->crate, "nonOverlapping"));
-    put_subset(w, &part, mesh, children[0], true);
-    put_subset(w, &part, mesh, children[1], false);
+    put_subset(w, &part, mesh, children[0], false);
+    put_subset(w, &part, mesh, children[1], true);
 }
 
 static uint32_t put_group(UsdWriter *w, const char *name, uint32_t parent, const char *const *children, size_t count) {

@@ -109,8 +109,8 @@ static void put_sheet(Root *r, uint32_t sheet) {
         char print[USD_NAME];
         snprintf(print, sizeof print, "print%u", sheet);
         put(r, "            uniform token subsetFamily:materialBind:familyType = \"nonOverlapping\"\n");
-        put_subset(r, "fresh", print);
         put_subset(r, "burnt", "burning");
+        put_subset(r, "fresh", print);
     }
     put(r, "        }\n");
 }

@@ -30,6 +30,9 @@ enum {
 };
 
 #define VDB_MAP "UniformScaleTranslateMap"
+// metadata of the file, by which smoke and flame are told from what it has
+#define VDB_EXTINCTION "extinction_of_soot" ///< m2/kg
+#define VDB_FLAME_UNIT "flame_unit"         ///< W/m3
 
 /// The grids of a file, in its order. `vel` is `velocity` by the name that Houdini looks for: it shares the tree.
 typedef enum VdbField { VDB_DENSITY, VDB_FLAME, VDB_TEMPERATURE, VDB_VELOCITY, VDB_FIELDS } VdbField;
@@ -47,7 +50,7 @@ static const VdbFieldInfo vdb_fields[VDB_FIELDS] = {
 };
 
 static inline float *vdb_field(const Gas *gas, VdbField field) {
-    float *const arrays[VDB_FIELDS] = {gas->smoke, gas->flame, gas->temperature, (float *)gas->velocity};
+    float *const arrays[VDB_FIELDS] = {gas->extinction, gas->flame_share, gas->temperature, (float *)gas->velocity};
     return arrays[field];
 }
 

@@ -9,7 +9,7 @@ typedef struct Reader {
     const char *name;
     const uint8_t *begin, *at, *end;
     Gas *gas;
-    double time;
+    double time, extinction, flame_unit;
     SingeError *error;
 } Reader;
 
@@ -83,6 +83,8 @@ static SingeResult read_metadata(Reader *r, bool of_file) {
         Reader value = *r;
         r->at += size;
         if (of_file && is(name, "time") && is(type, "double") && size == 8) r->time = get_double(&value);
+        if (of_file && is(name, VDB_EXTINCTION) && is(type, "double") && size == 8) r->extinction = get_double(&value);
+        if (of_file && is(name, VDB_FLAME_UNIT) && is(type, "double") && size == 8) r->flame_unit = get_double(&value);
         if (of_file && is(name, "size") && is(type, "vec3i") && size == 12)
             for (int c = 0; c < 3; c++) r->gas->view.size[c] = get_u32(&value);
     }
@@ -98,6 +100,8 @@ static SingeResult read_head(Reader *r) {
     r->time = (double)NAN;
     TRY(read_metadata(r, true));
     if (!isfinite(r->time) || !gas_cells(&r->gas->view)) return vdb_read_bad(r, "not a gas of Singe: no time or no size");
+    if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
+        return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
     r->gas->view.cell = 1; // the grids tell
     if (!gas_shape_is_good(&r->gas->view)) return vdb_read_bad(r, "more cells than a gas can have");
     if (get_u32(r) != VDB_FIELDS + 1) return vdb_read_bad(r, "other grids than those of Singe");
@@ -213,7 +217,7 @@ static SingeResult read_all(Reader *r) {
     TRY(read_head(r));
     TRY(gas_make(r->gas, r->name, 0, r->error));
     for (int f = 0; f < VDB_FIELDS; f++) TRY(read_grid(r, (VdbField)f));
-    return SINGE_OK;
+    return gas_decode(r->gas) ? SINGE_OK : vdb_read_bad(r, "a value is not finite");
 }
 
 SingeResult vdb_read_gas(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Gas *gas,

@@ -76,6 +76,13 @@ static void put_triple(Writer *w, const char *name, const uint32_t value[3]) {
     for (int c = 0; c < 3; c++) put_u32(w, value[c]);
 }
 
+static void put_number(Writer *w, const char *name, double value) {
+    put_string(w, name);
+    put_string(w, "double");
+    put_u32(w, 8);
+    put_double(w, value);
+}
+
 static void put_header(Writer *w, double time) {
     put_u64(w, VDB_MAGIC);
     put_u32(w, VDB_VERSION);
@@ -83,13 +90,12 @@ static void put_header(Writer *w, double time) {
     put_u32(w, VDB_LIBRARY_MINOR);
     put_bytes(w, "\1", 1);
     put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
-    put_u32(w, 3);
+    put_u32(w, 5);
     put_text(w, "creator", "Singe " SINGE_VERSION);
     put_triple(w, "size", w->gas->view.size);
-    put_string(w, "time");
-    put_string(w, "double");
-    put_u32(w, 8);
-    put_double(w, time);
+    put_number(w, "time", time);
+    put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
+    put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
     put_u32(w, VDB_FIELDS + 1);
 }
 

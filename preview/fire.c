@@ -11,7 +11,6 @@
 #include <string.h>
 
 #define BURNING 2e6f       ///< W/m3, q0
-#define EXTINCTION 8700.0f ///< m2/kg
 #define FLAME_SEEN 0.085f  ///< less is below the edge of a flame wherever noise puts it
 #define SMOKE_SEEN 0.08f   ///< 1/m
 
@@ -24,7 +23,7 @@ static size_t fire_at(const Fire *fire, int x, int y, int z) {
 static void fill_cell(const SingeGas *gas, size_t from, FireCell *cell, float source[3]) {
     float flame = gas->flame[from], smoke = gas->smoke[from], up = maxf(gas->velocity[from][2], 0.1f);
     source[2] = flame > 0 ? flame / (flame + BURNING) : 0;
-    cell->smoke = smoke > 0 ? EXTINCTION * smoke : 0;
+    cell->smoke = smoke > 0 ? GAS_EXTINCTION * smoke : 0;
     for (int c = 0; c < 2; c++) source[c] = clampf(gas->velocity[from][c] / up, -1, 1);
 }
 

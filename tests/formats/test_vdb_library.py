@@ -25,6 +25,7 @@ def check(size):
     head = [float(word) for word in lines[0].split()]
     origin, cell = head[3:6], head[6]
     assert metadata["time"] == 0.125 and tuple(metadata["size"]) == size, metadata
+    assert metadata["extinction_of_soot"] == 8700 and metadata["flame_unit"] == 1e7, metadata
     assert metadata["creator"].startswith("Singe "), metadata
     assert sorted(grid.name for grid in grids) == ["density", "flame", "temperature", "vel", "velocity"]
     for grid in list(grids) + list(alone.values()):
