@@ -110,18 +110,26 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     return SINGE_ERROR_MEMORY;
 }
 
-SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, Progress progress,
-                             SceneHash hash, const Totals *totals, SingeError *error) {
-    uint8_t *bytes;
-    size_t size;
-    SingeResult result = singe_sim_save(sim, &bytes, &size);
+SingeResult checkpoint_take(SingeSim *sim, CheckpointBytes *taken, SingeError *error) {
+    SingeResult result = singe_sim_save(sim, &taken->bytes, &taken->size);
     if (result) {
+        *taken = (CheckpointBytes){0};
         *error = *singe_sim_error(sim);
-        return result;
     }
-    uint8_t *grown = allocator.resize(allocator.context, bytes, size, size + sizeof(Trailer));
+    return result;
+}
+
+void checkpoint_drop(SingeSim *sim, CheckpointBytes *taken) {
+    if (taken->bytes) singe_sim_free_bytes(sim, taken->bytes, taken->size);
+    *taken = (CheckpointBytes){0};
+}
+
+SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, CheckpointBytes *taken,
+                             Progress progress, SceneHash hash, const Totals *totals, SingeError *error) {
+    size_t size = taken->size;
+    uint8_t *grown = allocator.resize(allocator.context, taken->bytes, size, size + sizeof(Trailer));
     if (!grown) {
-        singe_sim_free_bytes(sim, bytes, size);
+        checkpoint_drop(sim, taken);
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
         return SINGE_ERROR_MEMORY;
     }
@@ -130,10 +138,11 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     memcpy(trailer.magic, checkpoint_magic, sizeof trailer.magic);
     trailer.checksum = hash_bytes(hash_bytes(hash_start, grown, size), &trailer, offsetof(Trailer, checksum));
     memcpy(grown + size, &trailer, sizeof trailer);
-    result = file_write(folder->checkpoint, grown, size + sizeof trailer, error);
+    SingeResult result = file_write(folder->checkpoint, grown, size + sizeof trailer, error);
     // given back as it came: the library counts what it lent
     uint8_t *shrunk = allocator.resize(allocator.context, grown, size + sizeof trailer, size);
-    singe_sim_free_bytes(sim, shrunk ? shrunk : grown, size);
+    taken->bytes = shrunk ? shrunk : grown;
+    checkpoint_drop(sim, taken);
     return result;
 }
 

@@ -24,9 +24,20 @@ typedef struct Progress {
     int frame, step;
 } Progress;
 
+/// A snapshot that has been taken and not been written yet.
+typedef struct CheckpointBytes {
+    uint8_t *bytes; ///< NULL: none
+    size_t size;
+} CheckpointBytes;
+
+SINGE_NODISCARD SingeResult checkpoint_take(SingeSim *sim, CheckpointBytes *taken, SingeError *error);
+
+/// Writes what was taken, with where the run was then. What was taken is gone afterwards, also when this fails.
 SINGE_NODISCARD SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator,
-                                             Progress progress, SceneHash hash, const Totals *totals,
-                                             SingeError *error);
+                                             CheckpointBytes *taken, Progress progress, SceneHash hash,
+                                             const Totals *totals, SingeError *error);
+
+void checkpoint_drop(SingeSim *sim, CheckpointBytes *taken);
 
 typedef struct Checkpoint {
     Progress progress; ///< frame 0: there is no checkpoint

@@ -63,7 +63,7 @@ static ExitCode parse_options(int argc, char **argv, RunOptions *options, bool *
 static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     run->record.result = "interrupted";
     // before the first frame stands there is nothing to go on from
-    return progress.frame > 0 ? run_write_checkpoint(run, progress, true, error) : SINGE_OK;
+    return progress.frame > 0 ? run_write_checkpoint(run, progress, error) : SINGE_OK;
 }
 
 static void show_progress(Run *run, int frame, const SingeStats *stats, double seconds) {
@@ -79,22 +79,43 @@ static void note_strain(Run *run, int frame, const SingeStats *stats) {
     if (stats->strain_p99 > fmax(strain_max, run->strain)) run->strain = stats->strain_p99, run->strained = frame;
 }
 
+/// Ends the frame in writing, if any, and says so.
+static SingeResult end_frame(Run *run, SingeError *error) {
+    int frame = run->writing.frame;
+    SingeStats stats;
+    SingeResult result = run_end_frame(run, &stats, error);
+    if (result || !frame) return result;
+    note_strain(run, frame, &stats);
+    double now = console_clock();
+    show_progress(run, frame, &stats, now - run->frame_ended);
+    run->frame_ended = now;
+    return SINGE_OK;
+}
+
+/// Steps to a frame; meanwhile the one before it is written, and is whole when this returns.
+static SingeResult reach_frame(Run *run, int frame, SingeError *error) {
+    SingeError step_error;
+    SingeResult stepped = frame > 1 ? run_advance(run, &step_error) : SINGE_OK;
+    SingeResult result = end_frame(run, error);
+    if (result || !stepped) return result;
+    *error = step_error;
+    return stepped;
+}
+
 /// Ctrl-C ends it between two steps.
 static SingeResult run_frames(Run *run, SingeError *error) {
     int frames = run->job.scene->frames;
+    run->frame_ended = console_clock();
     for (int frame = run->first; frame <= frames; frame++) {
-        double begun = console_clock();
-        SingeStats stats;
-        SingeResult result = frame > 1 ? run_advance(run, error) : SINGE_OK;
+        SingeResult result = reach_frame(run, frame, error);
         if (!result && frame > 1 && run->step < run->job.scene->steps)
             return stop(run, (Progress){frame - 1, run->step}, error);
-        if (!result) result = run_write_frame(run, frame, &stats, error);
-        if (!result) note_strain(run, frame, &stats);
-        bool last = frame == frames, asked = interrupt_asked();
+        bool last = frame == frames;
+        if (!result) result = run_begin_frame(run, frame, last, error);
+        bool asked = interrupt_asked();
+        if (!result && (asked || last)) result = end_frame(run, error);
         if (!result && asked && !last) return stop(run, (Progress){frame, 0}, error);
-        if (!result) result = run_write_checkpoint(run, (Progress){frame, 0}, last, error);
         if (result) return result;
-        show_progress(run, frame, &stats, console_clock() - begun);
     }
     run->record.result = "complete";
     return SINGE_OK;

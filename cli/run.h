@@ -3,6 +3,8 @@
 #ifndef CLI_RUN_H
 #define CLI_RUN_H
 
+#include <pthread.h>
+
 #include "cli/checkpoint.h"
 #include "cli/folder.h"
 #include "cli/frame_files.h"
@@ -27,6 +29,23 @@ typedef struct FrameFile {
 } FrameFile;
 enum { FRAME_FILES_MAX = 3 + OUTPUT_COUNT };
 
+/// A frame whose files are being written and whose picture is being drawn, in a thread of its own, while the simulation
+/// steps on to the next.
+typedef struct FrameWriting {
+    int frame; ///< 0: none
+    bool threaded;
+    pthread_t thread;
+    // as they were at the frame
+    SingeStats stats;
+    Totals totals;
+    FrameCost cost;
+    CheckpointBytes checkpoint;
+    // of the thread
+    double output_seconds[TOTAL_OUTPUT_COUNT];
+    SingeResult result;
+    SingeError error;
+} FrameWriting;
+
 /// A run in progress.
 typedef struct Run {
     Console *console;
@@ -40,13 +59,15 @@ typedef struct Run {
     Outputs outputs;
     FrameFile files[FRAME_FILES_MAX];
     int file_count;
+    FrameWriting writing;
     StatsFile stats;
     Record record;
     Totals *totals;             ///< the record's
     SingeTimers timers;         ///< as last read
     SceneHash hash;
     double started, wall_before; ///< s, clock at the start and time spent before a resumption
-    double checkpoint_time, checkpoint_cost, frame_seconds;
+    double checkpoint_time, checkpoint_cost;
+    double frame_ended, frame_seconds; ///< s, clock at the end of the last frame, and what one takes
     int first;                  ///< frame to begin with
     int step;                   ///< steps that are done of the frame in hand
     int strained;               ///< the frame in which most is stretched by more than half; 0
@@ -73,10 +94,15 @@ SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeErro
 /// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.
 SINGE_NODISCARD SingeResult run_advance(Run *run, SingeError *error);
 
-/// Writes all files of a frame and its line.
-SINGE_NODISCARD SingeResult run_write_frame(Run *run, int frame, SingeStats *stats, SingeError *error);
+/// Takes the frame that the simulation is at, and a snapshot when a checkpoint is due, as after the last frame, and
+/// begins to write its files. The first frame of a run is written at once.
+SINGE_NODISCARD SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error);
 
-/// Writes a checkpoint when one is due, or must be.
-SINGE_NODISCARD SingeResult run_write_checkpoint(Run *run, Progress progress, bool must, SingeError *error);
+/// Waits until the files of the frame in writing are there; then its line and its checkpoint follow. Nothing where none
+/// is in writing. `stats` are the frame's.
+SINGE_NODISCARD SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error);
+
+/// Writes a checkpoint of now. No frame is in writing.
+SINGE_NODISCARD SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error);
 
 #endif

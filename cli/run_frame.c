@@ -1,9 +1,14 @@
 // A frame of a run. Its order is PLY, other formats, VDB, PNG, line of stats.csv, roots and checkpoint: whatever a
 // checkpoint stands for is on the disk. The first one of a run from the start is written under temporary names, so that
 // an earlier run stays until it is whole.
+//
+// The others are written and drawn in a thread of their own while the simulation steps on: from a copy of the surface and
+// the gas, and with the numbers and the snapshot that were taken at the frame. A frame is whole before the next one is
+// taken, so at most one is in writing. With one thread all is done in turn.
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/initial.h"
 #include "cli/interrupt.h"
@@ -54,11 +59,11 @@ SingeResult run_advance(Run *run, SingeError *error) {
     return SINGE_OK;
 }
 
-/// Adds the time since *clock to one of the totals and moves the clock on.
-static void charge(Run *run, int total, double *clock) {
-    double now = console_clock();
-    run->totals->output_seconds[total] += now - *clock;
+/// Moves the clock on to now.
+static double seconds_since(double *clock) {
+    double now = console_clock(), seconds = now - *clock;
     *clock = now;
+    return seconds;
 }
 
 // ---- files
@@ -100,9 +105,8 @@ static SingeResult write_surface(Run *run, int frame, SingeError *error) {
 
 static SingeResult write_gas(Run *run, int frame, SingeError *error) {
     const char *name;
-    SingeResult result = frame_take_gas(run->sim, &run->frame, error);
-    if (result || !run_parts(run).gas) return result;
-    result = file_begin(run, folder_vdb(&run->folder, frame), &name, error);
+    if (run->frame.gas.view.size[0] <= 0) return SINGE_OK;
+    SingeResult result = file_begin(run, folder_vdb(&run->folder, frame), &name, error);
     return result ? result : vdb_write_gas(name, &run->frame.gas, run->frame.time, error);
 }
 
@@ -116,20 +120,32 @@ static SingeResult write_picture(Run *run, int frame, SingeError *error) {
     return result ? result : frame_write_picture(run->pictures, rgb, png, exr, error);
 }
 
-static SingeResult write_files(Run *run, int frame, FrameCost *cost, SingeError *error) {
-    double begun = console_clock(), clock = begun;
+/// What runs beside the simulation: it touches neither that nor the totals.
+static void *write_files(void *argument) {
+    Run *run = argument;
+    FrameWriting *writing = &run->writing;
+    double begun = console_clock(), clock = begun, *seconds = writing->output_seconds;
+    SingeResult result = write_surface(run, writing->frame, &writing->error);
+    if (!result) result = write_gas(run, writing->frame, &writing->error);
+    seconds[TOTAL_PLY] += seconds_since(&clock);
+    if (!result) result = write_picture(run, writing->frame, &writing->error);
+    seconds[TOTAL_PREVIEW] += seconds_since(&clock);
+    writing->cost.output += 1e3 * (clock - begun);
+    writing->result = result;
+    return NULL;
+}
+
+/// Copies what the files are made of.
+static SingeResult take_frame(Run *run, SingeError *error) {
+    FrameCost *cost = &run->writing.cost;
+    double clock = console_clock();
     SingeResult result = frame_take_surface(run->sim, &run->frame, error);
-    cost->surface = 1e3 * (console_clock() - begun);
-    charge(run, TOTAL_SURFACE, &clock);
-    if (!result) result = write_surface(run, frame, error);
-    if (!result) result = write_gas(run, frame, error);
-    charge(run, TOTAL_PLY, &clock);
-    if (!result) result = write_picture(run, frame, error);
-    charge(run, TOTAL_PREVIEW, &clock);
-    cost->output = 1e3 * (clock - begun);
+    double seconds = seconds_since(&clock);
+    cost->surface = cost->output = 1e3 * seconds;
+    run->totals->output_seconds[TOTAL_SURFACE] += seconds;
     cost->triangles = run->record.triangles = run->frame.surface.triangle_count;
     cost->fine_triangles = run->record.fine_triangles = run->frame.surface.fine_triangle_count;
-    return result;
+    return result ? result : frame_take_gas(run->sim, &run->frame, error);
 }
 
 /// Tells of what crosses in the first frame: it has no side to be kept on.
@@ -146,33 +162,94 @@ static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     return SINGE_OK;
 }
 
-SingeResult run_write_frame(Run *run, int frame, SingeStats *stats, SingeError *error) {
-    FrameCost cost;
-    read_timers(run, &cost);
-    SingeResult result = write_files(run, frame, &cost, error);
-    *stats = singe_sim_stats(run->sim);
-    run->totals->hottest = fmax(run->totals->hottest, (double)stats->temperature_max);
-    if (!result && frame == 1) result = tell_of_crossings(run, error);
-    if (!result && !run->begun) result = run_take_over(run, error);
-    files_end(run);
-    if (!result) result = stats_write(&run->stats, frame, stats, run->totals, &cost, error);
-    if (!result) run->record.frames_done = frame, run->step = 0;
+// ---- checkpoints
+
+static bool checkpoint_due(const Run *run) {
+    double since = console_clock() - run->checkpoint_time;
+    return since >= run->checkpoint_cost * (1 / checkpoint_share - 1) || since >= checkpoint_every;
+}
+
+/// The time that this takes is what the next one waits for.
+static SingeResult take_checkpoint(Run *run, CheckpointBytes *taken, SingeError *error) {
+    double clock = console_clock();
+    SingeResult result = checkpoint_take(run->sim, taken, error);
+    run->checkpoint_cost = seconds_since(&clock);
     return result;
 }
 
-SingeResult run_write_checkpoint(Run *run, Progress progress, bool must, SingeError *error) {
-    FrameCost cost; // of steps without a frame as yet
-    double begun = console_clock(), clock = begun, since = begun - run->checkpoint_time;
-    if (!must && since < run->checkpoint_cost * (1 / checkpoint_share - 1) && since < checkpoint_every) return SINGE_OK;
-    read_timers(run, &cost);
-    run->totals->wall_seconds = run->wall_before + begun - run->started;
+static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress progress, Totals *totals,
+                                    SingeError *error) {
+    double clock = console_clock();
+    totals->wall_seconds = run->wall_before + clock - run->started;
+    memcpy(totals->output_seconds, run->totals->output_seconds, sizeof totals->output_seconds);
     SingeResult result = stats_sync(&run->stats, error);
     if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
-        result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, progress, run->hash, run->totals,
+        result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash, totals,
                                   error);
-    charge(run, TOTAL_CHECKPOINT, &clock);
+    run->checkpoint_cost += seconds_since(&clock);
     run->checkpoint_time = clock;
-    run->checkpoint_cost = clock - begun;
+    run->totals->output_seconds[TOTAL_CHECKPOINT] += run->checkpoint_cost;
+    return result;
+}
+
+SingeResult run_write_checkpoint(Run *run, Progress progress, SingeError *error) {
+    CheckpointBytes taken = {0};
+    FrameCost cost; // of steps without a frame as yet
+    read_timers(run, &cost);
+    SingeResult result = take_checkpoint(run, &taken, error);
+    if (!result) result = write_checkpoint(run, &taken, progress, run->totals, error);
+    checkpoint_drop(run->sim, &taken);
+    return result;
+}
+
+// ---- a frame
+
+static void start_writing(Run *run) {
+    FrameWriting *writing = &run->writing;
+    bool beside = run->begun && run->job.hooks.thread_count != 1;
+    writing->threaded = beside && pthread_create(&writing->thread, NULL, write_files, run) == 0;
+    if (!writing->threaded) write_files(run); // also where a thread cannot be had
+}
+
+SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
+    FrameWriting *writing = &run->writing;
+    *writing = (FrameWriting){.frame = frame};
+    run->step = 0;
+    read_timers(run, &writing->cost);
+    SingeResult result = take_frame(run, error);
+    writing->stats = singe_sim_stats(run->sim);
+    run->totals->hottest = fmax(run->totals->hottest, (double)writing->stats.temperature_max);
+    if (!result && frame == 1) result = tell_of_crossings(run, error);
+    if (!result && (last || checkpoint_due(run))) result = take_checkpoint(run, &writing->checkpoint, error);
+    writing->totals = *run->totals;
+    if (result) writing->frame = 0;
+    else start_writing(run);
+    return result;
+}
+
+static SingeResult join_files(Run *run, SingeError *error) {
+    FrameWriting *writing = &run->writing;
+    if (writing->threaded) pthread_join(writing->thread, NULL);
+    for (int i = 0; i < TOTAL_OUTPUT_COUNT; i++) run->totals->output_seconds[i] += writing->output_seconds[i];
+    SingeResult result = writing->result;
+    if (result) *error = writing->error;
+    if (!result && !run->begun) result = run_take_over(run, error);
+    files_end(run);
+    return result;
+}
+
+SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
+    FrameWriting *writing = &run->writing;
+    int frame = writing->frame;
+    if (!frame) return SINGE_OK;
+    SingeResult result = join_files(run, error);
+    writing->frame = 0;
+    *stats = writing->stats;
+    if (!result) result = stats_write(&run->stats, frame, stats, &writing->totals, &writing->cost, error);
+    if (!result) run->record.frames_done = frame;
+    if (!result && writing->checkpoint.bytes)
+        result = write_checkpoint(run, &writing->checkpoint, (Progress){frame, 0}, &writing->totals, error);
+    checkpoint_drop(run->sim, &writing->checkpoint);
     return result;
 }
