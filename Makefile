@@ -22,7 +22,7 @@ MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 PRESET ?= release
 
-.PHONY: all demo test check check-examples gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all demo test check check-examples check-clients gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
@@ -77,6 +77,10 @@ check-examples: build
 # real models of some packages, which are got into build/gate, burnt and verified: docs/meshes.md has the table
 gate: build
 	tests/gate/gate.py --singe build/cli/singe --folder build/gate --least 210 --failed 0
+
+# other programs, which are installed into build/clients, on what a burn leaves: docs/usd.md and others have the table
+check-clients: build
+	tests/clients/check.sh build/cli/singe build/clients
 
 # every allocation, write, open, ... of whole commands fails once: hours; Ctrl-C ends it with its table
 torture:

@@ -3,7 +3,7 @@
 //
 // An ember of temperature T gives off, at a wavelength l, exp(-c2 / (l T)) with c2 = 14388 um K (Wien): red 0.61 um,
 // green 0.55 um, blue 0.465 um.
-#include "burn_colour.h"
+#include "formats/burn_colour.h"
 
 #include <math.h>
 

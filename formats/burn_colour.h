@@ -2,7 +2,7 @@
 #ifndef FORMATS_BURN_COLOUR_H
 #define FORMATS_BURN_COLOUR_H
 
-#include "output.h"
+#include "formats/output.h"
 
 /// Below these a vertex looks as it did at the start: K, highest so far; burn progress.
 #define BURN_COLOUR_PEAK 348.0f

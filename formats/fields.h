@@ -2,7 +2,7 @@
 #ifndef FORMATS_FIELDS_H
 #define FORMATS_FIELDS_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 #include <stddef.h>
 #include <string.h>

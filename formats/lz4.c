@@ -2,7 +2,7 @@
 // one; 15 goes on in bytes up to one below 255), the literals, and the match's distance back (u16). The last sequence
 // has literals alone, at least 5, and no match begins in the last 12 bytes. Matches are found by a table of where each
 // hash of 4 bytes came last; what does not match is passed faster and faster.
-#include "lz4.h"
+#include "formats/lz4.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "output.h"
+#include "formats/output.h"
 
 #define OUTPUT_ROW(name, ...) {#name, __VA_ARGS__},
 const OutputFormat output_formats[OUTPUT_COUNT] = {OUTPUT_FORMATS(OUTPUT_ROW)};

@@ -4,7 +4,7 @@
 #ifndef FORMATS_OUTPUT_H
 #define FORMATS_OUTPUT_H
 
-#include "formats.h"
+#include "formats/formats.h"
 
 /// A frame as writers get it.
 typedef struct OutputFrame {
@@ -66,6 +66,9 @@ SINGE_NODISCARD SingeResult usd_write_frame(const char *path, const OutputScene 
                                             SingeError *error);
 SINGE_NODISCARD SingeResult usd_write_root(const char *path, const OutputScene *scene, SingeError *error);
 
+SINGE_NODISCARD SingeResult glb_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                            SingeError *error);
+
 typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                      SingeError *error);
 typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, SingeError *error);
@@ -75,7 +78,8 @@ typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, 
 #define OUTPUT_FORMATS(ROW)                                   \
     ROW(ply, ".ply", ply_write_frame, NULL, NULL)             \
     ROW(usd, ".usdc", usd_write_frame, ".usda", usd_write_root) \
-    ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root)
+    ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root) \
+    ROW(glb, ".glb", glb_write_frame, NULL, NULL)
 
 #define OUTPUT_ENUMERATOR(name, ...) OUTPUT_##name,
 enum { OUTPUT_FORMATS(OUTPUT_ENUMERATOR) OUTPUT_COUNT };

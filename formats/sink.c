@@ -1,6 +1,6 @@
-#include "sink.h"
+#include "formats/sink.h"
 
-#include "number.h"
+#include "formats/number.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef FORMATS_SINK_H
 #define FORMATS_SINK_H
 
-#include "formats.h"
+#include "formats/formats.h"
 #include "formats/store.h"
 
 typedef struct Sink {

@@ -1,4 +1,4 @@
-#include "usd.h"
+#include "formats/usd.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #ifndef FORMATS_USD_H
 #define FORMATS_USD_H
 
-#include "output.h"
+#include "formats/output.h"
 
 enum { USD_NAME = 160 };
 

@@ -1,6 +1,6 @@
-#include "usd_crate.h"
+#include "formats/usd_crate.h"
 
-#include "lz4.h"
+#include "formats/lz4.h"
 
 #include <string.h>
 

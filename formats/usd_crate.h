@@ -12,7 +12,7 @@
 #ifndef FORMATS_USD_CRATE_H
 #define FORMATS_USD_CRATE_H
 
-#include "sink.h"
+#include "formats/sink.h"
 
 typedef uint64_t CrateValue;
 

@@ -2,113 +2,52 @@
 // the root's value clips can take them, and complete enough to be opened alone.
 //
 // Vertices of a sheet keep their order. Colours are indexed: they are rounded to 5, 6 and 5 bits of their square roots.
-#include "burn_colour.h"
-#include "fields.h"
-#include "usd.h"
-#include "usd_crate.h"
+#include "formats/burn_colour.h"
+#include "formats/fields.h"
+#include "formats/sheet_parts.h"
+#include "formats/usd.h"
+#include "formats/usd_crate.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { ATTRIBUTES_MOST = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
 
-/// Vertices and triangles by sheet, each in the surface's order.
-typedef struct Parts {
-    uint32_t *vertex_first, *triangle_first; ///< [sheet_count + 1]
-    uint32_t *vertices, *triangles;          ///< by sheet
-    uint32_t *local;                         ///< [vertex_count] a vertex's number in its sheet
-} Parts;
-
 typedef struct UsdWriter {
     Crate crate;
     const OutputScene *scene;
     const SingeSurface *surface;
     CrateValue time;
-    Parts parts;
+    SheetParts parts;
     float *gathered;   ///< [3 * vertex_count]
     int32_t *numbers;  ///< [3 * triangle_count and vertex_count at least]
     int32_t *palette;  ///< [COLOURS] index of a colour, -1: none
     size_t number_count;
 } UsdWriter;
 
-// ---- parts
-
-static bool parts_make(UsdWriter *w) {
+static bool writer_make(UsdWriter *w) {
     const SingeSurface *s = w->surface;
     const SingeAllocator a = s->allocator;
-    const size_t sheets = w->scene->sheet_count;
     w->number_count = 3 * (size_t)s->triangle_count > s->vertex_count ? 3 * (size_t)s->triangle_count : s->vertex_count;
-    w->parts = (Parts){store_new(a, sheets + 1, 4), store_new(a, sheets + 1, 4), store_new(a, s->vertex_count, 4),
-                       store_new(a, s->triangle_count, 4), store_new(a, s->vertex_count, 4)};
     w->gathered = store_new(a, s->vertex_count, 12);
     w->numbers = store_new(a, w->number_count, 4);
     w->palette = store_new(a, COLOURS, 4);
-    return w->parts.vertex_first && w->parts.triangle_first && w->parts.vertices && w->parts.triangles &&
-           w->parts.local && w->gathered && w->numbers && w->palette;
+    return w->gathered && w->numbers && w->palette;
 }
 
 static void writer_free(UsdWriter *w) {
     const SingeSurface *s = w->surface;
     const SingeAllocator a = s->allocator;
-    const size_t sheets = w->scene->sheet_count;
-    store_free(a, w->parts.vertex_first, sheets + 1, 4), store_free(a, w->parts.triangle_first, sheets + 1, 4);
-    store_free(a, w->parts.vertices, s->vertex_count, 4), store_free(a, w->parts.triangles, s->triangle_count, 4);
-    store_free(a, w->parts.local, s->vertex_count, 4), store_free(a, w->gathered, s->vertex_count, 12);
+    sheet_parts_free(&w->parts);
+    store_free(a, w->gathered, s->vertex_count, 12);
     store_free(a, w->numbers, w->number_count, 4), store_free(a, w->palette, COLOURS, 4);
     crate_free(&w->crate);
 }
 
-/// Sorts 0 to count - 1 by sheet. first[sheet_count] is how many there are.
-static void sort_by_sheet(const UsdWriter *w, const int32_t *sheets, const uint32_t (*triangles)[3], uint32_t count,
-                          uint32_t *first, uint32_t *sorted) {
-    const uint32_t sheet_count = w->scene->sheet_count;
-    memset(first, 0, (sheet_count + 1) * sizeof *first);
-    for (uint32_t i = 0; i < count; i++) first[sheets[triangles ? triangles[i][0] : i] + 1]++;
-    for (uint32_t i = 0; i < sheet_count; i++) first[i + 1] += first[i];
-    for (uint32_t i = 0; i < count; i++) sorted[first[sheets[triangles ? triangles[i][0] : i]]++] = i;
-    memmove(first + 1, first, sheet_count * sizeof *first);
-    first[0] = 0;
-}
-
-static SingeResult parts_fill(UsdWriter *w, const char *path, SingeError *error) {
-    const SingeSurface *s = w->surface;
-    for (uint32_t v = 0; v < s->vertex_count; v++)
-        if (s->sheet[v] < 0 || (uint32_t)s->sheet[v] >= w->scene->sheet_count)
-            return refuse(error, SINGE_ERROR_FORMAT, "usd", v, "%s: vertex %u is of sheet %d; the scene has %u",
-                          short_name(path), v, (int)s->sheet[v], w->scene->sheet_count);
-    for (uint32_t t = 0; t < s->triangle_count; t++)
-        for (int k = 1; k < 3; k++)
-            if (s->sheet[s->triangles[t][k]] != s->sheet[s->triangles[t][0]])
-                return refuse(error, SINGE_ERROR_FORMAT, "usd", t, "%s: triangle %u is of two sheets", short_name(path),
-                              t);
-    sort_by_sheet(w, s->sheet, NULL, s->vertex_count, w->parts.vertex_first, w->parts.vertices);
-    sort_by_sheet(w, s->sheet, (const uint32_t(*)[3])s->triangles, s->triangle_count, w->parts.triangle_first,
-                  w->parts.triangles);
-    for (uint32_t i = 0; i < s->vertex_count; i++) {
-        const uint32_t v = w->parts.vertices[i];
-        w->parts.local[v] = i - w->parts.vertex_first[s->sheet[v]];
-    }
-    return SINGE_OK;
-}
-
 // ---- values
 
-/// A sheet's vertices.
-typedef struct Part {
-    uint32_t sheet, count;
-    const uint32_t *vertices;
-    uint32_t triangle_count;
-    const uint32_t *triangles;
-} Part;
-
-static Part part_of(const UsdWriter *w, uint32_t sheet) {
-    const Parts *p = &w->parts;
-    return (Part){sheet, p->vertex_first[sheet + 1] - p->vertex_first[sheet], p->vertices + p->vertex_first[sheet],
-                  p->triangle_first[sheet + 1] - p->triangle_first[sheet], p->triangles + p->triangle_first[sheet]};
-}
-
 /// A sheet's values of 4 bytes, `width` a vertex: in place where they follow each other, as those of one sheet do.
-static const void *gather(UsdWriter *w, const Part *part, const void *values, int width) {
+static const void *gather(UsdWriter *w, const SheetPart *part, const void *values, int width) {
     const uint32_t *v = part->vertices;
     if (!part->count) return values;
     const uint32_t *from = values;
@@ -118,12 +57,12 @@ static const void *gather(UsdWriter *w, const Part *part, const void *values, in
     return to;
 }
 
-static CrateValue put_vectors(UsdWriter *w, const Part *part, const void *values, int width) {
+static CrateValue put_vectors(UsdWriter *w, const SheetPart *part, const void *values, int width) {
     return crate_floats(&w->crate, width, gather(w, part, values, width), part->count);
 }
 
 /// The colours that occur, and of each vertex which.
-static void put_colours(UsdWriter *w, const Part *part, CrateValue *palette, CrateValue *indices) {
+static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
     uint32_t found = 0;
     memset(w->palette, 0xff, COLOURS * sizeof *w->palette);
     for (uint32_t i = 0; i < part->count; i++) {
@@ -148,7 +87,7 @@ static void put_colours(UsdWriter *w, const Part *part, CrateValue *palette, Cra
 }
 
 /// What of it glows: the dark and as many steps as occur.
-static void put_embers(UsdWriter *w, const Part *part, CrateValue *palette, CrateValue *indices) {
+static void put_embers(UsdWriter *w, const SheetPart *part, CrateValue *palette, CrateValue *indices) {
     float colours[EMBER_STEPS][3];
     int32_t entries[EMBER_STEPS], found = 0;
     memset(entries, 0xff, sizeof entries);
@@ -165,7 +104,7 @@ static void put_embers(UsdWriter *w, const Part *part, CrateValue *palette, Crat
     *indices = crate_ints(&w->crate, w->numbers, part->count);
 }
 
-static void put_faces(UsdWriter *w, const Part *part, CrateValue *counts, CrateValue *indices) {
+static void put_faces(UsdWriter *w, const SheetPart *part, CrateValue *counts, CrateValue *indices) {
     for (uint32_t i = 0; i < part->triangle_count; i++) w->numbers[i] = 3;
     *counts = crate_ints(&w->crate, w->numbers, part->triangle_count);
     for (uint32_t i = 0; i < part->triangle_count; i++)
@@ -174,7 +113,7 @@ static void put_faces(UsdWriter *w, const Part *part, CrateValue *counts, CrateV
     *indices = crate_ints(&w->crate, w->numbers, 3 * (size_t)part->triangle_count);
 }
 
-static CrateValue put_extent(UsdWriter *w, const Part *part) {
+static CrateValue put_extent(UsdWriter *w, const SheetPart *part) {
     float box[2][3] = {{0}};
     for (uint32_t i = 0; i < part->count; i++)
         for (int c = 0; c < 3; c++) {
@@ -202,7 +141,7 @@ static void put_uniform(UsdWriter *w, uint32_t prim, const char *name, const cha
 }
 
 /// Faces whose corners all look as at the start, or the others.
-static void put_subset(UsdWriter *w, const Part *part, uint32_t mesh, const char *name, bool fresh) {
+static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const char *name, bool fresh) {
     const SingeSurface *s = w->surface;
     size_t count = 0;
     for (uint32_t i = 0; i < part->triangle_count; i++) {
@@ -228,7 +167,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     static const char *const uniforms[][2] = {
         {"subdivisionScheme", "none"}, {"orientation", "rightHanded"}, {"doubleSided", NULL}};
     const SingeSurface *s = w->surface;
-    const Part part = part_of(w, sheet);
+    const SheetPart part = sheet_part(&w->parts, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
     const char *names[ATTRIBUTES_MOST + 4];
     // the first is that of all faces where a program binds no subsets, such as Blender from the second frame on
@@ -323,7 +262,8 @@ SingeResult usd_write_frame(const char *path, const OutputScene *scene, const Ou
     UsdWriter writer = {.scene = scene, .surface = frame->surface};
     crate_begin(&writer.crate, frame->surface->allocator);
     sink_reserve(&writer.crate.sink, 4096 + 96 * (size_t)frame->surface->vertex_count); // mostly enough
-    SingeResult result = parts_make(&writer) ? parts_fill(&writer, path, error) : refuse_memory(error, "usd", path);
+    SingeResult result = sheet_parts_make(&writer.parts, frame->surface, scene->sheet_count, path, error);
+    if (!result && !writer_make(&writer)) result = refuse_memory(error, "usd", path);
     if (!result) result = put_stage(&writer, frame->number, path, error);
     writer_free(&writer);
     return result;

@@ -1,10 +1,10 @@
 // The root of the USD format, as text: a stage that takes sheets from the frames by value clips, gas from the VDB files,
 // and has the camera, the lights, the ground, colliders with their motion and materials. What is given to the lights
 // is what the preview gives to its own, in units in which white paper under them is nearly white.
-#include "burn_colour.h"
-#include "fields.h"
-#include "sink.h"
-#include "usd.h"
+#include "formats/burn_colour.h"
+#include "formats/fields.h"
+#include "formats/sink.h"
+#include "formats/usd.h"
 
 #include <math.h>
 #include <stdio.h>

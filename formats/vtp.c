@@ -1,9 +1,9 @@
 // VTK's XML files of polygons, with their arrays appended raw, and the collection of them (ParaView, VTK, PyVista).
 //
 // Each array is its length in bytes (u64) and its values, little-endian; an XML element says where it begins.
-#include "fields.h"
-#include "output.h"
-#include "sink.h"
+#include "formats/fields.h"
+#include "formats/output.h"
+#include "formats/sink.h"
 
 typedef struct VtpArray {
     const char *name, *type;

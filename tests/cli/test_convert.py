@@ -1,5 +1,6 @@
 """Formats for other programs: written while running, from the cache, and after a resumption, with the same bytes."""
 
+import json
 import os
 import re
 import struct
@@ -8,7 +9,7 @@ import xml.etree.ElementTree as xml
 
 from support import Case
 
-FORMATS = {"usd": ".usda", "vtp": ".pvd"}  # and the ending of their roots; None: no root
+FORMATS = {"usd": ".usda", "vtp": ".pvd", "glb": None}  # and the ending of their roots; None: no root
 
 
 class Convert(Case):
@@ -74,15 +75,51 @@ class Convert(Case):
             file.truncate(2000)
         self.assertIn("tiny.0002.ply", self.singe("convert", self.path("o"), "--to", "vtp", expect=2)[1])
 
-    def test_vtp_holds_the_cache(self):
-        """Every number of the appended arrays is the PLY's."""
-        self.run_formats("o", "--frames", "6")
-        ply = open(self.path("o", "ply", "tiny.0006.ply"), "rb").read()
-        header, body = ply.split(b"end_header\n", 1)
+    def cache(self, out, frame):
+        """A PLY's header, number of vertices and columns by name."""
+        with open(self.path(out, "ply", "tiny.%04d.ply" % frame), "rb") as file:
+            header, body = file.read().split(b"end_header\n", 1)
         names = re.findall(r"property (float|int) (\w+)", header.decode())
         count = int(re.search(rb"element vertex (\d+)", header).group(1))
         rows = list(struct.iter_unpack("<" + "".join(kind[0] for kind, _ in names), body[: 100 * count]))
-        column = {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}
+        return header, count, {name: [row[i] for row in rows] for i, (_, name) in enumerate(names)}
+
+    def test_glb_holds_the_cache(self):
+        self.run_formats("o", "--frames", "6")
+        _, count, column = self.cache("o", 6)
+        with open(self.path("o", "glb", "tiny.0006.glb"), "rb") as file:
+            glb = file.read()
+        magic, version, size, text_size, _ = struct.unpack_from("<4s4I", glb)
+        self.assertEqual((magic, version, size), (b"glTF", 2, len(glb)))
+        stage = json.loads(glb[20 : 20 + text_size])
+        data = glb[28 + text_size :]
+        self.assertEqual(stage["buffers"][0]["byteLength"], len(data))
+
+        def values(accessor):
+            accessor = stage["accessors"][accessor]
+            width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
+            begin = stage["bufferViews"][accessor["bufferView"]]["byteOffset"]
+            return struct.unpack_from("<%df" % (width * accessor["count"]), data, begin)
+
+        primitive, = (mesh["primitives"][0] for mesh in stage["meshes"])
+        for name, accessor in primitive["attributes"].items():
+            if name[1:].lower() in column:
+                self.assertEqual(list(values(accessor)), [float(x) for x in column[name[1:].lower()]], name)
+        at = values(primitive["attributes"]["POSITION"])
+        self.assertEqual(len(at), 3 * count)
+        # y is up
+        self.assertEqual((list(at[0::3]), list(at[1::3]), list(at[2::3])), (column["x"], column["z"], [-y for y in column["y"]]))
+        low = stage["accessors"][primitive["attributes"]["POSITION"]]["min"]
+        self.assertEqual(struct.pack("<3f", *low), struct.pack("<3f", *(min(at[i::3]) for i in range(3))))
+        # Singe takes it for a mesh, too
+        with open(self.path("again.yaml"), "w") as file:
+            file.write("sheets: [{mesh: o/glb/tiny.0001.glb, up: y}]\npreview: {size: [64, 48], samples: 1}\ngas: no\n")
+        self.singe("check", self.path("again.yaml"), "--frames", "1")
+
+    def test_vtp_holds_the_cache(self):
+        """Every number of the appended arrays is the PLY's."""
+        self.run_formats("o", "--frames", "6")
+        header, count, column = self.cache("o", 6)
         vtp = open(self.path("o", "vtp", "tiny.0006.vtp"), "rb").read()
         text, data = vtp.split(b'<AppendedData encoding="raw">\n_', 1)
         root = xml.fromstring(text.decode() + "</VTKFile>")
@@ -102,7 +139,7 @@ class Convert(Case):
             for i, name in enumerate(vectors.get(array.get("Name"), array.get("Name")).split()):
                 self.assertEqual(list(values[i::width]), column[name], name)
                 checked += 1
-        self.assertEqual(checked, len(names))
+        self.assertEqual(checked, len(column))
         times = [float(item.get("timestep")) for item in xml.parse(self.path("o", "tiny.pvd")).iter("DataSet")]
         self.assertEqual(times, [frame / 24 for frame in range(6)])
         self.assertEqual(root.find("PolyData/FieldData/DataArray").text, re.search(r"time (\S+)", header.decode()).group(1))

@@ -1,0 +1,126 @@
+"""A burn by Singe in Blender (PyPI's bpy): every value, the camera, blur from velocities, and pictures to look at.
+
+usage: blender.py SINGE FOLDER    FOLDER is emptied; its pictures are sheet.png, gas.png and preview.png, Singe's own
+"""
+
+import math
+import os
+import shutil
+import sys
+
+import bpy
+import numpy as np
+
+from burn import CHECKED, FRAMES, SCALARS, Frame, make, same
+
+SHEETS = ("leaf", "strip")
+
+
+def open_root(root):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    # Blender takes a distant light four times as bright as OpenUSD says
+    bpy.ops.wm.usd_import(filepath=root, light_intensity_scale=0.25)
+    scene = bpy.context.scene
+    scene.camera = bpy.data.objects["camera"]
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising = 8, False
+    scene.render.resolution_x, scene.render.resolution_y = 480, 270
+    scene.view_settings.view_transform = "Standard"
+    scene.world = bpy.data.worlds.new("sky")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.08, 0.095, 0.12, 1)
+    return scene
+
+
+def values(mesh, name, width, kind):
+    """An attribute as an array; vectors by their components."""
+    attribute = mesh.attributes[name]
+    array = np.empty(width * len(attribute.data), kind)
+    attribute.data.foreach_get("vector" if width > 1 else "value", array)
+    return array.reshape(-1, width) if width > 1 else array
+
+
+def check_values(scene, out):
+    for frame in range(1, FRAMES + 1):
+        scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        for sheet, name in enumerate(SHEETS):
+            mesh = bpy.data.objects[name].evaluated_get(graph).data
+            cache = Frame(out, frame, sheet=sheet)
+            assert len(mesh.vertices) == len(cache.rows) and len(mesh.polygons) == len(cache.triangles), (name, frame)
+            if frame not in CHECKED:
+                continue
+            for attribute in SCALARS:
+                kind = np.int32 if attribute in ("piece_id", "vertex_id", "sheet") else np.float32
+                same(values(mesh, attribute, 1, kind), cache.column(attribute), (name, frame, attribute))
+            same(values(mesh, "position", 3, np.float32), cache.stack("x y z"), (name, frame, "position"))
+            same(values(mesh, "velocity", 3, np.float32), cache.stack("vx vy vz"), (name, frame, "velocity"))
+            same(values(mesh, "rest", 3, np.float32), cache.stack("rest_x rest_y rest_z"), (name, frame, "rest"))
+            corners = np.empty(3 * len(mesh.polygons), np.int32)
+            mesh.loops.foreach_get("vertex_index", corners)
+            assert (corners.reshape(-1, 3) == cache.triangles).all(), (name, frame, "triangles")
+            uv = np.empty(2 * len(mesh.loops), np.float32)
+            mesh.attributes["st"].data.foreach_get("vector", uv)
+            same(uv.reshape(-1, 2), cache.stack("s t")[corners], (name, frame, "uv"))
+    print("every value of frames %s, counts of %d" % (CHECKED, FRAMES))
+
+
+def draw(scene, path, blur):
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = blur, 1
+    scene.render.filepath = path
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(path)
+    pixels = np.empty(4 * 480 * 270, np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(270, 480, 4)
+
+
+def give_gas_a_material():
+    """Principled Volume as it comes, with Temperature 1 and the flame for its light."""
+    material = bpy.data.materials.new("gas")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    volume, output = nodes.new("ShaderNodeVolumePrincipled"), nodes.new("ShaderNodeOutputMaterial")
+    flame, times = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeMath")
+    volume.inputs["Temperature"].default_value = 1
+    volume.inputs["Color"].default_value = (0.05, 0.05, 0.05, 1)
+    volume.inputs["Emission Color"].default_value = (1, 0.33, 0.07, 1)
+    flame.attribute_name, times.operation, times.inputs[1].default_value = "flame", "MULTIPLY", 60
+    links.new(flame.outputs["Fac"], times.inputs[0])
+    links.new(times.outputs[0], volume.inputs["Emission Strength"])
+    links.new(volume.outputs[0], output.inputs["Volume"])
+    bpy.data.objects["gas"].data.materials.append(material)
+
+
+def main():
+    singe, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    shutil.rmtree(folder, ignore_errors=True)
+    out = make(singe, folder, ["usd"])
+    shutil.copy(os.path.join(out, "frames", "burn.0018.png"), os.path.join(folder, "preview.png"))
+    scene = open_root(os.path.join(out, "burn.usda"))
+    assert (scene.frame_start, scene.frame_end) == (1, FRAMES)
+    camera = scene.camera
+    assert np.allclose(camera.matrix_world.translation, (0.12, -0.34, 0.2), atol=1e-6)
+    assert abs(math.degrees(2 * math.atan(0.5 * camera.data.sensor_width * 9 / 16 / camera.data.lens)) - 34) < 0.01
+    check_values(scene, out)
+    gas = bpy.data.objects["gas"]
+    scene.frame_set(18)
+    assert gas.data.grids.load() and gas.data.grids.frame_filepath.endswith("burn.0018.vdb")
+    gas.hide_render = True
+    sharp = draw(scene, os.path.join(folder, "sheet.png"), False)
+    blurred = draw(scene, os.path.join(folder, "blur.png"), True)
+    difference = float(np.abs(blurred - sharp)[..., :3].mean())
+    again = float(np.abs(draw(scene, os.path.join(folder, "again.png"), False) - sharp)[..., :3].mean())
+    print("motion blur changes the picture by %.5f on average; drawing it again by %.5f" % (difference, again))
+    assert difference > 1e-4 and again == 0
+    gas.hide_render = False
+    give_gas_a_material()
+    lit = draw(scene, os.path.join(folder, "gas.png"), False)
+    above = (slice(150, 200), slice(290, 345), slice(0, 3))  # where the strip's flame is
+    print("the flame adds %.3f, %.3f, %.3f there" % tuple((lit - sharp)[above].mean((0, 1))))
+    assert (lit - sharp)[above].mean((0, 1))[0] > 0.05
+    print("Blender %s: pictures in %s" % (bpy.app.version_string, folder))
+
+
+main()

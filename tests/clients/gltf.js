@@ -1,0 +1,82 @@
+// GLB frames of a burn by Singe, looked at by the glTF validator (npm's gltf-validator): no errors, no warnings; and
+// their values against those of the cache, by reading the file here.
+//
+// usage: node gltf.js SINGE FOLDER    FOLDER is emptied; NODE_PATH has gltf-validator
+'use strict';
+const fs = require('fs'), path = require('path'), {execFileSync} = require('child_process');
+const validator = require('gltf-validator');
+
+const [singe, folder] = process.argv.slice(2);
+fs.rmSync(folder, {recursive: true, force: true});
+const make = `import sys; sys.path.insert(0, ${JSON.stringify(__dirname)}); import burn; print(burn.make(sys.argv[1], ` +
+    `sys.argv[2], ["glb"], "--no-preview", "--set", "gas=no"))`;
+const out = execFileSync(process.env.PYTHON || 'python3', ['-c', make, singe, folder]).toString().trim();
+
+function readPly(file) {
+    const bytes = fs.readFileSync(file), end = bytes.indexOf('end_header\n') + 11;
+    const header = bytes.subarray(0, end).toString();
+    const count = Number(/element vertex (\d+)/.exec(header)[1]);
+    const columns = [...header.matchAll(/property (float|int) (\w+)/g)].map(match => [match[2], match[1]]);
+    const frame = {count};
+    columns.forEach(([name, kind], at) => {
+        frame[name] = Array.from({length: count}, (_, i) => {
+            const place = end + 4 * (i * columns.length + at);
+            return kind === 'int' ? bytes.readInt32LE(place) : bytes.readFloatLE(place);
+        });
+    });
+    return frame;
+}
+
+function readGlb(file) {
+    const bytes = fs.readFileSync(file), size = bytes.readUInt32LE(12);
+    const json = JSON.parse(bytes.subarray(20, 20 + size).toString()), data = bytes.subarray(28 + size);
+    const accessor = index => {
+        const a = json.accessors[index], begin = json.bufferViews[a.bufferView].byteOffset;
+        const width = {SCALAR: 1, VEC2: 2, VEC3: 3}[a.type];
+        return Array.from({length: a.count * width}, (_, i) => data.readFloatLE(begin + 4 * i));
+    };
+    return {json, accessor};
+}
+
+function check(frame) {
+    const name = String(frame).padStart(4, '0');
+    const {json, accessor} = readGlb(path.join(out, 'glb', `burn.${name}.glb`));
+    const cache = readPly(path.join(out, 'ply', `burn.${name}.ply`));
+    json.meshes.forEach((mesh, sheet) => {
+        const rows = [...Array(cache.count).keys()].filter(i => cache.sheet[i] === sheet);
+        const primitive = mesh.primitives[0], has = primitive.attributes;
+        const expect = (attribute, values) => {
+            const got = accessor(has[attribute]);
+            if (got.length !== values.length || got.some((value, i) => !Object.is(value + 0, values[i] + 0)))
+                throw new Error(`frame ${frame}, ${mesh.name}: ${attribute} differs`);
+        };
+        expect('POSITION', rows.flatMap(i => [cache.x[i], cache.z[i], -cache.y[i]]));
+        expect('_VELOCITY', rows.flatMap(i => [cache.vx[i], cache.vz[i], -cache.vy[i]]));
+        expect('_REST', rows.flatMap(i => [cache.rest_x[i], cache.rest_z[i], -cache.rest_y[i]]));
+        for (const field of ['temperature', 'temperature_peak', 'mass', 'burn_rate', 'char_fraction', 'ash_fraction',
+                             'burnt', 'time_ignited', 'piece_id', 'vertex_id', 'sheet'])
+            expect('_' + field.toUpperCase(), rows.map(i => cache[field][i]));
+    });
+}
+
+(async () => {
+    const files = fs.readdirSync(path.join(out, 'glb')).sort();
+    let hints = 0;
+    for (const file of files) {
+        const full = path.join(out, 'glb', file);
+        const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(full)), {
+            uri: file,
+            externalResourceFunction: uri => fs.promises.readFile(path.join(out, 'glb', decodeURIComponent(uri)))
+                .then(bytes => new Uint8Array(bytes)),
+        });
+        hints += report.issues.numInfos + report.issues.numHints;
+        if (report.issues.numErrors || report.issues.numWarnings) {
+            console.log(file, JSON.stringify(report.issues.messages.slice(0, 5), null, 1));
+            process.exit(1);
+        }
+    }
+    const frames = [1, 10, 20, 24];
+    frames.forEach(check);
+    console.log(`gltf-validator ${validator.version()}: ${files.length} frames without errors or warnings (${hints} remarks); ` +
+        `every value of frames ${frames}`);
+})().catch(error => { console.log(error); process.exit(1); });
