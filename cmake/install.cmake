@@ -15,7 +15,7 @@ if(NOT BUILD_SHARED_LIBS AND CMAKE_OBJCOPY AND CMAKE_SYSTEM_NAME STREQUAL Linux
   install(SCRIPT cmake/localise.cmake)
 endif()
 set_target_properties(singe PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
-install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.def")
 
 set(singe_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/singe)
 install(EXPORT singeTargets NAMESPACE singe:: DESTINATION ${singe_package_dir})

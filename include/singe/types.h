@@ -85,81 +85,16 @@ typedef enum SingeColour {
     SINGE_COLOUR_COUNT = 4
 } SingeColour;
 
-/// What a sheet is made of and how it burns. Mass is a fraction of the initial mass, 1 unburnt. Every parameter may
-/// vary over the sheet but `thickening`, which is one factor for the whole front, `reference_grammage`, and the choices
-/// `heat_operator` and `ablate`.
+/// What a sheet is made of and how it burns: the rows of singe/material.def, each with its unit, range, default and
+/// documentation. Mass is a fraction of the initial mass, 1 unburnt. A SingeParam may vary over the sheet; the others
+/// have one value for it.
 typedef struct SingeMaterialDef {
     size_t struct_size;
-
-    // body
-    SingeParam grammage;      ///< kg/m2, > 0
-    /// kg/m2, the grammage that diffusivity, layer_exchange, mass_rate and char_rate are stated for, >= 0. Their real
-    /// causes are fluxes per area, so on a sheet of another grammage they are reference_grammage/grammage times as
-    /// large; 0: as stated at any. One for the sheet
-    float reference_grammage;
-    SingeParam specific_heat; ///< J/(kg K), > 0
-    SingeParam thickness;     ///< m, between the two layers of the model, > 0; sets the wrinkles' size
-
-    // heat, eq 1 to 3
-    SingeHeatOperator heat_operator;
-    SingeParam diffusivity;  ///< m2/s, alpha of eq 2, >= 0
-    SingeParam layer_exchange; ///< 1/s, rate at which the two layers' temperatures even out, >= 0 (surface operator)
-    SingeParam convection;   ///< W/(m2 K) a side, >= 0
-    SingeParam emissivity;   ///< 0 to 1
-    SingeParam loss_mass_floor; ///< the losses' rate is divided by max(mass, this), > 0 to 1
-    float thickening;        ///< front thickening F >= 1, or 0 for the smallest that the cells need; one for the sheet
-    SingeParam temperature;  ///< K, at the start, > 0
-
-    // burning, eq 1 and 4 to 6
-    SingeParam ignition_temperature; ///< K, > 0
-    SingeParam heat_of_combustion;   ///< J for a kg that burns, >= 0
-    SingeParam heat_share; ///< of it what stays in the sheet, 0 to 1: eta of eq 1 is share * heat/specific_heat in K
-    SingeParam mass_rate;            ///< 1/(K s), mu of eq 4, >= 0
-    /// K above ignition where eq 4's rate stops growing: air limits it, > 0; INFINITY is the paper
-    SingeParam rate_ceiling;
-    SingeParam ash_exponent;         ///< p >= 0; eq 4 times ((m - m_min)/(1 - m_min))^p; 0 is the paper
-    SingeParam mass_min;             ///< fraction that never burns, m_min, 0 to < 1
-    SingeParam mass_loss;            ///< fraction below which it is gone, m_loss, 0 to < 1; under m_min: stays whole
-    SingeParam ash_density;          ///< rho at m_min over rho_init, > 0
-    /// Fraction of the initial mass that pyrolysis leaves as char, 0 to < 1, which then glows away to m_min. At or below
-    /// m_min there is no char, and one reaction goes down to m_min: the paper's eq 4
-    SingeParam char_yield;
-    SingeParam char_density;         ///< rho of char over rho_init, > 0
-    SingeParam char_heat;            ///< J for a kg of char that goes to CO2, in the sheet, >= 0
-    SingeParam char_rate;            ///< 1/s, at which air at an edge can burn hot char, >= 0
-    SingeParam char_air;             ///< share of char_rate within a leaf, away from edges and ash, 0 to 1
-    SingeParam shrink_front;         ///< how much of eq 6's shrinkage the front (centre) layer takes, 0 to 2
-    /// the same for the back (corner) layer; the sheet curls towards the layer that shrinks more
-    SingeParam shrink_back;
-    SingeParam fibre_angle;          ///< rad, of the fibres from the direction of growing u, towards growing v
-    SingeParam fibre_shrink;         ///< shrinkage across the fibres over that along them, 0.1 to 10; 1: no fibres
-    bool ablate;                     ///< false: nothing is removed (Fig 4 b)
-
-    // mechanics, eq 8 to 19
-    SingeParam weight[SINGE_COLOUR_COUNT]; ///< W of eq 19 by colour, 0 to 1
-    SingeParam compliance[SINGE_COLOUR_COUNT]; ///< m/N per spring, >= 0
-    SingeParam char_weight;                ///< factor on the weight of what is burnt to m_min, 0 to 1
-    SingeParam drag;                       ///< coefficient of the air's quadratic drag on the normal velocity, >= 0
-    SingeParam damping;                    ///< 1/s, of all velocities, >= 0
-    /// m, where solver.creases: bending beyond this radius is partly plastic, >= 0; 0: never. The model is thicker than
-    /// the real sheet, so it creases at proportionally larger radii
-    SingeParam crease_radius;
-    SingeParam crease_share;               ///< plastic share of the curvature beyond that, 0 to 1
-
-    // tearing, where the solver has it on
-    SingeParam strength;      ///< N/m, the line force at which it tears before it burns, > 0, may be INFINITY
-    /// N/m, the same of char (without char: of what is burnt to m_min), > 0; between the two geometric in what is burnt.
-    /// Ash has a twentieth of it
-    SingeParam char_strength;
-
-    /// 1/s, A of Arrhenius kinetics, >= 0: above 0 what can still burn falls at A exp(-E/(R T)) in place of mass_rate
-    /// times the excess over ignition, its order ash_exponent; T counts to rate_ceiling above ignition at most
-    SingeParam pre_exponential;
-    SingeParam activation_energy; ///< J/mol, E, >= 0
-
-    /// 1/m, the sharpest bend beyond the rest shape that the mesh takes where it has not burnt, >= 0 (strand); 0: any.
-    /// Without it thin sheets fold along rows of edges
-    SingeParam curvature_max;
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeParam name;
+#define SINGE_PARAM_BACK SINGE_PARAM
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) SingeParam name[SINGE_COLOUR_COUNT];
+#define SINGE_SCALAR(type, name, standard, text) type name;
+#include "singe/material.def"
 } SingeMaterialDef;
 
 SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);

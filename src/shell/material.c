@@ -1,8 +1,8 @@
-// The parameters of a sheet: a number, or a line between two numbers by a picture, attribute or noise.
+// The parameters of a sheet: a number, or a line between two numbers by a texture, attribute or noise.
 //
-//   value(x) = (1 - f) value + f to,   f = picture(u, v), attribute or noise(rest position)
+//   value(x) = (1 - f) value + f to,   f = texture(u, v), attribute or noise(rest position)
 //
-// At a centre f is the picture at the mean uv, the mean of the corners' attribute, or the noise at the
+// At a centre f is the texture at the mean uv, the mean of the corners' attribute, or the noise at the
 // mean of the corners.
 #include "shell/sheet.h"
 
@@ -25,7 +25,6 @@ typedef struct ParamRule {
     const char *range;
 } ParamRule;
 
-#define FIELD(member) #member, offsetof(SingeMaterialDef, member)
 #define POSITIVE POSITIVE_RANGE, "above 0"
 #define POSITIVE_RANGE 0, INFINITY, true, true
 #define POSITIVE_OR_INFINITE 0, INFINITY, true, false, "above 0"
@@ -36,53 +35,18 @@ typedef struct ParamRule {
 #define TENTH_TO_TEN 0.1f, 10, false, false, "from 0.1 to 10"
 #define UP_TO_ONE 0, 1, false, false, "from 0 to 1"
 #define SHARE_ABOVE_ZERO 0, 1, true, false, "above 0, to 1"
+#define IN_SCENES(range, low, high) range
 
 static const ParamRule param_rules[] = {
-    {FIELD(grammage), PARAM_GRAMMAGE, AT_BOTH, POSITIVE},
-    {FIELD(specific_heat), PARAM_SPECIFIC_HEAT, AT_BOTH, POSITIVE},
-    {FIELD(thickness), PARAM_THICKNESS, AT_BOTH, POSITIVE},
-    {FIELD(diffusivity), PARAM_DIFFUSIVITY, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(layer_exchange), PARAM_LAYER_EXCHANGE, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(convection), PARAM_CONVECTION, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(emissivity), PARAM_EMISSIVITY, AT_BOTH, UP_TO_ONE},
-    {FIELD(loss_mass_floor), PARAM_LOSS_MASS_FLOOR, AT_BOTH, SHARE_ABOVE_ZERO},
-    {FIELD(temperature), PARAM_TEMPERATURE, AT_BOTH, POSITIVE},
-    {FIELD(ignition_temperature), PARAM_IGNITION, AT_BOTH, POSITIVE},
-    {FIELD(heat_of_combustion), PARAM_HEAT_OF_COMBUSTION, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(heat_share), PARAM_HEAT_SHARE, AT_BOTH, UP_TO_ONE},
-    {FIELD(mass_rate), PARAM_MASS_RATE, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(rate_ceiling), PARAM_RATE_CEILING, AT_BOTH, POSITIVE_OR_INFINITE},
-    {FIELD(ash_exponent), PARAM_ASH_EXPONENT, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(mass_min), PARAM_MASS_MIN, AT_BOTH, BELOW_ONE},
-    {FIELD(mass_loss), PARAM_MASS_LOSS, AT_BOTH, BELOW_ONE},
-    {FIELD(ash_density), PARAM_ASH_DENSITY, AT_BOTH, POSITIVE},
-    {FIELD(char_yield), PARAM_CHAR_YIELD, AT_BOTH, BELOW_ONE},
-    {FIELD(char_density), PARAM_CHAR_DENSITY, AT_BOTH, POSITIVE},
-    {FIELD(char_heat), PARAM_CHAR_HEAT, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(char_rate), PARAM_CHAR_RATE, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(char_air), PARAM_CHAR_AIR, AT_BOTH, UP_TO_ONE},
-    {FIELD(shrink_front), PARAM_SHRINK, AT_CENTRES, UP_TO_TWO},
-    {FIELD(shrink_back), PARAM_SHRINK, AT_VERTICES, UP_TO_TWO},
-    {FIELD(fibre_angle), PARAM_FIBRE_ANGLE, AT_BOTH, FINITE},
-    {FIELD(fibre_shrink), PARAM_FIBRE_SHRINK, AT_BOTH, TENTH_TO_TEN},
-    {FIELD(weight[SINGE_RED]), PARAM_WEIGHT + SINGE_RED, AT_BOTH, UP_TO_ONE},
-    {FIELD(weight[SINGE_GREEN]), PARAM_WEIGHT + SINGE_GREEN, AT_BOTH, UP_TO_ONE},
-    {FIELD(weight[SINGE_BLUE]), PARAM_WEIGHT + SINGE_BLUE, AT_BOTH, UP_TO_ONE},
-    {FIELD(weight[SINGE_YELLOW]), PARAM_WEIGHT + SINGE_YELLOW, AT_BOTH, UP_TO_ONE},
-    {FIELD(compliance[SINGE_RED]), PARAM_COMPLIANCE + SINGE_RED, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_GREEN]), PARAM_COMPLIANCE + SINGE_GREEN, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_BLUE]), PARAM_COMPLIANCE + SINGE_BLUE, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(compliance[SINGE_YELLOW]), PARAM_COMPLIANCE + SINGE_YELLOW, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(char_weight), PARAM_CHAR_WEIGHT, AT_BOTH, UP_TO_ONE},
-    {FIELD(drag), PARAM_DRAG, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(damping), PARAM_DAMPING, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(crease_radius), PARAM_CREASE_RADIUS, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(crease_share), PARAM_CREASE_SHARE, AT_BOTH, UP_TO_ONE},
-    {FIELD(strength), PARAM_STRENGTH, AT_BOTH, POSITIVE_OR_INFINITE},
-    {FIELD(char_strength), PARAM_CHAR_STRENGTH, AT_BOTH, POSITIVE},
-    {FIELD(pre_exponential), PARAM_PRE_EXPONENTIAL, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(activation_energy), PARAM_ACTIVATION_ENERGY, AT_BOTH, NOT_NEGATIVE},
-    {FIELD(curvature_max), PARAM_CURVATURE_MAX, AT_VERTICES, NOT_NEGATIVE},
+#define RULE(member, param, where, ...) {#member, offsetof(SingeMaterialDef, member), param, where, __VA_ARGS__},
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) RULE(name, number, where, range)
+#define SINGE_PARAM_BACK SINGE_PARAM
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                      \
+    RULE(name[SINGE_RED], number + SINGE_RED, AT_BOTH, range)                     \
+    RULE(name[SINGE_GREEN], number + SINGE_GREEN, AT_BOTH, range)                 \
+    RULE(name[SINGE_BLUE], number + SINGE_BLUE, AT_BOTH, range)                   \
+    RULE(name[SINGE_YELLOW], number + SINGE_YELLOW, AT_BOTH, range)
+#include "singe/material.def"
 };
 enum { RULE_COUNT = sizeof param_rules / sizeof param_rules[0] };
 
@@ -153,9 +117,9 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
         return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
     switch ((int)param->field) {
     case SINGE_FIELD_TEXTURE:
-        if (!def->uv) return field_fail(field->source, rule, "is a picture but the sheet has no uv", error);
+        if (!def->uv) return field_fail(field->source, rule, "is a texture but the sheet has no uv", error);
         if (param->texture.width < 1 || param->texture.height < 1 || !param->texture.values)
-            return field_fail(field->source, rule, "is an empty picture", error);
+            return field_fail(field->source, rule, "is an empty texture", error);
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
     case SINGE_FIELD_NOISE:

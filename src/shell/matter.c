@@ -25,43 +25,14 @@
 /// The Field of a parameter, or of what it is turned into (matter_value); NULL for those that masses and capacities are
 /// made of.
 static Field *matter_field(Matter *matter, int param) {
-    if (param >= PARAM_COMPLIANCE) return &matter->compliance[param - PARAM_COMPLIANCE];
-    if (param >= PARAM_WEIGHT) return &matter->weight[param - PARAM_WEIGHT];
-    Field *const fields[PARAM_WEIGHT] = {
-        [PARAM_THICKNESS] = &matter->thickness,
-        [PARAM_DIFFUSIVITY] = &matter->diffusivity,
-        [PARAM_TEMPERATURE] = &matter->temperature,
-        [PARAM_IGNITION] = &matter->ignition_temperature,
-        [PARAM_HEAT_SHARE] = &matter->heating,
-        [PARAM_HEAT_OF_COMBUSTION] = &matter->gas_heat,
-        [PARAM_MASS_RATE] = &matter->mass_rate,
-        [PARAM_ASH_EXPONENT] = &matter->ash_exponent,
-        [PARAM_MASS_MIN] = &matter->mass_min,
-        [PARAM_MASS_LOSS] = &matter->mass_loss,
-        [PARAM_ASH_DENSITY] = &matter->ash_density,
-        [PARAM_CHAR_YIELD] = &matter->char_yield,
-        [PARAM_CHAR_DENSITY] = &matter->char_density,
-        [PARAM_CHAR_HEAT] = &matter->char_heating,
-        [PARAM_CHAR_RATE] = &matter->char_rate,
-        [PARAM_CHAR_AIR] = &matter->char_air,
-        [PARAM_SHRINK] = &matter->shrink,
-        [PARAM_FIBRE_ANGLE] = &matter->fibre_angle,
-        [PARAM_FIBRE_SHRINK] = &matter->fibre_shrink,
-        [PARAM_LAYER_EXCHANGE] = &matter->layer_exchange,
-        [PARAM_CONVECTION] = &matter->convection,
-        [PARAM_EMISSIVITY] = &matter->emissivity,
-        [PARAM_LOSS_MASS_FLOOR] = &matter->loss_mass_floor,
-        [PARAM_RATE_CEILING] = &matter->rate_ceiling,
-        [PARAM_CHAR_WEIGHT] = &matter->char_weight,
-        [PARAM_DRAG] = &matter->drag,
-        [PARAM_DAMPING] = &matter->damping,
-        [PARAM_CREASE_RADIUS] = &matter->crease_radius,
-        [PARAM_CREASE_SHARE] = &matter->crease_share,
-        [PARAM_STRENGTH] = &matter->strength,
-        [PARAM_CHAR_STRENGTH] = &matter->char_strength,
-        [PARAM_PRE_EXPONENTIAL] = &matter->pre_exponential,
-        [PARAM_ACTIVATION_ENERGY] = &matter->activation_energy,
-        [PARAM_CURVATURE_MAX] = &matter->curvature_max,
+    Field *const fields[PARAM_COUNT] = {
+#define MATTER(field) &matter->field
+#define MATTER_NONE NULL
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) [number] = field,
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                                                \
+    [number] = &matter->name[0], [number + 1] = &matter->name[1], [number + 2] = &matter->name[2],          \
+    [number + 3] = &matter->name[3],
+#include "singe/material.def"
     };
     return fields[param];
 }

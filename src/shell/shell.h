@@ -45,41 +45,14 @@ typedef struct Matter {
     float *mass;               ///< kg, initial
     float *capacity;           ///< J/K, of the unburnt particle
     Field capacity_ratio;      ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
-    Field thickness;           ///< m
-    Field diffusivity;         ///< m2/s; this, layer_exchange and mass_rate are in proportion to 1/grammage
-    Field layer_exchange;      ///< 1/s
-    Field convection;          ///< W/(m2 K)
-    Field emissivity;
-    Field loss_mass_floor;
-    Field ignition_temperature; ///< K
-    Field heating;             ///< K per mass fraction, eta of eq 1
-    Field gas_heat;            ///< J per kg burnt, what of its heat the sheet does not keep
-    Field mass_rate;           ///< 1/(K s)
-    Field rate_ceiling;        ///< K, may be infinite
-    Field pre_exponential;     ///< 1/s; 0: mass_rate holds
-    Field activation_energy;   ///< J/mol
-    Field ash_exponent;
-    Field mass_min;
-    Field mass_loss;
-    Field ash_density;
-    Field char_yield;          ///< m_min or more
-    Field char_density;
-    Field char_heating;        ///< K per mass fraction of char, at unit mass
-    Field char_rate;           ///< 1/s; in proportion to 1/grammage as mass_rate is
-    Field char_air;
-    Field shrink;              ///< of its own layer
-    Field fibre_angle;         ///< rad
-    Field fibre_shrink;        ///< across over along
-    Field weight[SINGE_COLOUR_COUNT];
-    Field compliance[SINGE_COLOUR_COUNT]; ///< m/N
-    Field char_weight;
-    Field strength, char_strength; ///< N/m, line force at which it tears, fresh and as char
-    Field drag;
-    Field damping;             ///< 1/s
-    Field crease_radius;       ///< m
-    Field crease_share;
-    Field curvature_max;       ///< 1/m, 0: none
-    Field temperature;         ///< K, initial
+    // what the rows of singe/material.def give: the parameter, or what matter_value makes of several
+#define MATTER(field) Field field;
+#define MATTER_NONE
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) field
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) Field name[SINGE_COLOUR_COUNT];
+#include "singe/material.def"
+#undef MATTER
+#undef MATTER_NONE
     uint16_t *sheet;
 } Matter;
 
@@ -122,21 +95,18 @@ typedef struct Shell {
     uint32_t moved[SINGE_COLOUR_COUNT]; ///< springs that a split has given another end, or made, at most
 } Shell;
 
-/// The parameters that vary over a sheet, in the order of SheetSource.value.
+/// The parameters that vary over a sheet, in the order of SheetSource.value, which snapshots have.
 typedef enum ShellParam {
-    PARAM_THICKNESS, PARAM_DIFFUSIVITY, PARAM_TEMPERATURE, PARAM_IGNITION, PARAM_HEAT_OF_COMBUSTION,
-    PARAM_HEAT_SHARE, PARAM_MASS_RATE, PARAM_ASH_EXPONENT, PARAM_MASS_MIN, PARAM_MASS_LOSS, PARAM_ASH_DENSITY,
-    PARAM_CHAR_YIELD, PARAM_CHAR_DENSITY, PARAM_CHAR_HEAT, PARAM_CHAR_RATE, PARAM_CHAR_AIR,
-    PARAM_SHRINK, PARAM_FIBRE_ANGLE, PARAM_FIBRE_SHRINK, PARAM_GRAMMAGE, PARAM_SPECIFIC_HEAT, PARAM_LAYER_EXCHANGE,
-    PARAM_CONVECTION, PARAM_EMISSIVITY,
-    PARAM_LOSS_MASS_FLOOR, PARAM_RATE_CEILING, PARAM_CHAR_WEIGHT, PARAM_DRAG, PARAM_DAMPING,
-    PARAM_CREASE_RADIUS, PARAM_CREASE_SHARE,
-    PARAM_STRENGTH, PARAM_CHAR_STRENGTH, PARAM_PRE_EXPONENTIAL, PARAM_ACTIVATION_ENERGY,
-    PARAM_CURVATURE_MAX,
-    PARAM_WEIGHT, // four, by colour
-    PARAM_COMPLIANCE = PARAM_WEIGHT + SINGE_COLOUR_COUNT, // four
-    PARAM_COUNT = PARAM_COMPLIANCE + SINGE_COLOUR_COUNT
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) PARAM_##NAME = number,
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) PARAM_##NAME = number, // four, by colour
+#include "singe/material.def"
 } ShellParam;
+enum {
+    PARAM_COUNT = 0
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) + 1
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) + SINGE_COLOUR_COUNT
+#include "singe/material.def"
+};
 
 /// A sheet as it was added: the mesh and its evaluated material, kept for saving and for the build. The
 /// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.

@@ -11,49 +11,13 @@ SingeParam singe_param(float value) {
 static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
-        .grammage = singe_param(0.080f),
-        .reference_grammage = 0.080f,
-        .specific_heat = singe_param(1400),
-        .thickness = singe_param(1e-3f),
-        .heat_operator = SINGE_HEAT_SURFACE,
-        .diffusivity = singe_param(3.4e-6f),
-        .layer_exchange = singe_param(36),
-        .convection = singe_param(14),
-        .emissivity = singe_param(0.9f),
-        .loss_mass_floor = singe_param(0.15f),
-        .thickening = 0,
-        .temperature = singe_param(293.15f),
-        .ignition_temperature = singe_param(513.15f),
-        .heat_of_combustion = singe_param(16e6f),
-        .heat_share = singe_param(0.25f),
-        .mass_rate = singe_param(9e-3f),
-        .rate_ceiling = singe_param(260),
-        .ash_exponent = singe_param(0.5f),
-        .mass_min = singe_param(0.15f),
-        // the flame opens holes where it is above char_yield, embers do where it is above mass_min, elsewhere ash stays
-        .mass_loss = {.value = 0, .to = 0.45f, .field = SINGE_FIELD_NOISE, .noise = {0.025f, 5, 7}},
-        .ash_density = singe_param(0.22f),
-        .char_yield = singe_param(0.35f),
-        .char_density = singe_param(0.45f),
-        .char_heat = singe_param(25e6f),
-        .char_rate = {.value = 1, .to = 2.8f, .field = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}},
-        .char_air = singe_param(0.05f),
-        // the front, which the flame heats, shrinks more in the mean, in patches of 5 cm that curl this way and that
-        .shrink_front = {.value = 0.5f, .to = 1.7f, .field = SINGE_FIELD_NOISE, .noise = {0.05f, 2, 2}},
-        .shrink_back = singe_param(0.8f),
-        .fibre_angle = singe_param(0.43633231f), // 25 degrees
-        .fibre_shrink = singe_param(2),
-        .ablate = true,
-        .char_weight = singe_param(0.8f),
-        .drag = singe_param(1.3f),
-        .damping = singe_param(0.5f),
-        .crease_radius = singe_param(15e-3f),
-        .crease_share = singe_param(0.8f),
-        .strength = singe_param(100),
-        .char_strength = {.value = 1, .to = 10, .field = SINGE_FIELD_NOISE, .noise = {0.015f, 4, 3}},
-        .pre_exponential = singe_param(0), // eq 4
-        .activation_energy = singe_param(0),
-        .curvature_max = singe_param(390),
+#define EVEN(value) singe_param(value)
+#define NOISE(from, to_, scale, octaves, seed) \
+    {.value = (from), .to = (to_), .field = SINGE_FIELD_NOISE, .noise = {scale, octaves, seed}}
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) .name = standard,
+#define SINGE_PARAM_BACK SINGE_PARAM
+#define SINGE_SCALAR(type, name, standard, text) .name = standard,
+#include "singe/material.def"
     };
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         def.weight[colour] = singe_param(1);

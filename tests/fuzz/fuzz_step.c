@@ -82,15 +82,12 @@ static bool sketch_mesh(Input *input, Mesh *mesh) {
 
 static void vary_material(Input *input, SingeMaterialDef *material) {
     static const size_t params[] = {
-#define AT(member) offsetof(SingeMaterialDef, member)
-        AT(grammage), AT(specific_heat), AT(thickness), AT(diffusivity), AT(layer_exchange), AT(convection),
-        AT(emissivity), AT(loss_mass_floor), AT(temperature), AT(ignition_temperature), AT(heat_of_combustion),
-        AT(heat_share), AT(mass_rate), AT(rate_ceiling), AT(ash_exponent), AT(mass_min), AT(mass_loss),
-        AT(ash_density), AT(shrink_front), AT(shrink_back), AT(fibre_angle), AT(fibre_shrink), AT(weight[0]),
-        AT(weight[3]), AT(compliance[0]), AT(compliance[1]), AT(compliance[2]), AT(compliance[3]), AT(char_weight),
-        AT(drag), AT(damping), AT(crease_radius), AT(crease_share), AT(strength), AT(char_strength),
-        AT(pre_exponential), AT(activation_energy)
-#undef AT
+#define SINGE_PARAM(number, NAME, name, ...) offsetof(SingeMaterialDef, name),
+#define SINGE_PARAM_BACK SINGE_PARAM
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) \
+    offsetof(SingeMaterialDef, name[0]), offsetof(SingeMaterialDef, name[1]), offsetof(SingeMaterialDef, name[2]), \
+    offsetof(SingeMaterialDef, name[3]),
+#include "singe/material.def"
     };
     for (unsigned k = input_pick(input, 8); k > 0; k--) {
         size_t at = params[input_pick(input, sizeof params / sizeof *params)];

@@ -44,7 +44,7 @@ static void test_picture(void **state) {
     refuse(&square.def, -1, "no uv");
     square.def.uv = square.uv[0];
     square.def.material.thickness.texture.width = 0;
-    refuse(&square.def, -1, "empty picture");
+    refuse(&square.def, -1, "empty texture");
     static const float broken[] = {0, NAN};
     square.def.material.thickness.texture = (SingeTexture){2, 1, broken};
     refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
