@@ -9,7 +9,7 @@ FUZZ_SECONDS ?= 30
 DEMO_DIR ?= out/letter
 
 # tests that measure, for a minute or more under a sanitizer, on code that others go through there
-MEASURING = bending|cli_paper|cli_materials|cli_bench|heat_front
+MEASURING = bending|cli_paper|cli_paper_parts|cli_materials|cli_bench|heat_front
 # check-examples has them, isotropy and cli_paper_all: together they would take longer than all the rest
 LONG_EXAMPLES = HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall
 

@@ -484,7 +484,7 @@ class SameBytes(Example):
     """Any number of threads, and a run that is killed and goes on, give the same cache."""
 
     NAME = "letter"
-    FRAMES = ("--frames", "40")
+    FRAMES = ("--frames", "32")
 
     def setUp(self):
         Case.setUp(self)
@@ -496,7 +496,7 @@ class SameBytes(Example):
             self.assertEqual(self.plys("1"), self.plys(threads))
             self.assertEqual(self.numbers("1"), self.numbers(threads))
         seed = int(time.time())
-        frame = random.Random(seed).randrange(3, 36)
+        frame = random.Random(seed).randrange(3, 28)
         with self.subTest(seed=seed, frame=frame):
             scene = os.path.join(EXAMPLES, self.NAME, self.NAME + ".yaml")
             run = self.start("run", scene, "-o", self.path("killed"), "--no-preview", "--threads", "2", *self.FRAMES)

@@ -41,7 +41,7 @@ colliders:
 gas: no
 """
 
-FRAMES = 9 if SANITIZED else 25
+FRAMES = 5 if SANITIZED else 25
 
 SCALE = {"millimetres": 0.001}
 TURN = {"y-up": 110}
