@@ -2,7 +2,7 @@
 #ifndef PREVIEW_FIRE_H
 #define PREVIEW_FIRE_H
 
-#include "preview/vec3.h"
+#include "preview/render_math.h"
 #include "singe/sim.h"
 
 #include <stddef.h>

@@ -2,7 +2,7 @@
 #ifndef PREVIEW_NOISE_H
 #define PREVIEW_NOISE_H
 
-#include "preview/vec3.h"
+#include "preview/render_math.h"
 
 #include <stdint.h>
 

@@ -1,31 +1,18 @@
-// Three floats: what a renderer needs of vectors.
-#ifndef PREVIEW_VEC3_H
-#define PREVIEW_VEC3_H
+// What a renderer needs of vectors and numbers beside common/float3.h.
+#ifndef PREVIEW_RENDER_MATH_H
+#define PREVIEW_RENDER_MATH_H
 
-#include <math.h>
+#include "common/float3.h"
+
 #include <stdbool.h>
 
-typedef struct Float3 { float x, y, z; } Float3;
-
-static inline Float3 float3(float x, float y, float z) { return (Float3){x, y, z}; }
-static inline Float3 float3_load(const float *p) { return (Float3){p[0], p[1], p[2]}; }
-static inline Float3 float3_add(Float3 a, Float3 b) { return (Float3){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static inline Float3 float3_sub(Float3 a, Float3 b) { return (Float3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static inline Float3 float3_mul(Float3 a, Float3 b) { return (Float3){a.x * b.x, a.y * b.y, a.z * b.z}; }
-static inline Float3 float3_scale(Float3 a, float s) { return (Float3){a.x * s, a.y * s, a.z * s}; }
-/// a + b s
-static inline Float3 float3_mad(Float3 a, Float3 b, float s) { return (Float3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
 static inline Float3 float3_mix(Float3 a, Float3 b, float s) { return float3_mad(a, float3_sub(b, a), s); }
 /// (1 - u - v) a + u b + v c
 static inline Float3 float3_blend(const float *a, const float *b, const float *c, float u, float v) {
     float w = 1 - u - v;
     return float3(w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
 }
-static inline float float3_dot(Float3 a, Float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline Float3 float3_cross(Float3 a, Float3 b) {
-    return (Float3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-static inline float float3_length(Float3 a) { return sqrtf(float3_dot(a, a)); }
 /// The unit vector along a, or `otherwise` when a has no direction.
 static inline Float3 float3_unit_or(Float3 a, Float3 otherwise) {
     float l2 = float3_dot(a, a);
