@@ -3,7 +3,9 @@
 #define SINGE_SINGE_H
 
 #include "singe/base.h"
+#include "singe/material.h"
 #include "singe/types.h"
+#include "singe/surface.h"
 #include "singe/sim.h"
 #include "singe/research.h"
 

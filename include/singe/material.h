@@ -1,0 +1,93 @@
+/// Singe: materials, and what their parameters follow over a sheet.
+#ifndef SINGE_MATERIAL_H
+#define SINGE_MATERIAL_H
+
+#include "singe/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A grey texture over the uv square. Rows run from the top (v = 1) to the bottom (v = 0); sampled
+/// bilinearly, clamped at the border.
+typedef struct SingeTexture {
+    int width, height;   ///< pixels, at least 1 each
+    const float *values; ///< [height * width], 0 black to 1 white
+} SingeTexture;
+
+/// Seeded value noise in [0, 1], evaluated at the rest position.
+typedef struct SingeNoise {
+    float scale;    ///< m, the size of its largest features, > 0
+    int octaves;    ///< 1 to 8, each half the size and half the strength of the one before
+    uint32_t seed;  ///< any
+} SingeNoise;
+
+/// A named value per vertex of a sheet's mesh.
+typedef struct SingeAttribute {
+    const char *name;    ///< that a SingeParam refers to
+    const float *values; ///< [vertex_count] any; 0 gives a parameter's `value`, 1 its `to`
+} SingeAttribute;
+
+typedef enum SingeFieldKind {
+    SINGE_FIELD_NONE = 0,
+    SINGE_FIELD_TEXTURE = 1,
+    SINGE_FIELD_ATTRIBUTE = 2,
+    SINGE_FIELD_NOISE = 3,
+} SingeFieldKind;
+
+/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, the
+/// straight line between (and beyond, for an attribute outside [0, 1]). Without a field: `value`.
+/// Centres of cells take a texture or noise at their own position and the mean of their corners'
+/// attributes.
+typedef struct SingeParam {
+    float value;           ///< in the parameter's unit and range, as `to` and all between
+    float to;              ///< needs a field; finite
+    SingeFieldKind field;
+    SingeTexture texture;  ///< needs the sheet's uv
+    const char *attribute; ///< the name of one of the sheet's attributes
+    SingeNoise noise;
+} SingeParam;
+
+/// A parameter with the same value everywhere.
+SINGE_API SingeParam singe_param(float value);
+
+/// The discrete Laplacian of the heat equation.
+typedef enum SingeHeatOperator {
+    SINGE_HEAT_SURFACE = 0,  ///< finite volumes in each layer and a conductance through the thickness
+    SINGE_HEAT_UMBRELLA = 1, ///< the paper's scale-dependent umbrella over all springs, eq 3
+} SingeHeatOperator;
+
+/// Spring colours of the body-centred square, in the paper's order.
+typedef enum SingeColour {
+    SINGE_RED = 0,    ///< centre to corner
+    SINGE_GREEN = 1,  ///< centre to centre
+    SINGE_BLUE = 2,   ///< corner to corner along the mesh's edges
+    SINGE_YELLOW = 3, ///< the diagonals of a cell
+    SINGE_COLOUR_COUNT = 4
+} SingeColour;
+
+/// What a sheet is made of and how it burns: the rows of singe/material.def, each with its unit, range, default and
+/// documentation. Mass is a fraction of the initial mass, 1 unburnt. A SingeParam may vary over the sheet; the others
+/// have one value for it.
+typedef struct SingeMaterialDef {
+    size_t struct_size;
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeParam name;
+#define SINGE_PARAM_BACK SINGE_PARAM
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) SingeParam name[SINGE_COLOUR_COUNT];
+#define SINGE_SCALAR(type, name, standard, text) type name;
+#include "singe/material.def"
+} SingeMaterialDef;
+
+SINGE_API void singe_init_material(SingeMaterialDef *def, size_t struct_size);
+
+/// 80 g/m2 office paper at its real pace.
+static inline SingeMaterialDef singe_default_material(void) {
+    SingeMaterialDef def;
+    singe_init_material(&def, sizeof def);
+    return def;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
