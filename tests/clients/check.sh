@@ -10,7 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 python=${PYTHON:-python3}
 failed=0
 
-# environment NAME PACKAGE...: a Python of its own with these packages
+# environment NAME PACKAGE...: a Python of its own, made by $python, with these packages
 environment() {
     local name=$1
     shift
@@ -44,7 +44,20 @@ else
     failed=1
     tail -30 "$folder/gltf.log"
 fi
-# bpy has a Python of its own choice: 4.5 is for 3.11
-if environment blender 'bpy==4.5.*'; then client blender blender.py
-else echo "== blender: this Python has no bpy 4.5; it is for Python 3.11 (PYTHON=python3.11)"; failed=1; fi
+# each bpy is for one Python
+found=0
+for version in 3.11:4.5 3.13:5.2; do
+    if ! "python${version%:*}" -c '' 2> /dev/null; then
+        echo "== Blender ${version#*:}: needs python${version%:*}, which is not here"
+        continue
+    fi
+    python=python${version%:*}
+    if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
+        found=1
+        client "blender-${version#*:}" blender.py
+    else
+        echo "== Blender ${version#*:}: not to be had"
+    fi
+done
+[ $found -eq 1 ] || failed=1
 exit $failed
