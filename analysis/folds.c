@@ -1,6 +1,6 @@
-// Zippers: a fold that runs slantwise to the rows of cells is a saw where cells are drawn with facets, in shading and in
-// silhouette. Along a fold little should change within a few cells, so that what does is measured, of the unit normal N
-// over the sheet at rest (rest_raster.h), in cells of the mesh, c long:
+// Zippers: a fold that runs slantwise to the rows of cells is a saw where cells are drawn with facets, in shading and
+// in silhouette. Along a fold little should change within a few cells, so that what does is measured, of the unit
+// normal N over the sheet at rest (rest_raster.h), in cells of the mesh, c long:
 //
 //   folds   where N, smoothed by a Gaussian of one c, turns by more than 10 degrees in c; their direction is that in which
 //           it turns least (the matrix J of wrinkles.c)
@@ -102,8 +102,8 @@ static void add_line(const Work *work, int i, int j, const double along[2], doub
     folds->power += power / CENTROID, folds->count += 1;
 }
 
-/// Distance to what has burnt and to where the sheet ends, less `far_off` cells. What is not covered counts as burnt from
-/// then on.
+/// Distance to what has burnt and to where the sheet ends, less `far_off` cells. What is not covered counts as burnt
+/// from then on.
 static void find_distances(RestRaster *raster, float *distance, double cell) {
     const int pixels = raster->width * raster->height;
     for (int p = 0; p < pixels; p++)

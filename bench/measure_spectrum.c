@@ -1,5 +1,5 @@
-// The spectrum of the wrinkles that burning leaves, and how much it depends on numerical settings: at twice and half the
-// time step and half the cell size it should stay, at twice the thickness it should not.
+// The spectrum of the wrinkles that burning leaves, and how much it depends on numerical settings: at twice and half
+// the time step and half the cell size it should stay, at twice the thickness it should not.
 //
 // A sheet hangs from its upper edge and burns from its lower one, lit all along. Four times from then on, lines along
 // the edge, 2 mm apart, from the char to 12 mm above what has begun to burn, are looked at where they are whole: the

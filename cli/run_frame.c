@@ -2,9 +2,9 @@
 // checkpoint stands for is on the disk. The first one of a run from the start is written under temporary names, so that
 // an earlier run stays until it is whole.
 //
-// The others are written and drawn in a thread of their own while the simulation steps on: from a copy of the surface and
-// the gas, and with the numbers and the snapshot that were taken at the frame. A frame is whole before the next one is
-// taken, so at most one is in writing. With one thread all is done in turn.
+// The others are written and drawn in a thread of their own while the simulation steps on: from a copy of the surface
+// and the gas, and with the numbers and the snapshot that were taken at the frame. A frame is whole before the next one
+// is taken, so at most one is in writing. With one thread all is done in turn.
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

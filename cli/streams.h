@@ -13,8 +13,8 @@ int streams_open(void);
 /// command's exit code, EXIT_FAILED in place of EXIT_GOOD.
 int streams_finish(int code);
 
-/// Opens a table of `--csv` for writing, in place of what was there; NULL and errno where that fails. A pipe that nobody
-/// reads from fails with ENXIO: it would be waited for without end.
+/// Opens a table of `--csv` for writing, in place of what was there; NULL and errno where that fails. A pipe that
+/// nobody reads from fails with ENXIO: it would be waited for without end.
 FILE *streams_create(const char *path);
 
 #endif

@@ -123,8 +123,8 @@ static double curl_measure(const SingeView *view) {
     return sum / count / (length / count);
 }
 
-/// Blue edges are a, green springs g and centres stand t above their cells: g = a cos(alpha/2) + 2 t sin(alpha/2). A red
-/// spring has the mean of its ends, so `red_share` is 1/2.
+/// Blue edges are a, green springs g and centres stand t above their cells: g = a cos(alpha/2) + 2 t sin(alpha/2). A
+/// red spring has the mean of its ends, so `red_share` is 1/2.
 static double curl_exact(double shrink, double red_share) {
     double a = curl_cell * (1 - shrink), g = curl_cell, red = 1 - shrink * red_share;
     double diagonal = (curl_cell * curl_cell / 2 + curl_thickness * curl_thickness) * red * red;

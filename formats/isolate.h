@@ -27,8 +27,8 @@ bool isolate_possible(void);
 
 /// Runs work(context) in a child and waits for it. *answer gets what it put; the caller checks it as any file, and
 /// frees it with bytes_free. `name` is the file's, for messages. Call it only while this process has one thread.
-/// Errors: what `work` returned; SINGE_ERROR_LIMIT where it took more memory than `limits` allow, or was refused what it
-/// asked for (error->element is limits.memory), or more time (-1); SINGE_ERROR_FORMAT where it crashed;
+/// Errors: what `work` returned; SINGE_ERROR_LIMIT where it took more memory than `limits` allow, or was refused what
+/// it asked for (error->element is limits.memory), or more time (-1); SINGE_ERROR_FORMAT where it crashed;
 /// SINGE_ERROR_MEMORY without memory for the answer or a process;
 /// SINGE_ERROR_STATE where other threads run, or where a signal stopped the child.
 ///

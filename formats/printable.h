@@ -13,10 +13,10 @@ enum {
     PRINTABLE_PIECE = 12, ///< bytes that a character takes at most, with a zero
 };
 
-/// Writes the character at *at, of the bytes up to `end` (a zero follows there or behind), as it may be printed, zero-terminated, and moves *at behind
-/// it. `\n`, `\x1b`: control characters and bytes that are no UTF-8; `\u202e`, `\U000e0001`: what turns the direction
-/// of writing, has no width, breaks lines or is a control character beyond ASCII. Returns the length written; *at must
-/// be before `end`.
+/// Writes the character at *at, of the bytes up to `end` (a zero follows there or behind), as it may be printed,
+/// zero-terminated, and moves *at behind it. `\n`, `\x1b`: control characters and bytes that are no UTF-8; `\u202e`,
+/// `\U000e0001`: what turns the direction of writing, has no width, breaks lines or is a control character beyond
+/// ASCII. Returns the length written; *at must be before `end`.
 size_t printable_character(const char **at, const char *end, char piece[PRINTABLE_PIECE]);
 
 /// Whether all of a text prints as it is.

@@ -6,9 +6,9 @@
 //     FIELDSETS  lists of fields, each ended by 0xffffffff
 //     PATHS      the tree of prims and properties, depth first
 //     SPECS      of each path its fields and its kind
-// A value is 64 bits: flags (array, inlined, compressed) in bits 63 to 61, the type in 48 to 55, and in the lower 48 the
-// value or where it lies. Integers are packed as differences (crate_ints), these by LZ4; single floats may be numbers of
-// a table of the values that occur (crate_floats). All is little-endian.
+// A value is 64 bits: flags (array, inlined, compressed) in bits 63 to 61, the type in 48 to 55, and in the lower 48
+// the value or where it lies. Integers are packed as differences (crate_ints), these by LZ4; single floats may be
+// numbers of a table of the values that occur (crate_floats). All is little-endian.
 #ifndef FORMATS_USD_CRATE_H
 #define FORMATS_USD_CRATE_H
 

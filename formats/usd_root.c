@@ -1,6 +1,6 @@
-// The root of the USD format, as text: a stage that takes sheets from the frames by value clips, gas from the VDB files,
-// and has the camera, the lights, the ground, colliders with their motion and materials. What is given to the lights
-// is what the preview gives to its own, in units in which white paper under them is nearly white.
+// The root of the USD format, as text: a stage that takes sheets from the frames by value clips, gas from the VDB
+// files, and has the camera, the lights, the ground, colliders with their motion and materials. What is given to the
+// lights is what the preview gives to its own, in units in which white paper under them is nearly white.
 #include "formats/burn_colour.h"
 #include "formats/fields.h"
 #include "formats/sink.h"

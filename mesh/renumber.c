@@ -1,7 +1,7 @@
 // Numbers of vertices and faces for locality. Lanes take strands beside each other that run through consecutive
-// numbers (src/dynamics/strand/strand_lay.c), as those of a mesh that is numbered row by row. Rows of quads are walked along
-// their opposite sides, one after the other from the lowest: a row's lower vertices are numbered as it is walked, and
-// the row above, which begins at the opposite side of its first quad, comes next.
+// numbers (src/dynamics/strand/strand_lay.c), as those of a mesh that is numbered row by row. Rows of quads are walked
+// along their opposite sides, one after the other from the lowest: a row's lower vertices are numbered as it is walked,
+// and the row above, which begins at the opposite side of its first quad, comes next.
 #include "mesh/work.h"
 
 #include <string.h>

@@ -78,7 +78,8 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
 /// Adds the light of flames and embers that reaches block->point, times `through`, and asks what is hidden of it.
 void lamps_add(const Preview *preview, Block *block, const int *active, int sample, const float through[LANES]);
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples);
-/// Of a block, once all are written: first smoothed along rows, then, all blocks, along columns and added to the picture.
+/// Of a block, once all are written: first smoothed along rows, then, all blocks, along columns and added to the
+/// picture.
 void lamps_smooth(Preview *preview, Block *block);
 void lamps_finish(Preview *preview, Block *block);
 

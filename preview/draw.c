@@ -1,9 +1,9 @@
 // One frame: tiles of blocks of 4 x 4 pixels, a packet of 16 rays per block and sample.
 //
 // A sample is: the nearest surface; its look; light = sun (a ray to a random point of its disc) + sky and bounce
-// (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first samples agree stop
-// there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing is
-// intersected, and where no shadow can fall one sample is enough.
+// (one ambient-occlusion ray); see lighting.c. The light of flames and embers comes last (lamps.c). Pixels whose first
+// samples agree stop there. Blocks that no sheet or shape can touch show only the table or what lies behind it: nothing
+// is intersected, and where no shadow can fall one sample is enough.
 // Everything random comes from the pixel's place and the sample's number, so threads do not matter.
 
 #include "preview/block.h"

@@ -30,8 +30,8 @@ static void pass_sheets(const struct RTCFilterFunctionNArguments *arguments) {
     const Scene *scene = &preview->scene;
     Passage *passage = (Passage *)(void *)arguments->context;
     float footprint = preview->camera.pixel * preview->camera.reach;
-    // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle; the
-    // accessors of the header are C++ only
+    // fields of N each: the ray's twelve, of which the 11th is its id, and the hit's normal's three, u, v, triangle;
+    // the accessors of the header are C++ only
     unsigned count = arguments->N;
     const float *u = (const float *)arguments->hit + 3 * count, *v = u + count;
     const unsigned *triangle = (const unsigned *)arguments->hit + 5 * count;

@@ -1,9 +1,9 @@
 // The light of flames, embers and hot shapes, with shadows.
 //
-// The light that would come if nothing were in the way, U = sum_k U_k over the lamps k, is exact. What is hidden of it is
-// asked by one ray a sample, to a random point of a lamp taken with probability U_k / U: its mean, V, is free of noise
-// wherever all lamps are seen or none is. What noise is left lies in V alone, so V is smoothed over the pixels that show
-// the same face, and the picture gets V U: print and edges stay sharp.
+// The light that would come if nothing were in the way, U = sum_k U_k over the lamps k, is exact. What is hidden of it
+// is asked by one ray a sample, to a random point of a lamp taken with probability U_k / U: its mean, V, is free of
+// noise wherever all lamps are seen or none is. What noise is left lies in V alone, so V is smoothed over the pixels
+// that show the same face, and the picture gets V U: print and edges stay sharp.
 
 #include "preview/block.h"
 

@@ -43,8 +43,8 @@ static Float3 ember_line(const Preview *preview, const PaperState *state, const 
     return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * maxf(strength, 0));
 }
 
-/// A leaf of char that glows away: as hot as it is, where it burns. Its heat spreads over a cell or two, and real lines of
-/// embers are thinner: they follow threads of noise, and break.
+/// A leaf of char that glows away: as hot as it is, where it burns. Its heat spreads over a cell or two, and real lines
+/// of embers are thinner: they follow threads of noise, and break.
 static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *bent, float air) {
     float activity = ember_activity(state->glowing);
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);

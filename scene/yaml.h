@@ -1,5 +1,5 @@
-// YAML as a list of events, by libfyaml in a process of its own (formats/isolate.h): it crashes where memory is refused,
-// and a scene may come from anywhere. What comes back is checked before it is believed.
+// YAML as a list of events, by libfyaml in a process of its own (formats/isolate.h): it crashes where memory is
+// refused, and a scene may come from anywhere. What comes back is checked before it is believed.
 #ifndef SCENE_YAML_H
 #define SCENE_YAML_H
 

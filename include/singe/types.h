@@ -301,8 +301,8 @@ typedef struct SingeSimDef {
     /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     float heat_tolerance;
     /// m, distance of the points where the drawn surface is cut near the front, a cell's side over 23 at least. The
-    /// surface is smooth then, and bent cells are drawn in more triangles, up to as fine; 0: cells are drawn as they are
-    /// (Fig 6)
+    /// surface is smooth then, and bent cells are drawn in more triangles, up to as fine; 0: cells are drawn as they
+    /// are (Fig 6)
     float surface_detail;
     float surface_raggedness; ///< m, how far noise eats into burnt edges at most, and half a cell; needs a detail
     SingeWindDef wind;

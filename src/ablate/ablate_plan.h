@@ -76,8 +76,8 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
 /// Vertex `to` becomes what vertex `from` is.
 void surface_copy_vertex(SingeSurface *surface, uint32_t from, uint32_t to);
 
-/// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. What it
-/// needs comes from the surface's allocator and goes back. On failure the surface is empty (surface_seams.c).
+/// Gives vertices on seams of the uv a copy for each uv. cell_first: [cells + 1] the first triangle of each cell. What
+/// it needs comes from the surface's allocator and goes back. On failure the surface is empty (surface_seams.c).
 SingeResult surface_seams(const Shell *shell, const uint32_t *cell_first, SingeSurface *surface, SingeError *error);
 
 /// Empties a surface but for its allocator.

@@ -8,9 +8,9 @@
 //   yellow   goes when its cell's four triangles are gone
 //   green    goes when either of its cells' four triangles are gone
 //
-// and a particle goes with its last spring. It takes its mass and its enthalpy C (T - T_amb) along. What it burnt in the
-// step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat comes with the next
-// step, for what is alive then. Nor is it counted, so that the ledger closes.
+// and a particle goes with its last spring. It takes its mass and its enthalpy C (T - T_amb) along. What it burnt in
+// the step that removes it is in mass_burnt, but that step's heat of combustion is not released: heat comes with the
+// next step, for what is alive then. Nor is it counted, so that the ledger closes.
 #include "ablate/ablate_plan.h"
 
 static void remove_particle(Removal *removal, uint32_t particle) {

@@ -26,8 +26,9 @@
 //
 //   dT/dt = (H/c_p)(1 - m_min/nu)(-dc/dt)/max(m, floor),   H = H_c (h + (1 - h)/(1 + q)),   q = 2500 exp(-6240 K/T)
 //
-// over what is left as the losses are (heat/heat.c). H_c is the heat of char that goes to CO2; q is how much goes to CO in
-// place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2 of
+// over what is left as the losses are (heat/heat.c). H_c is the heat of char that goes to CO2; q is how much goes to CO
+// in place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2
+// of
 // 32.8 MJ/kg of carbon. So the hotter an ember is the less it gives, and more air makes it faster rather than hotter.
 #include "burn/burn_job.h"
 

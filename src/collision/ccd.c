@@ -1,7 +1,7 @@
 // Continuous collision detection (CCD) at the end of a step: no displacement leads through another cell.
 //
-// Every corner has gone from x0, where the step began, to x1. What meets on these displacements (ccd_pairs.c) goes otherwise
-// (ccd_zones.c). As other cells may then be in the way, this is repeated with what has changed.
+// Every corner has gone from x0, where the step began, to x1. What meets on these displacements (ccd_pairs.c) goes
+// otherwise (ccd_zones.c). As other cells may then be in the way, this is repeated with what has changed.
 //
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
 // search is repeated for this step's own displacements.

@@ -5,10 +5,10 @@
 //
 //   x0 + u + a (x1 - x0 - u),   u the mean displacement of the zone by mass,
 //
-// with a the share of the displacement that was free: the zone keeps its momentum and loses what would have closed it. A zone
-// that meets again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as one piece (the impact
-// zones of Provot, 1997). Zones are only ever joined, and shares lessened, so the rounds end. Held corners go their own
-// displacement.
+// with a the share of the displacement that was free: the zone keeps its momentum and loses what would have closed it.
+// A zone that meets again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as one piece (the
+// impact zones of Provot, 1997). Zones are only ever joined, and shares lessened, so the rounds end. Held corners go
+// their own displacement.
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 

@@ -9,8 +9,8 @@
 //                      does, what meets goes only as far as is free (ccd.c). That is a guarantee, not a force
 //
 // Both look at pairs of cells that are near, which are found again when cells have used up the motion that the last
-// search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. Where there are more
-// pairs than a list has room for, it grows (collision_capacity.c).
+// search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. Where
+// there are more pairs than a list has room for, it grows (collision_capacity.c).
 #ifndef COLLISION_COLLISION_H
 #define COLLISION_COLLISION_H
 
@@ -61,8 +61,8 @@ typedef struct CollisionCounters {
 
 CollisionCounters collision_counters(const CollisionPlan *plan);
 
-/// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the drawn
-/// surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
+/// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the
+/// drawn surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
 void collision_clearance(const CollisionPlan *plan, const Shell *shell, const State *state, float *room);
 
 #endif

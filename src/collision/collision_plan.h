@@ -11,15 +11,15 @@
 enum { COLLISION_STEPS = 10 };
 /// Buckets, pairs or cells that a thread works on together.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
-/// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or to
-/// COLLISION_LIST_MIN items where that is more.
+/// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or
+/// to COLLISION_LIST_MIN items where that is more.
 enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
 
 /// What meets.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
-/// A cell's box at the search, in a frame that goes with the mean of its corners' displacements over plan->steps, and that displacement,
-/// with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
+/// A cell's box at the search, in a frame that goes with the mean of its corners' displacements over plan->steps, and
+/// that displacement, with the largest deviation of a corner's as fourth. The box holds what the deviations make of it.
 typedef struct CollisionBox {
     Float4 low, high, displacement;
     Float4 swept_low, swept_high; ///< the region that the widened box passes over
@@ -80,8 +80,8 @@ typedef struct OutsideEntry {
     uint32_t next;       ///< of the same bucket, or SHELL_NONE
 } OutsideEntry;
 
-/// How a cell moves: mean of its corners' displacements since plan->start in m, and of their velocities as the step opened in
-/// m/s, with the largest deviation of one as fourth; and its normals, as of feature_normals.
+/// How a cell moves: mean of its corners' displacements since plan->start in m, and of their velocities as the step
+/// opened in m/s, with the largest deviation of one as fourth; and its normals, as of feature_normals.
 enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_MOTIONS };
 
 /// Items of the lists, to begin with and at most.
@@ -119,8 +119,8 @@ struct CollisionPlan {
     float (*position)[4];       ///< [vertices] m
     float (*speed)[4];       ///< [vertices] m/s
     uint8_t *alive;          ///< [cells]
-    /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number of
-    /// their group, from 1 on; of others 0
+    /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number
+    /// of their group, from 1 on; of others 0
     uint8_t *intersecting;
 
     // what was found
@@ -172,8 +172,8 @@ struct CollisionPlan {
     CollisionCounters counters;
 };
 
-/// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY: then
-/// there are none.
+/// Finds the pairs for plan->position, speed, alive. Their distances are those at plan->position. SINGE_ERROR_MEMORY:
+/// then there are none.
 SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool);
 
 /// The pairs of cells whose swept boxes meet, in broad_grid.c: sorts them into the grid, and writes plan->found_pairs,
@@ -186,8 +186,8 @@ void broad_grid_keep(CollisionPlan *plan, const Shell *shell, Pool *pool, uint64
 /// Blocks in which pairs are looked at.
 static inline uint32_t collision_look_blocks(uint32_t pairs) { return (pairs + COLLISION_BLOCK - 1) / COLLISION_BLOCK; }
 
-/// Makes room for `wanted` pairs or repulsions, or as many as there may be at most; plan->found_pairs and plan->found lose
-/// what they hold. False when out of memory.
+/// Makes room for `wanted` pairs or repulsions, or as many as there may be at most; plan->found_pairs and plan->found
+/// lose what they hold. False when out of memory.
 bool collision_grow_pairs(CollisionPlan *plan, uint64_t wanted);
 bool collision_grow_repulsions(CollisionPlan *plan, uint64_t wanted);
 
@@ -197,8 +197,8 @@ bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, floa
 /// See CollisionPair.bridge.
 uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_t a, uint32_t b);
 
-/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their displacement from
-/// plan->start to `x`. SINGE_ERROR_MEMORY.
+/// Lists, after the search's own pairs, those that cells which have left their boxes may have met on their displacement
+/// from plan->start to `x`. SINGE_ERROR_MEMORY.
 SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
                                  const float (*x)[4]);
 

@@ -149,8 +149,8 @@ static float sweep_approach(const FeatureSweep *sweep) {
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
 
-/// How long from `time` on two planes across the shortest displacement between the two keep them `keep` apart, which move along
-/// with the nearest of their points.
+/// How long from `time` on two planes across the shortest displacement between the two keep them `keep` apart, which
+/// move along with the nearest of their points.
 static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     Float4 x[4], normal = sweep_apart(sweep, time, x);
     int own = sweep->edges ? 2 : 1;

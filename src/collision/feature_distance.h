@@ -19,10 +19,10 @@ typedef struct FeatureSweep {
     bool edges;
 } FeatureSweep;
 
-/// The share of its displacement, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is. What is
-/// as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li, Kaufman and
-/// Jiang, Codimensional incremental potential contact, 2021): no step is longer than the distance over the fastest
-/// approach; or, where that does not get on, than planes between the two allow.
+/// The share of its displacement, 0 to 1, that is free before the two are about as near as `gap`, or 2 where all is.
+/// What is as near from the start must end as far apart, but for `noise`. Additive conservative advancement (Li,
+/// Kaufman and Jiang, Codimensional incremental potential contact, 2021): no step is longer than the distance over the
+/// fastest approach; or, where that does not get on, than planes between the two allow.
 float feature_sweep(const FeatureSweep *sweep, float gap, float noise);
 
 /// Mean normal of a cell's triangles, given its nodes, with the largest deviation as fourth; 2 more where, seen along

@@ -5,10 +5,10 @@
 // over the collider in this substep, tangential to the surface, is taken back by at most mu p: friction
 // as positions (Mueller et al., Position based dynamics, 2007; Macklin et al. 2014).
 //
-// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its displacement
-// over the collider in this substep is longer than its distance, the displacement is followed from its start, in the collider's
-// frame, by steps that the distance allows (contact_enters); what enters goes back to the plane that touches the
-// surface there.
+// Depth alone does not tell on which side a particle belongs that has gone through something thin. So where its
+// displacement over the collider in this substep is longer than its distance, the displacement is followed from its
+// start, in the collider's frame, by steps that the distance allows (contact_enters); what enters goes back to the
+// plane that touches the surface there.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

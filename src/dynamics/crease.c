@@ -1,8 +1,8 @@
 // Plastic creases: what is bent sharper than a radius keeps a part of the bend.
 //
-// Geometry. Two cells meet at an edge, their centroids at the distances p and q from it along the sheet: the bend between
-// them is spread over the arc s = p + q. theta is the angle from one cell's normal n to the other's, positive where the
-// sheet folds away from the centres:
+// Geometry. Two cells meet at an edge, their centroids at the distances p and q from it along the sheet: the bend
+// between them is spread over the arc s = p + q. theta is the angle from one cell's normal n to the other's, positive
+// where the sheet folds away from the centres:
 //
 //   theta = atan2((n_1 x n_2) . e, n_1 . n_2),   e the unit edge, turned as it is in the first cell
 //

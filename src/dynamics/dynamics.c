@@ -194,21 +194,30 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
                           DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
     const SingeSolverDef *solver = &plan->settings.solver;
     float h_sub = h / (float)solver->substeps;
+
+    // what stays the same during the step
     dynamics_prepare(plan, shell, state, wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
-    if (plan->collision) TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
+    if (plan->collision)
+        TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
+
+    // substeps, each of which closes the one before: one pass more than there are
     Between between = {.opens = true};
     double before = state->time;
     for (int substep = 0; substep <= solver->substeps; substep++) {
         double after = state->time + (double)h * (substep + 1) / solver->substeps;
         between.opens = substep < solver->substeps;
         between.attaches = between.opens && solver->attachments && !plan->paper;
-        // held particles are where the substep ahead ends before the others set out
+
+        // velocities of the substep behind, prediction of the one ahead; held particles are where it ends before the
+        // others set out
         if (between.opens) dynamics_move_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
         if (!between.opens) break;
         uint32_t collider_count = dynamics_pose_colliders(plan, colliders, before, after);
         before = after;
+
+        // projection and contact
         if (plan->paper) {
             TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));
             continue;
@@ -221,9 +230,13 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
         between.closes = true;
         between.collider_count = collider_count;
     }
+
+    // forces for the tears; limits and CCD
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
     TRY(dynamics_contact_result(dynamics_close(plan, shell, state, pool, h, dynamics), error));
+
+    // once a step: internal friction, order of the layers, creases, attachments
     dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
     dynamics_order(plan, shell, &state->ablate, pool, dynamics);
     plan->strands_written = true;

@@ -181,8 +181,8 @@ static inline float dynamics_weight(Field material, const float *soft, uint32_t 
     return 0.25f * (field_at(material, a) + field_at(material, b)) * (soft[a] + soft[b]);
 }
 
-/// Contact and friction of particles [begin, end) with the colliders in plan->colliders (collider_contact.c). Returns the number
-/// of contacts.
+/// Contact and friction of particles [begin, end) with the colliders in plan->colliders (collider_contact.c). Returns
+/// the number of contacts.
 uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float h, DynamicsState *dynamics, int begin,
                        int end);
 

@@ -13,8 +13,8 @@
 // That is done in every step. CCD against crossing, which comes after, takes displacements back towards where the step
 // began: what was too long then would be so again.
 //
-// Where a spring has burnt, what depends on its cell may pull it open: held there, it would stretch what is whole beside
-// it.
+// Where a spring has burnt, what depends on its cell may pull it open: held there, it would stretch what is whole
+// beside it.
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 

@@ -22,8 +22,8 @@ void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regu
 /// Compliance of a spring, m/N.
 float stiffness_compliance(Stiffness *stiffness, uint32_t spring);
 
-/// The smallest number of substeps in a step of h seconds for which all red springs of this regularisation can be as stiff
-/// as they should.
+/// The smallest number of substeps in a step of h seconds for which all red springs of this regularisation can be as
+/// stiff as they should.
 int stiffness_substeps(const Shell *shell, float h, float regularisation);
 
 #endif

@@ -15,8 +15,8 @@
 //   g = g_0 B/(e^B - 1),   B = m'' cp/g_0,   T = T_gas(x + side cell/2 - reach u/(|u| + u_0))
 //
 // Gas that leaves the sheet pushes the hot gas away from it: m'' kg/(m2 s) of it lower the conductance by the classical
-// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). Char that glows takes less by its front
-// thickening F_c (burn/glow.c). The gas loses what the sheet takes.
+// factor for transpiration (Bird, Stewart & Lightfoot, Transport Phenomena, 22.8). Char that glows takes less by its
+// front thickening F_c (burn/glow.c). The gas loses what the sheet takes.
 //
 // The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
 // whole sheet the gas flows along it, and only flakes and edges are in its way.

@@ -8,8 +8,8 @@
 //   T_i = T*_i + dt sum c_ij (x_j - T*_i)/(D_i + dt sum c_ij)        a mean of numbers within the range
 //
 // The heat that these lack or have too much of, as little as the residual, comes from all that conduct alike: by a
-// share of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of the
-// umbrella, which does not keep heat, it is counted as made.
+// share of what each is away from the upper or the lower end of the range. So T stays within it, and heat is kept. Of
+// the umbrella, which does not keep heat, it is counted as made.
 #include <math.h>
 
 #include "common/random.h"

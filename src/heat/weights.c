@@ -28,8 +28,8 @@
 // and of all that fulfil it those of most entropy are taken, which all springs have a part in: k in proportion to
 // exp(lambda z), lambda by Newton's method. Where all springs of a cell run within a quarter turn (needles that lean),
 // no positive k balances. lambda, held to a length of 5, then makes the most of the springs that are farthest apart;
-// the cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as the
-// sum of k makes one as much too large as the other too small. So a front is faster along such cells and slower
+// the cell conducts (1 + r) times k along and (1 - r) across, r what is left of the balance, and 2 A/sqrt(1 - r^2) as
+// the sum of k makes one as much too large as the other too small. So a front is faster along such cells and slower
 // across, and stops nowhere.
 #include <float.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 // Marching triangles over fine triangles and coarse ones.
 //
-// A cell's triangle is k^2 fine ones in k rows, k = 1 for a flat cell that is not split. The row at the side has as many
-// parts along the side as both of its cells draw there. Each is clipped as in surface.c, once to count and once to draw;
-// a fine side's cut is made once and shared, on the sides of cells through `cuts`.
+// A cell's triangle is k^2 fine ones in k rows, k = 1 for a flat cell that is not split. The row at the side has as
+// many parts along the side as both of its cells draw there. Each is clipped as in surface.c, once to count and once to
+// draw; a fine side's cut is made once and shared, on the sides of cells through `cuts`.
 //
 // A cell that has lost springs has corners that go their own ways and take its virtual centre along. What is drawn
-// there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from the
-// centre at rest and now:
+// there has torn: a triangle of it is left out when it is pulled apart, with C and C' the metrics of its two sides from
+// the centre at rest and now:
 //
 //   lambda^2 > TORN^2,   lambda^2 the larger eigenvalue of C^-1 C'
 #include "surface/surface_fine.h"
@@ -130,8 +130,8 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
 
 // ---- a triangle of a cell
 
-/// A row of fine triangles: between `lower` parts of the line j and `upper` parts of the line j + 1. Cuts of both lines'
-/// parts, and of the first and the last side between them.
+/// A row of fine triangles: between `lower` parts of the line j and `upper` parts of the line j + 1. Cuts of both
+/// lines' parts, and of the first and the last side between them.
 typedef struct Row {
     uint32_t cell;
     int side, splits, j, lower, upper;

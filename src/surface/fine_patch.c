@@ -2,17 +2,18 @@
 //
 //   S(u, v) = sum B_i(u) B_j(v) b_ij,   u along the cell's side 0, v along its side 3 backwards
 //
-// Near the Catmull-Clark limit surface (Loop and Schaefer, Approximating Catmull-Clark subdivision surfaces with bicubic
-// patches, 2008), and this itself where four cells meet, so that places and tangent planes are those of the cell across.
-// With a corner x that n cells have, its neighbours e, e' in the cell and the corner f across:
+// Near the Catmull-Clark limit surface (Loop and Schaefer, Approximating Catmull-Clark subdivision surfaces with
+// bicubic patches, 2008), and this itself where four cells meet, so that places and tangent planes are those of the
+// cell across. With a corner x that n cells have, its neighbours e, e' in the cell and the corner f across:
 //
 //   inner point    p = (n x + 2 (e + e') + f) / (n + 5)
 //   on a side      mean of p of both cells;   at a border (2 x + e) / 3
 //   corner         mean of p of all cells;    at a border (4 x + e_1 + e_2) / 6, of its two neighbours along it
 //
 // At a border n is twice the number of cells, and 4 at least. Cells that are torn have corners that go their own
-// ways: to others they are not there, and they are drawn flat. A surface that may not leave a corner so far is moved there with all points
-// about it by the same vector: that keeps tangent planes, and with the whole way the patches go through the corners.
+// ways: to others they are not there, and they are drawn flat. A surface that may not leave a corner so far is moved
+// there with all points about it by the same vector: that keeps tangent planes, and with the whole way the patches go
+// through the corners.
 #include "surface/surface_fine.h"
 
 

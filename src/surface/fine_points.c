@@ -5,8 +5,8 @@
 // from a corner to the centre, (k - 1)(k - 2)/2 within a triangle, and the level is evaluated there; on a side once,
 // for both of its cells. A cell is split where these differ in sign; where they do not, its four triangles will do.
 //
-// Unless it is bent: then it gets the points that show how, in fewer parts. Its sides are drawn in the more of its parts
-// and those of the cell across.
+// Unless it is bent: then it gets the points that show how, in fewer parts. Its sides are drawn in the more of its
+// parts and those of the cell across.
 #include "surface/surface_fine.h"
 
 #include <string.h>

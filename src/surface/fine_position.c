@@ -1,5 +1,5 @@
-// Where the surface is drawn. A position of a cell lies on one of its four flat triangles, at T; it is drawn over it on the
-// patches of fine_patch.c, in the direction m that the flat triangles' normals at its corners are blended to:
+// Where the surface is drawn. A position of a cell lies on one of its four flat triangles, at T; it is drawn over it on
+// the patches of fine_patch.c, in the direction m that the flat triangles' normals at its corners are blended to:
 //
 //   x = T + s h m,   h = ((S(u, v) - T) . n)/(m . n)
 //
@@ -8,15 +8,15 @@
 // differ a little, n is m. The normal is that of S nearest to T: at
 // (u, v) and the step along the tangents that brings S there. s is 1 but where corners' shares fade.
 //
-// What does not cross as it is must not cross as it is drawn. So no position leaves its triangle farther than a tenth of the
-// shortest side, less than half the contact thickness, and less than half of what another surface is away; and shares
-// fade
+// What does not cross as it is must not cross as it is drawn. So no position leaves its triangle farther than a tenth
+// of the shortest side, less than half the contact thickness, and less than half of what another surface is away; and
+// shares fade
 //
 //   where a triangle at the corner leans away from its normal, or is thin, as when a cell collapses or is crumpled;
 //   at the edges of a tear until they have parted.
 //
-// Tear edges lie at one position until they part. What is drawn of them is cut otherwise on either side, so their corners are
-// drawn back from each other, by a small share of a cell's side.
+// Tear edges lie at one position until they part. What is drawn of them is cut otherwise on either side, so their
+// corners are drawn back from each other, by a small share of a cell's side.
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -68,8 +68,8 @@ static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
     return fade(apart, TEAR_EDGES_CLOSED * side, TEAR_EDGES_OPEN * side);
 }
 
-/// A torn side, of which this is the one tear edge and that the other. Where it ends, its tear edges open no faster than at its
-/// other end.
+/// A torn side, of which this is the one tear edge and that the other. Where it ends, its tear edges open no faster
+/// than at its other end.
 static void part_side(Fine *fine, const uint32_t one[2], const uint32_t other[2]) {
     float share[2] = {1, 1}, min = 0;
     for (int end = 0; end < 2; end++)
@@ -124,8 +124,8 @@ static float allowed(Float3 doubled, float longest, Float3 normal) {
     return fade(float3_dot(doubled, normal) / area, 0.7f, 0.85f) * fade(area / longest, 0.1f, 0.25f);
 }
 
-/// Lessens the shares where triangles lean away from the normals or are thin, and how far positions may go to a part of the
-/// shortest side. The normals are in place.
+/// Lessens the shares where triangles lean away from the normals or are thin, and how far positions may go to a part of
+/// the shortest side. The normals are in place.
 static void gather_shares(Fine *fine) {
     const Shell *shell = fine->shell;
     const float (*position)[4] = (const float (*)[4])fine->corner;

@@ -1,7 +1,7 @@
-// The fields of the fine surface's vertices. Velocity, uv and rest position lie on the cell's triangle, straight between
-// its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level was taken
-// with. Of times to ignition, those of corners that have ignited count, by their weights. Where vertices are, and their
-// normals, fine_position.c says.
+// The fields of the fine surface's vertices. Velocity, uv and rest position lie on the cell's triangle, straight
+// between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level
+// was taken with. Of times to ignition, those of corners that have ignited count, by their weights. Where vertices are,
+// and their normals, fine_position.c says.
 #include "surface/surface_fine.h"
 
 /// Of a triangle's corners: two particles, and the mean of four for the virtual centre.

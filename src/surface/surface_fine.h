@@ -117,8 +117,8 @@ void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell,
 
 float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation location);
 
-/// The position that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1, corner 0
-/// to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
+/// The position that lies (x, y) from another one, in sides of its cell along the cell's own axes (corner 0 to 1,
+/// corner 0 to 3), at most half a cell either way. Where the sheet ends, the nearest place along its border.
 FineLocation fine_walk(const Shell *shell, FineLocation location, float x, float y);
 
 /// A position in its cell's own coordinates: corners at (-1/2, -1/2), (1/2, -1/2), (1/2, 1/2), (-1/2, 1/2).

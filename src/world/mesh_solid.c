@@ -4,8 +4,8 @@
 //   two, or the sum of a vertex's weighed by their angles
 //
 // (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right for
-// every mesh that does not pass through itself. A grid of distances at its cells' centroids spares the tree of triangles
-// (mesh_tree.c) what is far: the distance changes by no more than the way, so that at p
+// every mesh that does not pass through itself. A grid of distances at its cells' centroids spares the tree of
+// triangles (mesh_tree.c) what is far: the distance changes by no more than the way, so that at p
 //
 //   |d(p)| >= |d(c)| - |p - c|,   and the sign is that at c where this is above 0,
 //

@@ -6,8 +6,8 @@
 static const float cell = 2.5e-3f;
 enum { CELLS = 40 };
 
-/// A fold of 140 degrees and of 390 1/m at its sharpest, this many degrees off the rows; cells as uneven at rest as those of
-/// a grid that is read.
+/// A fold of 140 degrees and of 390 1/m at its sharpest, this many degrees off the rows; cells as uneven at rest as
+/// those of a grid that is read.
 static Drawing *folded(float degrees) {
     Drawing *d = fine_drawing(CELLS, CELLS, cell, 4e-4f, 2e-3f);
     const float turn = degrees * 0.01745329f, half = 1.2f, wide = half / 390;

@@ -41,7 +41,8 @@ static double left_of_char(const BurningSheet *b, uint32_t i) {
 
 static double kinetics(double temperature) { return 5.667e9 * exp(-160e3 / (8.314462618 * temperature)); }
 
-/// At an edge z^(1/2) falls evenly, at half the rate of supply and kinetics in series; F, the slowing and pace scale the time.
+/// At an edge z^(1/2) falls evenly, at half the rate of supply and kinetics in series; F, the slowing and pace scale
+/// the time.
 static void edges_glow_at_two_resistances_in_series(void **unused) {
     (void)unused;
     const double temperatures[] = {700, 850, 1000, 1500};

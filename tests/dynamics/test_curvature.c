@@ -20,7 +20,8 @@ static void open_sheet(Bench *bench, Quads quads, float limit) {
     bench_open(bench, quads, &material, 2);
 }
 
-/// Folds a grid along its middle column: `angle` in rad within one row of edges, or spread over an arc of `turns` cells.
+/// Folds a grid along its middle column: `angle` in rad within one row of edges, or spread over an arc of `turns`
+/// cells.
 static void fold(Bench *bench, float angle, int turns) {
     for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
         uint32_t i = v % (NX + 1);

@@ -21,8 +21,8 @@ typedef struct Saved {
 
 static Saved saved[SNAPSHOTS];
 
-/// All sorts of objects; the second with gas, the third with contact, tears and creases, the last with a mesh to collide
-/// with, which takes longer to build than all the rest.
+/// All sorts of objects; the second with gas, the third with contact, tears and creases, the last with a mesh to
+/// collide with, which takes longer to build than all the rest.
 static Saved make_snapshot(int which) {
     SingeSimDef def = scene_def();
     def.gas.enabled = which == 1, def.gas.cell_size = 0.05f, def.gas.height = 0.1f;

@@ -1,4 +1,5 @@
-// Gives a fuzz target the files of folders, one after the other, and no bytes at all: what libFuzzer does with a corpus.
+// Gives a fuzz target the files of folders, one after the other, and no bytes at all: what libFuzzer does with a
+// corpus.
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -69,8 +69,8 @@ static PreviewDef at_night(void) {
     return def;
 }
 
-/// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth of
-/// it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
+/// A sheet between the flame and the table: the table's light is that of the open times what comes through. An eighth
+/// of it is the bar for an opaque sheet, and a sheet that lets half through breaks it.
 static void test_shadow_of_flame(void **state) {
     (void)state;
     Float4 q;
@@ -122,8 +122,8 @@ static void see_shadow(int samples, float (*beauty)[3]) {
     see(&def, &q.surface, NULL, beauty);
 }
 
-/// The rim of a shadow is smooth: the default's sixteen samples differ from very many by less than 1 % of the sun's light
-/// in the root mean square; four break that bar.
+/// The rim of a shadow is smooth: the default's sixteen samples differ from very many by less than 1 % of the sun's
+/// light in the root mean square; four break that bar.
 static void test_rim_of_shadow(void **state) {
     (void)state;
     static float exact[W * H][3], picture[W * H][3];

@@ -191,8 +191,8 @@ static void test_grounds(void **state) {
     }
 }
 
-/// What pyrolysis leaves is a black leaf, whatever little mass it has, and it greys as it glows away. It shines where char
-/// burns: neither where a hot leaf burns no more, nor where it still has fuel, which burns in the flame.
+/// What pyrolysis leaves is a black leaf, whatever little mass it has, and it greys as it glows away. It shines where
+/// char burns: neither where a hot leaf burns no more, nor where it still has fuel, which burns in the flame.
 static void test_char_leaf(void **state) {
     (void)state;
     static uint8_t rgb[BYTES];

@@ -15,7 +15,8 @@ static void a_million_springs(void **state) {
     assert_true(springs >= 1000000);
     assert_int_equal(counts.memory, hook.bytes);
     print_message("%.1f bytes a spring\n", (double)counts.memory / (double)springs);
-    // of it 1.6 the fuel and the heat that burning gives, 2.4 noises of the default material, 1.6 the limit of curvature
+    // of it 1.6 the fuel and the heat that burning gives, 2.4 noises of the default material, 1.6 the limit of
+    // curvature
     assert_true(counts.memory <= 155 * springs);
     assert_true(hook.peak <= 250 * springs); // while the sheet and the shell are built
     test_ok(sim, singe_sim_step(sim));

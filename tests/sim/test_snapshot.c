@@ -202,8 +202,8 @@ static void forge(TestBytes *bytes, size_t at, uint32_t word) {
     memcpy(bytes->data + CHECKSUM_AT, &sum, sizeof sum);
 }
 
-/// Bytes that lie about the body but carry its right checksum: whatever the load says, it neither crashes nor leaks, and
-/// what it lets pass can be stepped.
+/// Bytes that lie about the body but carry its right checksum: whatever the load says, it neither crashes nor leaks,
+/// and what it lets pass can be stepped.
 static void forged_snapshots(void **state) {
     (void)state;
     enum { HEADER = 56 };

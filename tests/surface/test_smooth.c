@@ -99,7 +99,8 @@ static Float3 flat_normal(const Fine *fine, uint32_t cell, int side) {
 
 static float between(Float3 a, Float3 b) { return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)) * 180 / pi; }
 
-/// The largest differences across sides: of places, and of normals in degrees, root mean square, drawn and of flat cells.
+/// The largest differences across sides: of places, and of normals in degrees, root mean square, drawn and of flat
+/// cells.
 typedef struct Steps {
     float location;
     double drawn, flat;
@@ -125,9 +126,9 @@ static Steps steps_of(const Bent *b) {
     return steps;
 }
 
-/// Places agree to rounding where four cells meet everywhere, to thousandths of a cell about irregular vertices; 3e-4 at a
-/// corner that stands in is what following each cell's own tangents there would give. Normals agree to tenths of a degree
-/// (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
+/// Places agree to rounding where four cells meet everywhere, to thousandths of a cell about irregular vertices; 3e-4
+/// at a corner that stands in is what following each cell's own tangents there would give. Normals agree to tenths of a
+/// degree (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
 static void cells_agree_on_their_sides(void **unused) {
     (void)unused;
     const struct { const char *name; QuadMesh mesh; float size; double max; } meshes[] = {

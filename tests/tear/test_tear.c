@@ -189,8 +189,8 @@ static void tubes_tear_around(void **unused) {
     singe_sim_destroy(sim);
 }
 
-/// The tear edges of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how far
-/// their middle leaves the weak line, root mean square.
+/// The tear edges of a strip that has torn across, as they are drawn: mean distance at rest in sides of cells, and how
+/// far their middle leaves the weak line, root mean square.
 typedef struct TearEdges {
     double apart, wanders, min, area;
 } TearEdges;
@@ -236,7 +236,7 @@ static void tear_edges_wander_and_fit(void **unused) {
     (void)unused;
     const double whole = (double)(ALONG * side * ACROSS * side);
     TearEdges smooth = drawn_tear_edges(0), ragged = drawn_tear_edges(2e-3f);
-    print_message("lips %.3f sides apart, %.3f to the side; ragged ones %.3f (%.3f at least) and %.3f\n", smooth.apart,
+    print_message("edges %.3f sides apart, %.3f to the side; ragged ones %.3f (%.3f at least) and %.3f\n", smooth.apart,
                   smooth.wanders, ragged.apart, ragged.min, ragged.wanders);
     assert_true(smooth.apart > 0.15 && smooth.apart < 0.4);
     assert_true(ragged.apart > 0.15 && ragged.apart < 0.5); // as far as smooth ones: they fit
