@@ -170,8 +170,9 @@ class Usage(Case):
         self.assertEqual(check.wait(timeout=5), -signal.SIGINT)
         check.stderr.close()
 
+    @unittest.skipIf(SANITIZED, "a sanitizer's memory is another")
     def test_memory_is_as_it_was_said(self):
-        for more in ("contact=yes",) if SANITIZED else ("contact=no", "contact=yes"):
+        for more in "contact=no", "contact=yes":
             out, _ = self.singe("check", self.scene, "--set", "sheets.0.grid.cells=[80, 80]", "--set", more)
             said = 1e3 * float(re.search(r"^needs +about ([0-9.]+) GB", out).group(1)) - 40 - 40 * 64 * 48e-6
             held = float(re.search(r"^memory +([0-9.]+) MB$", out, re.MULTILINE).group(1))

@@ -484,19 +484,18 @@ class SameBytes(Example):
     """Any number of threads, and a run that is killed and goes on, give the same cache."""
 
     NAME = "letter"
-    FRAMES = ("--frames", "32")
+    FRAMES = ("--frames", "28")
 
     def setUp(self):
         Case.setUp(self)
 
     def test_threads_and_resume(self):
         self.run_example("1", "--threads", "1", *self.FRAMES)
-        for threads in "2", "4":
-            self.run_example(threads, "--threads", threads, *self.FRAMES)
-            self.assertEqual(self.plys("1"), self.plys(threads))
-            self.assertEqual(self.numbers("1"), self.numbers(threads))
+        self.run_example("4", "--threads", "4", *self.FRAMES)
+        self.assertEqual(self.plys("1"), self.plys("4"))
+        self.assertEqual(self.numbers("1"), self.numbers("4"))
         seed = int(time.time())
-        frame = random.Random(seed).randrange(3, 28)
+        frame = random.Random(seed).randrange(3, 24)
         with self.subTest(seed=seed, frame=frame):
             scene = os.path.join(EXAMPLES, self.NAME, self.NAME + ".yaml")
             run = self.start("run", scene, "-o", self.path("killed"), "--no-preview", "--threads", "2", *self.FRAMES)

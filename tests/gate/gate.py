@@ -53,7 +53,7 @@ sheets:
   - mesh: {mesh}
     scale: {scale!r}
     translate: [{x!r}, {y!r}, {z!r}]
-    material: {{thickness: 2 mm}}
+    material: {{base: one-reaction, thickness: 2 mm}} # leaves no char: all of it is eaten
 sources:
   - {{kind: spot, position: [0, 0, 0.3], radius: 0.2, falloff: 0.1, temperature: 1800, conductance: 1000}}
 colliders:
@@ -248,6 +248,8 @@ def try_model(options, job):
         return end("failed", f"takes longer than {options.seconds} s to begin")
     if code == 2:
         return end("refused", reason(said))
+    if code == 1 and "memory" in said:
+        return end("large", f"more than {MEMORY >> 30} GiB")
     if code:
         return end("failed", f"exit code {code}: {reason(said)}")
     places, triangles = positions(glob.glob(os.path.join(folder, "size/ply/*"))[0])
@@ -290,7 +292,7 @@ def main():
     parser.add_argument("--only", help="only models whose path matches")
     parser.add_argument("--frames", type=int, default=9)
     parser.add_argument("--seconds", type=int, default=120, help="of processor time for a run")
-    parser.add_argument("--largest", type=int, default=14000, help="triangles drawn at the start")
+    parser.add_argument("--largest", type=int, default=30000, help="triangles drawn at the start")
     parser.add_argument("--least", type=int, default=0, help="models that must be clean or crossed in the file")
     parser.add_argument("--failed", type=int, default=0, help="models that may fail")
     parser.add_argument("--jobs", type=int, default=2)
