@@ -1,4 +1,4 @@
-// Ablation: what is burnt goes (section 6), what is loose is counted, what is left is drawn.
+// Ablation: removes what is burnt (section 6), labels the pieces, and gives the level set that is drawn.
 #ifndef ABLATE_ABLATE_H
 #define ABLATE_ABLATE_H
 

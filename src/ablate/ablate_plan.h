@@ -1,4 +1,4 @@
-// What the files of the ablate stage share.
+// Shared declarations of the ablate stage's files.
 #ifndef ABLATE_ABLATE_PLAN_H
 #define ABLATE_ABLATE_PLAN_H
 

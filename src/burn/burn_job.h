@@ -1,4 +1,4 @@
-// What the passes of one burn step share.
+// Shared declarations of the passes of one burn step.
 #ifndef BURN_JOB_H
 #define BURN_JOB_H
 

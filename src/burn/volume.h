@@ -3,8 +3,8 @@
 //   v = (m / rho) / (m_init / rho_init) = m / rho      with m and rho relative to their initial values
 //   rho = 1 + (rho_char - 1)(1 - f) + (rho_ash - rho_char) w
 //
-// f is the fuel, w = 1 - f - c/nu the share of what has gone on to ash (glow.c). In the paper, without char, the
-// density goes linearly from 1 to rho_ash with the burn progress 1 - f = w = (1 - m)/(1 - m_min).
+// f is the fuel, w = 1 - f - c/nu the share that has become ash (glow.c). In the paper, without char, the density is
+// linear from 1 to rho_ash in the burn progress 1 - f = w = (1 - m)/(1 - m_min).
 #ifndef BURN_VOLUME_H
 #define BURN_VOLUME_H
 

@@ -1,6 +1,6 @@
-// A list that blocks of a parallel job write side by side, each into chunks of its own, and that is read in the order
-// of the blocks: the same for any number of threads. Nothing is looked at twice to be counted first, unless it turns
-// out that there is no room for all: then the blocks are written again, each only as far as its share of the room goes.
+// A list that the blocks of a parallel job write at the same time, each into its own chunks, and that is read in the
+// order of the blocks: the same for any number of threads. Items are not counted in advance. Only if there is no room
+// for all of them are the blocks written again, each up to its share of the room.
 #ifndef COLLISION_BLOCK_LIST_H
 #define COLLISION_BLOCK_LIST_H
 

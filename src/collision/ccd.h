@@ -1,5 +1,5 @@
-// What the files of CCD share: ccd.c has the whole, ccd_pairs.c what meets, ccd_zones.c what is done
-// about it.
+// Shared declarations of continuous collision detection: ccd.c is the whole, ccd_pairs.c finds collisions, ccd_zones.c
+// resolves them.
 #ifndef COLLISION_CCD_H
 #define COLLISION_CCD_H
 

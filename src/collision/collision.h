@@ -1,16 +1,17 @@
-// Sheets do not pass through themselves nor through each other.
+// Contact of sheets with themselves and each other.
 //
-// What must not cross is the drawn mesh: a cell's four triangles around its virtual centre, the mean of its corners
-// (sections 6 and 7 of the paper let layers pass through each other). Twice in a step this part of the dynamics acts:
+// The drawn mesh must not cross itself: a cell's four triangles around its virtual centre, the mean of its corners
+// (sections 6 and 7 of the paper let layers pass through each other). This part of the dynamics acts twice in a step:
 //
 //   in every substep   points of two cells that are nearer than the contact thickness are pushed apart, with friction
 //                      (repulsion.c)
-//   at the step's end  no straight path from the last step's positions to the present ones may lead through another cell: where it
-//                      does, what meets goes only as far as is free (ccd.c). That is a guarantee, not a force
+//   at the step's end  no straight trajectory from the last step's positions to the present ones may pass through
+//                      another cell: one that would is stopped before it collides (ccd.c). That is a guarantee, not a
+//                      force
 //
-// Both look at pairs of cells that are near, which are found again when cells have used up the motion that the last
-// search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. Where
-// there are more pairs than a list has room for, it grows (collision_capacity.c).
+// Both use pairs of nearby cells. The search for pairs runs again when cells have used up the motion that the last
+// search allowed for (broad_phase.c). All lists have a fixed order: the same bytes for any number of threads. A list
+// that is too small for its pairs grows (collision_capacity.c).
 #ifndef COLLISION_COLLISION_H
 #define COLLISION_COLLISION_H
 

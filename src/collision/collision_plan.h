@@ -1,4 +1,4 @@
-// What the files of this folder share.
+// Shared declarations of this folder's files.
 #ifndef COLLISION_COLLISION_PLAN_H
 #define COLLISION_COLLISION_PLAN_H
 

@@ -1,4 +1,4 @@
-// Nearest points of features, and when moving features meet.
+// Nearest points of features, and times of impact of moving features.
 #ifndef COLLISION_FEATURE_DISTANCE_H
 #define COLLISION_FEATURE_DISTANCE_H
 

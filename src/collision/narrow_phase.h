@@ -1,4 +1,4 @@
-// Which features of two cells are near each other.
+// The features of two cells that are near each other.
 #ifndef COLLISION_NARROW_PHASE_H
 #define COLLISION_NARROW_PHASE_H
 

@@ -1,4 +1,4 @@
-// The attachments of vertices, LANES at a time. Included by a file per instruction set, as strand_kernel.h is.
+// The attachments of vertices, LANES at a time. One file per instruction set includes this, like strand_kernel.h.
 #include "dynamics/attach.h"
 
 /// Where sources p and q are farther apart than the sheet between them, by the ratio f, no position satisfies both

@@ -1,5 +1,5 @@
-// The limit of curvature along the strands of one group, a strand a lane: see curvature.c. Included behind
-// strand_kernel.h, whose groups and operations it has.
+// The limit of curvature along the strands of one group, with one strand per lane: see curvature.c. Included after
+// strand_kernel.h, whose groups and operations it uses.
 
 /// Three nodes in a row.
 typedef struct Bend {

@@ -1,4 +1,4 @@
-// The dynamics' own scratch and the parts of its step. Nothing outside src/dynamics includes this.
+// Scratch memory of the dynamics, and the parts of its step. Nothing outside src/dynamics includes this.
 #ifndef DYNAMICS_DYNAMICS_PLAN_H
 #define DYNAMICS_DYNAMICS_PLAN_H
 

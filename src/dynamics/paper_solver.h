@@ -1,4 +1,4 @@
-// The solvers other than strands: the paper's (eq 16 to 19, section 7.1), to its letter and in one system, and the
+// The solvers other than strands: the paper's (eq 16 to 19, section 7.1), also literally and in one system, and the
 // mass-spring model of section 8. All run on a Network, in double precision. Nothing outside src/dynamics includes
 // this.
 #ifndef DYNAMICS_PAPER_SOLVER_H

@@ -1,4 +1,4 @@
-// What makes a sheet as stiff as its material says, whatever the cells and the step (docs/equations.md, Stiffness).
+// Compliances that give a sheet its material's stiffness for any cells and step (docs/equations.md, Stiffness).
 #ifndef DYNAMICS_STIFFNESS_H
 #define DYNAMICS_STIFFNESS_H
 

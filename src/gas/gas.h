@@ -1,4 +1,4 @@
-// The gas about what burns: hot air, flames and smoke on a grid.
+// The gas around what burns: hot air, flames and smoke on a grid.
 #ifndef GAS_GAS_H
 #define GAS_GAS_H
 

@@ -1,12 +1,12 @@
-// What the stage's files share: the grid, its fields, and the passes that gas_step calls in order.
+// Shared declarations of the stage: the grid, its fields, and the passes that gas_step calls in order.
 //
-// The gas is air at the pressure of its surroundings, so that its density is rho = 353/T kg K/m3 and a volume of any
-// temperature holds the same rho cp T. Its heat above the ambient is written as lightness
+// The gas is air at ambient pressure, so its density is rho = 353/T kg K/m3, and a volume of any temperature holds the
+// same rho cp T. Its heat above the ambient is written as lightness
 //
 //   L = 1 - Ta/T = 1 - rho/rho_a,   heat per volume = GAS_HEAT L,   GAS_HEAT = 353 cp = 355 kJ/m3
 //
-// which is carried like a density, lifts with g L, and grows by q/GAS_HEAT where q W/m3 are released, while
-// the gas expands by just as much: div u = q/GAS_HEAT (low Mach number, ideal gas).
+// which is advected like a density, gives the buoyancy g L, and grows by q/GAS_HEAT where q W/m3 are released, while
+// the gas expands by the same amount: div u = q/GAS_HEAT (low Mach number, ideal gas).
 #ifndef GAS_GAS_PLAN_H
 #define GAS_GAS_PLAN_H
 

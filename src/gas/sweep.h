@@ -1,4 +1,4 @@
-// One axis of what advect.c carries: the loops over cells, which have a file for each instruction set.
+// Advection of advect.c along one axis: the loops over cells, with one file per instruction set.
 #ifndef GAS_SWEEP_H
 #define GAS_SWEEP_H
 

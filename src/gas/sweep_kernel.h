@@ -1,5 +1,5 @@
-// The loops over cells of advect.c, which has the formulas. Included by a file per instruction set, which has defined
-// SWEEP_ROWS, the name of its function. Every operation rounds as IEEE 754 says, so that all give the same bytes.
+// The loops over cells of advect.c, which has the formulas. One file per instruction set defines SWEEP_ROWS, the name
+// of its function, and includes this. Every operation rounds according to IEEE 754, so all give the same bytes.
 #include "gas/sweep.h"
 
 /// Fluxes through the lower faces of `count` cells in a row from c on.

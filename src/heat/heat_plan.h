@@ -1,4 +1,4 @@
-// What the stage's files share: the plan, and the passes that heat_step calls in order.
+// Shared declarations of the stage: the plan, and the passes that heat_step calls in order.
 #ifndef HEAT_HEAT_PLAN_H
 #define HEAT_HEAT_PLAN_H
 

@@ -1,4 +1,4 @@
-// The sweeps that conjugate gradients consist of, for the instruction sets that have their own.
+// The sweeps of conjugate gradients that have a version for each instruction set.
 #ifndef REFERENCE_CONJUGATE_H
 #define REFERENCE_CONJUGATE_H
 

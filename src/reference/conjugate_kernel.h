@@ -1,6 +1,6 @@
-// The sweeps of conjugate gradients. Included by a file per instruction set, which has defined CONJUGATE_KERNEL, the
-// name of its table. Every operation rounds as IEEE 754 says and lanes are added in one order, so that all of them
-// give the same bytes.
+// The sweeps of conjugate gradients. One file per instruction set defines CONJUGATE_KERNEL, the name of its table, and
+// includes this. Every operation rounds according to IEEE 754 and lanes are added in a fixed order, so all of them give
+// the same bytes.
 #include "reference/conjugate.h"
 
 #ifdef __AVX__

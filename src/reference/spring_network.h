@@ -1,7 +1,7 @@
 // A network of springs in double precision and the paper's projection of it (section 7.1). The solvers `paper`,
 // `paper-literal`, `all-at-once` and `mass-spring` run on one, and so does singe/research.h.
 //
-// Springs are in sets, each of which is projected as one system: a set is a colour, or all springs at once.
+// Springs are in sets. Each set is projected as one system: a colour, or all springs at once.
 #ifndef REFERENCE_SPRING_NETWORK_H
 #define REFERENCE_SPRING_NETWORK_H
 

@@ -1,4 +1,4 @@
-// Whether drawn cells pass through each other.
+// Tests whether drawn cells cross each other.
 #ifndef SHELL_CROSS_H
 #define SHELL_CROSS_H
 

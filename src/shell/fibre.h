@@ -1,4 +1,4 @@
-// The springs' directions against those of the fibres.
+// Directions of the springs relative to the fibres.
 #ifndef SHELL_FIBRE_H
 #define SHELL_FIBRE_H
 

@@ -1,4 +1,4 @@
-// A parameter over the particles of a shell: most are one number for all, and then take no more room than that.
+// A parameter over the particles of a shell: one number for all particles, or an array where it varies.
 #ifndef SHELL_FIELD_H
 #define SHELL_FIELD_H
 

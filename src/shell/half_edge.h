@@ -1,7 +1,7 @@
-// How the cells of a quad mesh meet.
+// Adjacency of the cells of a quad mesh.
 //
-// Half-edge 4 c + i is side i of cell c, from its corner i to corner i + 1. Its twin is the same edge
-// seen from the neighbour, which runs it the other way.
+// Half-edge 4 c + i is side i of cell c, from its corner i to corner i + 1. Its twin is the same edge in the
+// neighbouring cell, with the opposite direction.
 #ifndef SHELL_HALF_EDGE_H
 #define SHELL_HALF_EDGE_H
 

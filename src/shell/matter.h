@@ -1,4 +1,4 @@
-// What the particles are made of, from the sheets' parameters.
+// Properties of the particles, from the sheets' parameters.
 #ifndef SHELL_MATTER_H
 #define SHELL_MATTER_H
 

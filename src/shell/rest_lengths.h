@@ -1,4 +1,4 @@
-// The measures of one cell.
+// Rest measures of one cell.
 #ifndef SHELL_REST_LENGTHS_H
 #define SHELL_REST_LENGTHS_H
 

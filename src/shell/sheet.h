@@ -1,4 +1,4 @@
-// A sheet's Def and its material, checked.
+// A sheet's checked Def and material.
 #ifndef SHELL_SHEET_H
 #define SHELL_SHEET_H
 

@@ -1,8 +1,8 @@
-// The shell: the body-centred square of section 3.2, what it is made of, and its state.
+// The shell: the body-centred square of section 3.2, its material, and its state.
 //
-// Particles: vertex v is particle v (corner, blue layer); cell c is particle vertex_count + c
-// (centre, green layer). A built Shell changes by splits of vertices alone (shell/split.h), which tears make; all else
-// that changes is in State.
+// Particles: vertex v is particle v (corner, blue layer); cell c is particle vertex_count + c (centre, green layer).
+// Only splits of vertices change a built Shell (shell/split.h); tears make them. Everything else that changes is in
+// State.
 #ifndef SHELL_SHELL_H
 #define SHELL_SHELL_H
 

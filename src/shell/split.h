@@ -1,11 +1,11 @@
-// Splitting a vertex: the one way in which a Shell changes after its build (src/tear decides where).
+// Splitting a vertex: the only change of a Shell after its build (src/tear decides where).
 //
-// A vertex v lends some cells of its fan to a spare vertex v': they get v' for a corner, and the springs that lie in
-// them alone end at v' from then on. Cells stay whole. Where a cell that goes borders on one that stays, their edge is
-// torn: the two are neighbours no more (their green spring is of no cell any more), and the one that goes gets a blue
-// spring of its own, a spare one behind those of the strands. v' has v's place at rest, uv and material; area, mass and
-// capacity are shared by the areas of the corners. What has been done is a list of ShellSplit, from which it can be
-// done again.
+// A vertex v gives some cells of its fan to a spare vertex v'. These cells get v' as their corner, and the springs that
+// lie only in them end at v' from then on. Cells stay whole. Where a cell of v' is next to a cell of v, their edge is
+// torn: the two are no longer neighbours (their green spring belongs to no cell any more), and the cell of v' gets its
+// own blue spring, a spare one after those of the strands. v' has v's rest position, uv and material; area, mass and
+// capacity are divided by the areas of the corners. The list of ShellSplit records all splits, so that they can be
+// repeated.
 #ifndef SHELL_SPLIT_H
 #define SHELL_SPLIT_H
 

@@ -1,4 +1,5 @@
-// What must hold of a simulation that was read back: all that stages and public functions rely on, whoever wrote it.
+// Checks of a simulation that was read back: everything that stages and public functions rely on, whoever wrote the
+// bytes.
 #ifndef SIM_SNAPSHOT_CHECK_H
 #define SIM_SNAPSHOT_CHECK_H
 

@@ -1,4 +1,4 @@
-// Defs in a snapshot: each field that counts, without padding, pointers and hooks.
+// Defs in a snapshot: each field that matters, without padding, pointers and hooks.
 #ifndef SIM_SNAPSHOT_DEF_H
 #define SIM_SNAPSHOT_DEF_H
 

@@ -1,4 +1,4 @@
-// The drawn surface refined near the front: what the files fine_*.c share.
+// The drawn surface refined near the front: shared declarations of the files fine_*.c.
 #ifndef SURFACE_SURFACE_FINE_H
 #define SURFACE_SURFACE_FINE_H
 

@@ -1,8 +1,8 @@
 // Tearing: where the line force in a sheet exceeds its strength, the sheet opens along the sides of its cells.
 //
-// The one stage that changes the Shell, by the splits of shell/split.h, whose list is in the TearState; and as a split
-// makes a particle, it writes of every part of the State what the new one takes over from the old one. It comes after
-// what can fail in a step, so that a failed step has torn nothing.
+// This is the one stage that changes the Shell, by the splits of shell/split.h, whose list is in the TearState. A split
+// makes a particle, so it writes to every part of the State what the new particle takes over from the old one. The
+// stage runs after everything in a step that can fail, so a failed step has torn nothing.
 #ifndef TEAR_TEAR_H
 #define TEAR_TEAR_H
 

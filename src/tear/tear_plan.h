@@ -1,4 +1,4 @@
-// What the stage's files share.
+// Shared declarations of the stage's files.
 #ifndef TEAR_TEAR_PLAN_H
 #define TEAR_TEAR_PLAN_H
 

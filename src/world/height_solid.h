@@ -1,4 +1,4 @@
-// A solid below a grid of heights.
+// A solid below a height field.
 #ifndef WORLD_HEIGHT_SOLID_H
 #define WORLD_HEIGHT_SOLID_H
 

@@ -1,4 +1,4 @@
-// A solid within a closed triangle mesh.
+// A solid inside a closed triangle mesh.
 #ifndef WORLD_MESH_SOLID_H
 #define WORLD_MESH_SOLID_H
 

@@ -1,5 +1,5 @@
-// The point of a triangle that is nearest to a point, and on which of its features it lies (Ericson, Real-Time
-// Collision Detection, 5.1.5), in double: what is near a surface must not lose its side to rounding.
+// The nearest point of a triangle to a point, and the feature it lies on (Ericson, Real-Time Collision Detection,
+// 5.1.5), in double precision: rounding must not change the side of a point near a surface.
 #ifndef WORLD_TRIANGLE_H
 #define WORLD_TRIANGLE_H
 

@@ -1,4 +1,4 @@
-// The air's velocity at a place and time.
+// Velocity of the air at a position and time.
 #ifndef WORLD_WIND_H
 #define WORLD_WIND_H
 

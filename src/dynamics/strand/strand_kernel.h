@@ -1,7 +1,7 @@
-// The projection of one group of strands, a strand a lane. Included by a file per instruction set, which has defined
-// LANES, the vector type Lanes, Quads (a particle of every lane: where it is, and its inverse mass), Node (the same,
-// x of all lanes beside each other, then y) and the operations on them. Every operation rounds as IEEE 754 says and
-// lanes never mix, so that all instruction sets give the same bytes.
+// The projection of one group of strands, with one strand per lane. One file per instruction set defines LANES, the
+// vector type Lanes, Quads (a particle of every lane: its position and its inverse mass), Node (the same, with x of all
+// lanes contiguous, then y) and the operations on them, and includes this. Every operation rounds according to IEEE 754
+// and lanes never mix, so all instruction sets give the same bytes.
 //
 // Constraint of a spring of target length l between nodes a and b, row-normalised, d = x_b - x_a,
 // u = d/|d|: eq 10 over the length of its gradient (eq 11) is
@@ -10,18 +10,20 @@
 //
 // Eq 16 and 19 with masses, w = 1/m: (J M^-1 J^T + S) lambda = W C, x_a += w_a u lambda, x_b -= w_b u lambda, with
 // S = c/h^2 + (r/2 + y max(C/|d| - g, 0)) (w_a + w_b), the compliance c, the regularisation r, y = STRAND_YIELD and
-// g = STRAND_GIVES. The last is for what cannot be satisfied, a strand pulled longer than it is between two pins: there
-// lambda would grow to C/r, while a substep can take a pull of w lambda of about |d| only, beyond which it throws what
-// is not quite in line from side to side. With y it stays below |d|/y. Springs within a hundredth do not know of it.
+// g = STRAND_GIVES. The last term is for constraints that cannot be satisfied, of a strand pulled beyond its length
+// between two pins. There lambda would grow to C/r, but a substep can only take a pull w lambda of about |d|; beyond
+// that it throws nodes that are slightly out of line from side to side. With y it stays below |d|/y. Springs within a
+// hundredth of their length are not affected.
 //
-// Every row times its |d|, with mu = lambda/|d| for unknown, needs neither roots nor unit vectors. Let D = |d|^2 and
-// E = |d| C = (D - l^2)/2. Along a chain, spring k shares node k with spring k - 1, so the matrix is tridiagonal:
+// Every row is multiplied by its |d|. With the unknown mu = lambda/|d| this needs neither square roots nor unit
+// vectors. Let D = |d|^2 and E = |d| C = (D - l^2)/2. Along a chain, spring k shares node k with spring k - 1, so the
+// matrix is tridiagonal:
 //
 //   diagonal     (w_k + w_(k+1)) ((1 + r/2) D + y max(E - g D, 0)) + (c/h^2) D
 //   off-diagonal -w_k (d_(k-1) . d_k)
 //   right side   W E
 //
-// and x_a += w_a d mu, x_b -= w_b d mu. The Thomas algorithm solves it. A ring adds one corner entry, taken in by the
+// and x_a += w_a d mu, x_b -= w_b d mu. The Thomas algorithm solves it. A ring adds one corner entry, handled by the
 // Sherman-Morrison formula. Chains of constraints solved in linear time: Bender and Bayer, VRIPHYS 2008; fast
 // projection: Goldenthal et al. 2007. Springs that are gone have weight 0 and decouple the chain.
 #include "dynamics/strand/strand_lanes.h"

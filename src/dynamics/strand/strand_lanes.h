@@ -1,12 +1,12 @@
-// Strands laid out for lanes. A group is up to STRAND_LANES lanes side by side; a lane holds one strand, or several
-// one after another with a row between them that holds no spring. Row k of lane j of a group is the slot
+// Strands laid out in lanes. A group is up to STRAND_LANES parallel lanes; a lane holds one strand, or several
+// consecutive strands separated by a row without a spring. Row k of lane j of a group is the slot
 // (row + k) STRAND_LANES + j, of a node and of the spring from it to the node of the next row; a group ends with
-// a row of nodes alone. What holds no spring has weight 0, and the node of what holds no particle is one of those after
-// the last particle, which have no mass.
+// a row of only nodes. A slot without a spring has weight 0. A slot without a particle has one of the nodes after the
+// last particle, which have no mass.
 //
 // Column c of a group is lane c / (width / 4) + 4 (c % (width / 4)): transposing four by four, as kernels do, then
-// takes the particles of width / 4 columns beside each other at once. Strands are laid so that columns beside each
-// other hold particles of consecutive numbers where they can (strand_lay.c).
+// takes the particles of width / 4 contiguous columns at once. Strands are laid out so that contiguous columns hold
+// particles of consecutive numbers where possible (strand_lay.c).
 #ifndef DYNAMICS_STRAND_STRAND_LANES_H
 #define DYNAMICS_STRAND_STRAND_LANES_H
 
