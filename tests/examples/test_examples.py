@@ -177,7 +177,7 @@ class Letter(Example):
         self.say["left"] = f"{last['pieces']:.0f} pieces, {last['particles']:.0f} particles, {ash} vertices of ash"
         leaf = 1e4 * self.leaf(len(self.rows))
         self.say["leaf"] = f"{leaf:.0f} cm2 of char at last"
-        self.curls("50-66")
+        self.curls("56-60")
         self.told()
         self.assertGreaterEqual(leaf, 10)
         self.assertTrue(750 <= hottest <= 1050)  # of flame and embers; strips without edges keep to 950 (heat_front)
