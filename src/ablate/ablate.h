@@ -17,8 +17,8 @@ float ablate_level(const Shell *shell, const State *state, uint32_t particle);
 /// first; a caller that reads pieces before the first step calls it too.
 void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 
-/// Whether what was read back fits together: springs that are left and counted at their ends, pieces that are connected
-/// by them, and ids enough for all that they may still fall into. The shell has torn as it had.
+/// Whether data that was read back is consistent: springs that are left and counted at their ends, pieces connected by
+/// them, and enough ids for all pieces that may still separate. The shell's tears have been repeated.
 bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate);
 
 /// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology
@@ -38,14 +38,13 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
 /// How finely the surface is drawn near the front.
 typedef struct SurfaceDetail {
     float size;       ///< m, distance of the points of the level set, > 0
-    float raggedness; ///< m, how far burnt edges are eaten into at most, >= 0
-    uint32_t seed;    ///< of the noise; each sheet's is another
-    const float *room;   ///< [vertices] m, how far another surface is, or INFINITY; NULL: none is near
-    float bulge_max;   ///< m, how far the surface leaves flat triangles at most; 0: only by the cells' size
+    float raggedness; ///< m, max depth of the raggedness of burnt edges, >= 0
+    uint32_t seed;    ///< of the noise; each sheet has its own
+    const float *room;   ///< [vertices] m, distance of another surface, or INFINITY; NULL: none is near
+    float bulge_max;   ///< m, max distance of the surface from flat triangles; 0: only by the cells' size
 } SurfaceDetail;
 
-/// The same, refined near the front (surface_fine.c). What it needs beside the surface comes from `memory` and goes
-/// back before it returns.
+/// The same, refined near the front (surface_fine.c). Its scratch comes from `memory` and is freed before it returns.
 SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const State *state, const SurfaceDetail *detail,
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error);
 

@@ -31,12 +31,12 @@ static inline bool burn_is_hot(const BurnJob *job, uint32_t first, uint32_t last
     return hot;
 }
 
-/// The end of the run of particles from `first` that is looked at at once.
+/// The end of the run of particles from `first` that is processed at once.
 static inline uint32_t burn_run_end(uint32_t first, uint32_t last) {
     return last - first < FIELD_RUN ? last : first + FIELD_RUN;
 }
 
-/// Stamps what reached its ignition temperature and pushes its events in order of particle.
+/// Stamps particles that reached their ignition temperature and pushes their events in order of particle.
 void burn_ignite(BurnJob *job, Pool *pool, EventList *events);
 
 /// The share of the air that reaches hot char, left in burn->release until burn_lose_mass writes that (glow.c).
@@ -44,10 +44,10 @@ void burn_air(BurnJob *job, Pool *pool);
 
 /// The second reaction: the share of char that is left of `share` after dt s.
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt);
-/// K by which a mass fraction of char warms unit mass as it glows away.
+/// K by which a mass fraction of char heats unit mass as it glows away.
 float burn_glow_heat(const BurnJob *job, uint32_t i);
 
-/// Eq 4 and what glows. Returns the mass that went as gas, kg; not finite where a mass is not.
+/// Eq 4 and the glowing of char. Returns the mass that went as gas, kg; not finite where a mass is not.
 double burn_lose_mass(BurnJob *job, Pool *pool);
 
 /// Eq 6, for springs with an end that lost mass in this step.

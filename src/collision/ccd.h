@@ -35,10 +35,10 @@ void ccd_sweep_cells(const Ccd *ccd, const CollisionPair *pair, Swept *a, Swept 
 uint32_t ccd_meet(const Ccd *ccd, Pool *pool, uint32_t first);
 uint32_t ccd_meet_active(const Ccd *ccd, Pool *pool, uint32_t count);
 
-/// Impacts of all pairs that meet, one after another.
+/// Impacts of all pairs that collide, one after another.
 void ccd_impacts(const Ccd *ccd);
 
-/// Joins pairs that meet into zones, in the round of this number, and moves these.
+/// Joins pairs that collide into zones, in the iteration of this number, and moves these.
 void ccd_zones(const Ccd *ccd, int round);
 
 #endif

@@ -28,31 +28,31 @@ SingeResult collision_plan_create(Memory *memory, const Shell *shell, const Sing
                               CollisionPlan **plan);
 void collision_plan_free(Memory *memory, CollisionPlan *plan);
 
-/// What the plan remembers of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
-/// reading; what does not fit fails the stream.
+/// The plan's data of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
+/// reading; data that does not fit fails the stream.
 SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream);
 
-/// To be called when cells have other corners than before.
+/// Must be called when the corners of cells have changed.
 void collision_plan_forget(CollisionPlan *plan);
 
 /// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
-/// where sheets crowd, lists grow. Then the step is to be undone; the next one searches again.
+/// where sheets crowd, lists grow. After an error the step must be rolled back; the next one searches again.
 SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
 
-/// Pushes apart what is too near, in a substep of h seconds that set out from `predicted` less h times the velocities.
+/// Pushes points apart that are too near, in a substep of h seconds from `predicted` less h times the velocities.
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
 SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                         DynamicsState *dynamics);
 
-/// What has been done since the plan was made.
+/// Counts since the plan was made.
 typedef struct CollisionCounters {
-    uint64_t searches;   ///< for pairs that are near
+    uint64_t searches;   ///< for nearby pairs
     uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
     uint64_t repulsions;     ///< pairs of points that a substep had to push apart, summed over substeps
-    uint64_t stops;      ///< pairs of cells whose displacement was cut short
-    uint64_t looks;      ///< pairs of cells that were looked at again, as a round had moved one of them
+    uint64_t stops;      ///< pairs of cells stopped by CCD
+    uint64_t looks;      ///< pairs of cells checked again, as an iteration had moved one of them
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
     uint32_t intersecting;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
@@ -62,8 +62,8 @@ typedef struct CollisionCounters {
 
 CollisionCounters collision_counters(const CollisionPlan *plan);
 
-/// Lowers room[vertices], m, at vertices whose cells have another near in the present state, to how far it is: the
-/// drawn surface leaves its flat triangles by less than half of that. Looks as far as a quarter of a cell.
+/// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the
+/// drawn surface deviates from its flat triangles by less than half of that. Searches up to a quarter of a cell.
 void collision_clearance(const CollisionPlan *plan, const Shell *shell, const State *state, float *room);
 
 #endif

@@ -7,15 +7,15 @@
 #include "collision/narrow_lanes.h"
 #include "collision/block_list.h"
 
-/// Steps that a search is to last for at most; it is repeated earlier where cells move otherwise than they did.
+/// Max steps that a search is valid for; it is repeated earlier if cells move differently.
 enum { COLLISION_STEPS = 10 };
-/// Buckets, pairs or cells that a thread works on together.
+/// Buckets, pairs or cells in one work item of a thread.
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or
 /// to COLLISION_LIST_MIN items where that is more.
 enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
 
-/// What meets.
+/// Kinds of features that collide.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
 
 /// A cell's box at the search, in a frame that goes with the mean of its corners' displacements over plan->steps, and

@@ -21,23 +21,23 @@ typedef struct NearFeatures {
     uint8_t kind, first, second; ///< as in a CollisionPair
 } NearFeatures;
 
-/// Room for all of two cells.
+/// Max features of two cells.
 enum { NARROW_MAX = 104 };
 
 void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
                       NarrowCell *out);
 
-/// How far apart two cells are at least, by the boxes around them.
+/// Lower bound of the distance of two cells, by the boxes around them.
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b);
 
-/// The same by the slabs that they lie in; negative where slabs do not tell.
+/// The same by the slabs that they lie in; negative where slabs give no bound.
 float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b);
 
 /// m by which narrow_features may tell more than there is between a feature of the cell and another: its numbers are
 /// float. Next to nothing, but for slivers.
 float narrow_error_bound(const NarrowCell *cell);
 
-/// How far features are looked for.
+/// Search distances of features.
 typedef struct FeatureRange {
     float measured; ///< m, to tell the smallest distance; see narrow_error_bound
     float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other

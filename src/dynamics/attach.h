@@ -14,7 +14,7 @@ enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
 typedef struct AttachSpread {
     int count;  ///< 0 also where a tight sheet may tear
     float max; ///< of the ratios
-    bool tight; ///< two are farther apart than the sheet reaches
+    bool tight; ///< two are farther apart than the sheet between them
     float position[ATTACH_SOURCES][3]; ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
     float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
@@ -24,11 +24,11 @@ typedef struct AttachSpread {
 typedef struct Attachments {
     uint32_t (*source)[ATTACH_SOURCES]; ///< [sheets] vertices; SHELL_NONE where there are fewer
     float (*length)[ATTACH_SOURCES];    ///< [vertices] m, INFINITY where nothing holds
-    float (*goal)[ATTACH_SOURCES];      ///< [vertices] m, as last measured; lengths that shorten go there by and by
+    float (*goal)[ATTACH_SOURCES];      ///< [vertices] m, as last measured; shortening lengths approach it
     AttachSpread *spread;               ///< [sheets] scratch of a substep
     float *distance;                    ///< [vertices] scratch
     Geodesic search;
-    bool settled; ///< no length is on its way to its goal
+    bool settled; ///< all lengths have reached their goals
     // what they were measured for
     uint64_t topology;
     double mass_burnt;
@@ -50,7 +50,7 @@ void attach_update(Attachments *attachments, const Shell *shell, const State *st
 /// A tear has given a vertex a second edge: it is as far from everything.
 void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare);
 
-/// Notes where the sources are.
+/// Stores the positions of the sources.
 void attach_position(Attachments *attachments, const Shell *shell, const DynamicsState *dynamics);
 
 /// Puts vertices among the particles [begin, end) that are too far from a source back on the sphere around it.

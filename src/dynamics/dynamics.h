@@ -20,7 +20,7 @@ typedef struct DynamicsSettings {
     int thread_count; ///< that may work at once
 } DynamicsSettings;
 
-/// Whether this processor has the instructions.
+/// Whether this processor supports the instructions.
 bool dynamics_runs_here(SingeInstructions instructions);
 
 /// Scratch of the stage, built once.
@@ -32,11 +32,11 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan);
 /// Substeps in a step.
 int dynamics_plan_substeps(const DynamicsPlan *plan);
 
-/// What the plan remembers of earlier steps, as part of a snapshot of this State. SINGE_ERROR_MEMORY when reading; what
+/// The plan's data of earlier steps, as part of a snapshot of this State. SINGE_ERROR_MEMORY when reading; data that
 /// does not fit fails the stream.
 SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream);
 
-/// To be called when other particles are pinned than before.
+/// Must be called when the set of pinned particles has changed.
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state);
 
 /// What a colour's springs pulled with in the step done, N/m: force over length, times target over rest length; NULL
@@ -46,13 +46,13 @@ const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
 /// How far apart a sheet is held in this step, over how far it reaches, at most; 1 where that is not known.
 float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet);
 
-/// To be called when a tear has split a vertex.
+/// Must be called when a tear has split a vertex.
 void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare);
 
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 
-/// What contact of sheets has done so far; zero without.
+/// Counts of contact of sheets so far; zero without.
 CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan);
 
 /// How far another part of a sheet is from the cells at each vertex ([vertices], m), where that is near, else INFINITY.

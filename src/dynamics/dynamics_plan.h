@@ -17,14 +17,14 @@ typedef struct MovingCollider {
     float low[3], high[3]; ///< m
 } MovingCollider;
 
-/// The loops that are written once for every instruction set.
+/// The loops that have a version for each instruction set.
 typedef struct Kernels {
     StrandSolve *solve;
     AttachHold *hold;
     StrandBend *bend;
 } Kernels;
 
-/// Those for these instructions, or NULL where the processor lacks them (strand_kernels.c).
+/// The loops for these instructions, or NULL if the processor lacks them (strand_kernels.c).
 const Kernels *kernels_choose(SingeInstructions instructions);
 
 /// The strands of all colours, and scratch for the threads that solve them.
@@ -42,7 +42,7 @@ bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *so
                     StrandSolve *solve, Strands *strands);
 void strands_free(Memory *memory, Strands *strands);
 
-/// A spring that a tear has taken out of its strand, or made (patch.c).
+/// A spring that a tear has removed from its strand, or made (patch.c).
 typedef struct Patch {
     uint32_t spring, a, b;
     float length, weight, compliance;
@@ -60,7 +60,7 @@ typedef struct Patches {
 
 typedef struct Paper Paper;
 
-/// Where two cells meet that a green spring joins, as they lie at rest (crease.c).
+/// The edge between two cells that a green spring joins, at rest (crease.c).
 typedef struct Hinge {
     uint8_t side[2]; ///< of the cell at each of the spring's ends
     float arc;       ///< m, s, from centroid to centroid along the sheet
@@ -84,12 +84,12 @@ struct DynamicsPlan {
     float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
     Patches patches;
-    bool strands_written; ///< their weights and targets, in a step that was done
+    bool strands_written; ///< their weights and targets, in a step that succeeded
     Attachments attachments;
-    CollisionPlan *collision;        ///< NULL where sheets pass through each other
-    Hinge *hinges;        ///< [green springs], or NULL where no bend stays
-    bool creased;         ///< there are creases after the step before
-    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells needs no look
+    CollisionPlan *collision;        ///< NULL without contact of sheets
+    Hinge *hinges;        ///< [green springs], or NULL without creases
+    bool creased;         ///< there are creases after the last step
+    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells is skipped
     float (*cell_normal)[4]; ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
@@ -101,12 +101,12 @@ struct DynamicsPlan {
 void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
                       DynamicsState *dynamics);
 
-/// What happens to each particle between two projections (move.c).
+/// The stages for each particle between two projections (move.c).
 typedef struct Between {
-    uint32_t collider_count; ///< in plan->colliders, to be touched
-    bool closes;             ///< eq 13 of the substep behind
-    bool opens;              ///< eq 8 and 9 of the substep ahead
-    bool attaches;           ///< to sources at their positions in the substep ahead
+    uint32_t collider_count; ///< in plan->colliders, for contact
+    bool closes;             ///< eq 13 of the last substep
+    bool opens;              ///< eq 8 and 9 of the next substep
+    bool attaches;           ///< to sources at their positions in the next substep
 } Between;
 
 /// One pass over the particles. Returns the number of contacts.
@@ -125,12 +125,12 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
 bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
 /// Once a step: the limits along a strand, whose weights are known.
 void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set);
-/// Straightens what is bent sharper than its material's curvature_max.
+/// Straightens bends that are sharper than the material's curvature_max.
 void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics);
 
 bool patches_create(Memory *memory, const Shell *shell, Patches *patches);
 void patches_free(Memory *memory, const Shell *shell, Patches *patches);
-/// Once a step: finds the springs that are in no strand any more where tears have changed the shell (true then), ...
+/// Once a step: if tears have changed the shell (then true), finds the springs that are no longer in a strand, ...
 bool patch_follow(DynamicsPlan *plan, const Shell *shell);
 /// ... takes over their weights and lengths, and starts to sum.
 void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state);
@@ -152,24 +152,24 @@ void height_project(DynamicsPlan *plan, const Shell *shell, const AblateState *a
 void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool, float h,
                      DynamicsState *dynamics);
 
-/// Shortens sides and diagonals that a step has left far too long (limit.c). Whether it has found any.
+/// Shortens sides and diagonals that a step has left far too long (limit.c). True if it has found any.
 bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics);
 
-/// Puts centres that have gone through their corners back over them: the last pass of a step (layer_order.c).
+/// Moves centres that have crossed their corners back over them: the last pass of a step (layer_order.c).
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
                     DynamicsState *dynamics);
 
 /// What bends may stay at (crease.c).
 void creases_measure(const Shell *shell, Hinge *hinges);
 
-/// Lets what is bent too sharply keep a part of it, for the steps to come.
+/// Makes bending beyond the crease radius partly plastic, for the steps to come.
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
                      DynamicsState *dynamics);
 
-/// Target length of a green spring of which a crease of so many rad stays, over that without, when it is bent to `now`.
+/// Target length of a green spring with a crease of so many rad, over that without, when it is bent to `now`.
 float crease_ratio(const Hinge *hinge, float stays, float now);
 
-/// Share of its crease that burning has left to a green spring.
+/// Share of a green spring's crease that burning has left.
 float crease_kept(const Shell *shell, const State *state, uint32_t green);
 
 /// A collider between two times of a substep.
@@ -187,10 +187,10 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
                        int end);
 
 /// Contact and friction of one position that was at `previous` when the substep began, at that offset from the surface;
-/// false where it touches nothing.
+/// false without contact.
 bool contact_particle(const MovingCollider *collider, float offset, Float3 previous, float *position);
 
-/// Contact of what lies between a cell's corners (cell_centroids.c).
+/// Contact of a cell's centroid, between its corners (cell_centroids.c).
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                      Pool *pool, float h, DynamicsState *dynamics);
 

@@ -4,7 +4,7 @@
 
 #include "shell/shell.h"
 
-/// Substeps in a step that stiffness_substeps asks for at most.
+/// Max substeps per step that stiffness_substeps returns.
 enum { STIFFNESS_MAX = 1000 };
 
 /// The springs of a colour for the solver.
@@ -13,10 +13,10 @@ typedef struct Stiffness {
     SingeColour colour;
     float softness; ///< s2, of the solver itself: over the mass of a particle a compliance
     uint32_t sheet; ///< of the spring asked for last
-    float own;      ///< m/N, what its springs give without any compliance
+    float own;      ///< m/N, of its springs without any compliance
 } Stiffness;
 
-/// For substeps of h seconds, or 0 for a solver without softness of its own.
+/// For substeps of h seconds, or 0 for a solver without a numerical compliance.
 void stiffness_begin(const Shell *shell, SingeColour colour, float h, float regularisation, Stiffness *stiffness);
 
 /// Compliance of a spring, m/N.

@@ -15,7 +15,7 @@
 #define GAS_HEAT (353 * 1005.f) ///< J/m3
 
 #define GAS_HOTTEST 1450.f ///< K, of a flame
-#define GAS_LIGHTEST 0.85f ///< L above which nothing comes
+#define GAS_LIGHTEST 0.85f ///< max L
 
 enum {
     GAS_GHOSTS = 2, ///< cells around the grid that stay 0: still air of the ambient temperature
@@ -23,13 +23,13 @@ enum {
     GAS_BOXES = 3,
 };
 
-/// What a cell has. The first ones are carried by the flow. GAS_THROUGH + d is the speed through its lower face
+/// Fields of a cell. The first ones are advected. GAS_THROUGH + d is the speed through its lower face
 /// along axis d, of the whole face, where a sheet may cover part of it.
 typedef enum GasField {
     GAS_LIGHTNESS, ///< L
     GAS_FUEL,      ///< J/m3 of unburnt gas
     GAS_SMOKE,     ///< kg/m3
-    GAS_VELOCITY,  ///< three, m/s, beyond the wind
+    GAS_VELOCITY,  ///< three, m/s, relative to the wind
     GAS_CARRIED = GAS_VELOCITY + 3,
     GAS_THROUGH = GAS_CARRIED, ///< three
     GAS_PRESSURE = GAS_THROUGH + 3, ///< m/s: times rho_a cell/dt it is Pa
@@ -56,7 +56,7 @@ typedef struct GasBox {
 
 #define GAS_NO_BOX ((GasBox){{1 << 30, 1 << 30, 1 << 30}, {0, 0, 0}})
 
-/// Makes a box hold another one as well.
+/// Extends a box to contain another one.
 static inline void gas_box_add(GasBox *box, GasBox other) {
     for (int d = 0; d < 3; d++) {
         if (other.low[d] < box->low[d]) box->low[d] = other.low[d];
@@ -72,7 +72,7 @@ typedef struct GasLevel {
     float *p, *rhs;
 } GasLevel;
 
-/// One of the two sets of everything that lasts.
+/// One of the two sets of the persistent fields.
 typedef struct GasTurn {
     float *field[GAS_FIELDS];
     float *conductance, *temperature, *fuel; ///< [particles]
@@ -93,16 +93,16 @@ struct GasPlan {
     uint32_t particles, cell_count;
 
     GasTurn turn[2];
-    float *block[2];     ///< all of a turn's arrays
+    float *block[2];     ///< all arrays of a set
     size_t block_size;   ///< floats
 
     // scratch
     float *spare[3];
-    float *open[3];      ///< share of a cell's lower face that nothing covers
+    float *open[3];      ///< uncovered share of a cell's lower face
     uint8_t *solid;      ///< a collider's
     GasLevel level[GAS_LEVELS];
     int levels;
-    float *mixing;       ///< half the share of a difference that a face of the cell evens out
+    float *mixing;       ///< half the share of a difference that mixes through a face of the cell
     float *expansion;    ///< L that a step adds
     double *partial;     ///< [planes]
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
@@ -111,13 +111,13 @@ struct GasPlan {
     float *scratch;      ///< all of them but normals
     size_t scratch_size;
 
-    // what readers see: without ghosts
+    // for readers: without ghosts
     float *view[3];      ///< temperature, smoke, flame
     float (*view_velocity)[3];
     size_t view_cells;
 };
 
-/// What the passes of a step read.
+/// Input of the passes of a step.
 typedef struct GasPass {
     GasPlan *plan;
     const Shell *shell;
@@ -126,11 +126,11 @@ typedef struct GasPass {
     Pool *pool;
     const GasTurn *from;
     GasTurn *to;
-    float wind[3]; ///< m/s, at the middle of the grid
+    float wind[3]; ///< m/s, at the centre of the grid
     float dt;      ///< s
     float fire;    ///< s of fire since the last step
     // of one pass
-    float courant; ///< dt/cell of a part of the way
+    float courant; ///< dt/cell of one part of the step
     int field;
     GasBox busy[GAS_BOXES];
     GasLevel *level;
@@ -140,30 +140,30 @@ typedef struct GasPass {
 /// Calls run over the planes of the grid, or of a level's.
 void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run);
 
-/// What the sheets and colliders leave open of each face (blocked.c).
+/// The share of each face that sheets and colliders leave open (blocked.c).
 void gas_blocked(GasPass *pass);
 /// Normals of all particles (gas_sheets.c).
 void gas_normals(GasPass *pass);
 /// Whether anything burnt since the gas's last step.
 bool gas_fed(const GasPass *pass);
-/// What burnt goes into the gas as fuel.
+/// Adds the gas of what burnt as fuel.
 void gas_feed(GasPass *pass);
-/// What the gas does to each particle until its next step, and the heat that it loses by it.
+/// Effect of the gas on each particle until its next step, and the heat that the gas loses.
 void gas_meet(GasPass *pass);
-/// Carries everything along (advect.c).
+/// Advects all fields (advect.c).
 void gas_advect(GasPass *pass);
-/// Burns (flame.c).
+/// Burns the fuel (flame.c).
 void gas_burn(GasPass *pass);
 /// Buoyancy and swirl (force.c).
 void gas_force(GasPass *pass);
-/// Makes the flow's divergence that of the expansion (project.c).
+/// Projects the flow so that its divergence is that of the expansion (project.c).
 void gas_project(GasPass *pass);
 /// Solves for the pressure (multigrid.c).
 void gas_solve(GasPass *pass, int cycles);
-/// Fills in what readers see (gas_view.c).
+/// Fills in the view for readers (gas_view.c).
 void gas_show(GasPass *pass, const GasTurn *turn);
 
-/// A place in cells, from the middle of cell (0, 0, 0). False when it is not within the grid or not finite.
+/// A position in cells, from the centre of cell (0, 0, 0). False if it is outside the grid or not finite.
 static inline bool gas_position(const GasPlan *plan, Float3 x, float position[3]) {
     const float at[3] = {x.x, x.y, x.z};
     for (int d = 0; d < 3; d++) {
@@ -173,7 +173,7 @@ static inline bool gas_position(const GasPlan *plan, Float3 x, float position[3]
     return true;
 }
 
-/// Linear between the middles of cells; place is one that gas_position has found.
+/// Linear between the centres of cells, at a position from gas_position.
 static inline float gas_sample(const GasGrid *grid, const float *field, const float position[3]) {
     int i[3];
     float part[3];

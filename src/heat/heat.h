@@ -30,7 +30,7 @@ void source_free(Memory *memory, const Shell *shell, Source *source);
 /// the particles.
 SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error);
 
-/// What the stage needs and does not change while it runs.
+/// Settings of the stage, constant while it runs.
 typedef struct HeatSettings {
     float ambient_temperature; ///< K
     float tolerance;           ///< relative residual of the diffusion
@@ -40,8 +40,8 @@ typedef struct HeatSettings {
 
 /// Operators and scratch of the stage, built once.
 typedef struct HeatPlan HeatPlan;
-/// Fails without memory (*error is not filled then), where a sheet needs a front thickening above 1e6, and where what
-/// it conducts does not fit floats.
+/// Fails when out of memory (*error is not filled then), if a sheet needs a front thickening above 1e6, and if its
+/// conductances do not fit floats.
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
                              SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
@@ -53,7 +53,7 @@ void *heat_scratch(HeatPlan *plan);
 /// The front thickening F used for a sheet (thicken.c).
 float heat_thickening(const HeatPlan *plan, uint32_t sheet);
 
-/// What decides how thick a front is: means of these parameters over a sheet.
+/// Parameters that determine the thickness of a front: means over a sheet.
 typedef struct FrontMatter {
     float diffusivity, mass_rate, heating, ignition_temperature, rate_ceiling;
     float pre_exponential, activation_energy;
@@ -65,7 +65,7 @@ float heat_thickening_for(float thickening, const FrontMatter *front, float ambi
 typedef struct HeatCounters {
     uint64_t iterations;  ///< of the diffusion's solver
     uint64_t unconverged; ///< steps that ended above the tolerance
-    uint64_t bounded;     ///< steps whose temperatures had to be held within the range of conduction
+    uint64_t bounded;     ///< steps whose temperatures had to be limited to the range of conduction
 } HeatCounters;
 
 /// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is

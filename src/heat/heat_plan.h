@@ -7,7 +7,7 @@
 #include "common/float3.h"
 #include "heat/heat.h"
 
-/// Particles in a row that rest together (rest.c). Divides POOL_BLOCK.
+/// Consecutive particles that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
 /// Groups near one that can be listed.
 enum { HEAT_NEAR = 48 };
@@ -18,7 +18,7 @@ typedef struct HeatTwin {
     float conductance;
 } HeatTwin;
 
-/// Rows of the matrix that lie interleaved.
+/// Interleaved rows of the matrix.
 enum { HEAT_ROWS = 4 };
 
 /// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
@@ -32,9 +32,9 @@ typedef struct HeatMatrix {
     float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
     float dt;         ///< s, of `inverse`
     uint32_t slices, entries;
-    HeatTwin *twins;  ///< hardly ever any
+    HeatTwin *twins;  ///< rarely any
     uint32_t twin_count, twin_capacity;
-    bool full; ///< a row has no room for all springs that tears have given it
+    bool full; ///< a row has no room for all springs from tears
 } HeatMatrix;
 
 /// Entries of every row in the slice of row i, and where entry k of row i lies.
@@ -51,7 +51,7 @@ typedef struct HeatRest {
     uint32_t (*near)[HEAT_NEAR]; ///< [groups] those that conduct with it, less itself
     uint8_t *near_count; ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
     uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
-    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, turn by turn
+    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, alternating
 } HeatRest;
 
 struct HeatPlan {
@@ -86,7 +86,7 @@ struct HeatPlan {
     double (*partial)[4];  ///< [blocks]
 };
 
-/// What a step's passes read.
+/// Input of a step's passes.
 typedef struct HeatPass {
     HeatPlan *plan;
     const Shell *shell;
@@ -97,7 +97,7 @@ typedef struct HeatPass {
     float dt; ///< s of fire
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
-    int turn;          ///< which of rest.awake holds
+    int turn;          ///< which of rest.awake is current
     float min, max; ///< K, the range of T*
     double slack;      ///< K, beyond it, before a step ends by bound.c
     double share;      ///< of what is missing to the range's end, in bound.c
@@ -119,7 +119,7 @@ void heat_operator(HeatPlan *plan, const Shell *shell);
 /// The same of one cell's sides and diagonals, and of a vertex, where a tear has come by; not for the umbrella.
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell);
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex);
-/// Whether a tear may change what the cell gives to springs that are not torn.
+/// Whether a tear may change the cell's weights of springs that are not torn.
 bool heat_operator_may_change(const Shell *shell, uint32_t cell);
 
 /// Builds the matrix's pattern, all springs alive (matrix.c).
@@ -154,7 +154,7 @@ SingeResult heat_conduct(HeatPass *pass, HeatCounters *counters, double *made, S
 double heat_bound(HeatPass *pass);
 
 enum { HEAT_SEED = 0x68656174 };
-/// A float next to x, the upper or the lower with the odds that make it right in the mean.
+/// Stochastic rounding of x to a float above or below, correct in the mean.
 static inline float heat_round(double x, uint32_t hash) {
     float near = (float)x;
     if ((double)near == x || !(x > 1e-30 && x < 1e30)) return near;

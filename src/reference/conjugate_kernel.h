@@ -10,7 +10,7 @@ enum { PACK = 2 };
 #endif
 enum { PACKS = NETWORK_LANES / PACK };
 
-/// As many lanes as a register holds; may lie anywhere.
+/// As many lanes as a register holds; unaligned.
 typedef double Pack __attribute__((vector_size(PACK * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 static inline Pack pack_load(const double *from) { return *(const Pack *)from; }

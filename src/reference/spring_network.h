@@ -32,7 +32,7 @@ typedef struct SpringGroup {
     uint8_t *link;        ///< [8 entries] bit 0: end of the row's spring that is shared; bits 1-2: 0 plus, 1 minus, 2 empty
 } SpringGroup;
 
-/// What a projection goes by.
+/// Settings of a projection.
 typedef struct ProjectionRules {
     bool literal;      ///< C = |d|^2/l - l as eq 10 has it, and neither floor nor compliance; else row-normalised
     bool early_exit;   ///< the iterations end, too, when the residual is below `tolerance` of the lengths
@@ -45,7 +45,7 @@ typedef struct Network {
     uint32_t particle_count, group_count;
     double (*position)[3];  ///< m
     double *inverse_mass;   ///< 1/kg; in the system
-    uint8_t *held;          ///< 1: not moved, though in the system by its inverse mass
+    uint8_t *held;          ///< 1: not moved, but in the system with its inverse mass
     SpringGroup *groups;
     ProjectionRules rules;
     const struct ConjugateKernel *kernel; ///< never NULL
@@ -71,7 +71,7 @@ SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t gro
                            const NetworkSprings *springs, bool matrix, Network *network);
 void network_free(Memory *memory, Network *network);
 
-/// What a projection has done.
+/// Result of a projection.
 typedef struct ProjectionReport {
     uint32_t iterations;
     bool broken;         ///< the system is not positive definite, or something is not finite: nothing was moved
@@ -106,7 +106,7 @@ static inline size_t ellpack_entries(const SpringGroup *group) {
     return NETWORK_LANES * group->slice_first[group->padded / NETWORK_LANES];
 }
 
-/// The fastest sweeps that the processor has among those asked for. Results are the same.
+/// The fastest sweeps that the processor supports among those requested. Results are the same.
 const struct ConjugateKernel *conjugate_choose(SingeInstructions instructions);
 
 /// Solves the scaled system for `solution`, from zero; `residual` holds the right-hand side and then what is left of

@@ -4,11 +4,11 @@
 
 #include "common/memory.h"
 
-/// How many particles in a row field_run gives.
+/// Number of consecutive particles that field_run gives.
 enum { FIELD_RUN = 256 };
 
 typedef struct Field {
-    float *values; ///< one a particle, or FIELD_RUN times the same
+    float *values; ///< one per particle, or FIELD_RUN times the same
     uint32_t mask; ///< UINT32_MAX, or 0 where the field is uniform
 } Field;
 

@@ -45,7 +45,7 @@ typedef struct Matter {
     float *mass;               ///< kg, initial
     float *capacity;           ///< J/K, of the unburnt particle
     Field capacity_ratio;      ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
-    // what the rows of singe/material.def give: the parameter, or what matter_value makes of several
+    // from the rows of singe/material.def: the parameter, or what matter_value computes from several
 #define MATTER(field) Field field;
 #define MATTER_NONE
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) field
@@ -60,13 +60,13 @@ typedef struct Matter {
 typedef struct Sheet {
     char name[64];
     uint32_t vertex_first, vertex_count, cell_first, cell_count;
-    uint32_t spare_count;      ///< at the end of its vertices, without cells till a tear needs them (shell/split.h)
+    uint32_t spare_count;      ///< at the end of its vertices, without cells until a tear needs them (shell/split.h)
     uint32_t spare_used;
     float cell_size;           ///< m, median edge
-    SingeMaterialDef material; ///< for what is one for the sheet; its pictures and attributes are gone
+    SingeMaterialDef material; ///< for values of the whole sheet; its textures and attributes are freed
     float velocity[3];
     float drop_pieces_below;   ///< m2
-    uint32_t source_first, source_count; ///< numbers that its vertices have in the input
+    uint32_t source_first, source_count; ///< range of its vertices in the input
 } Sheet;
 
 typedef struct Shell {
@@ -86,13 +86,13 @@ typedef struct Shell {
     uint32_t *cell_order;          ///< [cell_count] cells, family by family
     uint32_t *fan_first;           ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
     uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
-    bool creases;                  ///< bends may stay: a State has room for them
-    // what tears have changed; all 0 where sheets cannot tear
+    bool creases;                  ///< creases are on: a State has room for them
+    // changes by tears; all 0 where sheets cannot tear
     uint32_t spare_count;          ///< of all sheets
-    uint32_t split_count;          ///< splits done: whoever keeps something of the topology compares it
+    uint32_t split_count;          ///< splits so far: whoever caches topology compares it
     uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second edge
     uint32_t *edge_origin;         ///< [edge_spare_count] the blue spring that it was torn from
-    uint32_t moved[SINGE_COLOUR_COUNT]; ///< springs that a split has given another end, or made, at most
+    uint32_t moved[SINGE_COLOUR_COUNT]; ///< max springs that a split has given another end, or made
 } Shell;
 
 /// The parameters that vary over a sheet, in the order of SheetSource.value, which snapshots have.
@@ -140,7 +140,7 @@ void sheet_source_free(Memory *memory, SheetSource *source);
 /// Checks a sheet that was read back as sheet_source_create would.
 SingeResult sheet_source_check(const SheetSource *source, SingeError *error);
 
-/// The picture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
+/// The texture at (u, v): bilinear between pixel centres, clamped at the border, row 0 at v = 1 (material.c).
 float shell_sample_texture(const SingeTexture *texture, float u, float v);
 
 /// Builds the shell of all sheets (bcs.c, strand.c). Errors: SINGE_ERROR_MESH for a non-manifold or
@@ -161,9 +161,9 @@ typedef struct HeatState {
 
 typedef struct BurnState {
     float *mass;          ///< [particles] fraction of the initial
-    float *fuel;          ///< [particles] what of it can still pyrolyse, 1 to 0; with the mass it says char and ash
+    float *fuel;          ///< [particles] share that can still pyrolyse, 1 to 0; with the mass it gives char and ash
     float *burn_rate;     ///< [particles] 1/s of the step just done
-    float *release;       ///< [particles] K/s, by which the step just done warms it
+    float *release;       ///< [particles] K/s, heating by the step just done
     float *time_ignited;  ///< [particles] s, -1 before
     float *time_burnt;    ///< [particles] s, -1 before; when m fell below m_loss
     float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
@@ -186,21 +186,21 @@ typedef struct DynamicsState {
     float (*position)[4]; ///< [particles + shell_nowhere_count] m; fourth: 1/kg, inverse mass in this step
     float (*velocity)[4]; ///< m/s
     uint8_t *pinned;      ///< [particles] number of pins that hold it
-    float *bend;          ///< [green springs] 1/m, curvature beyond rest and curl, through a low pass; NULL without
-    float *crease;        ///< [green springs] 1/m, what of it stays; NULL without
+    float *bend;          ///< [green springs] 1/m, curvature beyond rest and curl, low-pass filtered; NULL without
+    float *crease;        ///< [green springs] 1/m, its plastic part; NULL without
 } DynamicsState;
 
-/// What the gas does to the sheets, from one of its steps to the next. The arrays are the gas plan's, which has two of
-/// each and turns them over, so that what failed is undone by the pointers; NULL without gas.
+/// Effect of the gas on the sheets, from one of its steps to the next. The arrays belong to the gas plan, which has two
+/// sets and alternates between them, so that restoring the pointers rolls back a failed step; NULL without gas.
 typedef struct GasState {
-    bool awake;               ///< there is something hot in it
-    bool warm;                ///< a conductance is not 0
-    const float *conductance; ///< [particles] W/(m2 K), towards `temperature` where that is the higher
+    bool awake;               ///< something in it is hot
+    bool warm;                ///< some conductance is not 0
+    const float *conductance; ///< [particles] W/(m2 K), towards `temperature` where that is higher
     const float *temperature; ///< [particles] K
-    const float (*air)[4];    ///< [particles] m/s that the air there has on top of the wind; fourth is unused
-    const float *fuel;        ///< [particles] what was left of it at the gas's last step
+    const float (*air)[4];    ///< [particles] m/s of the air there, relative to the wind; fourth is unused
+    const float *fuel;        ///< [particles] share left at the gas's last step
     uint64_t steps;           ///< of the gas
-    int turn;                 ///< which of the two holds
+    int turn;                 ///< which of the two sets is current
 } GasState;
 
 /// A vertex that a tear has split: cells of its fan went to the next spare vertex of its sheet.
@@ -226,12 +226,12 @@ typedef struct State {
     DynamicsState dynamics;
     GasState gas;
     TearState tear;
-    void *arena;   ///< all arrays above but the gas's lie in one block
+    void *arena;   ///< all arrays above except the gas's lie in one block
     size_t arena_size;
-    size_t basic_size; ///< of the arena's start: all but the springs' lengths, which follow from the rest
+    size_t basic_size; ///< of the arena's start: all except the springs' lengths, which follow from the rest
 } State;
 
-/// Events of one step; capacity is fixed, what exceeds it is dropped and counted.
+/// Events of one step. The capacity is fixed; events beyond it are dropped and counted.
 typedef struct EventList {
     SingeEvent *items;
     size_t count, capacity, dropped;
@@ -243,8 +243,8 @@ static inline void event_push(EventList *list, SingeEventKind kind, int32_t elem
     list->items[list->count++] = (SingeEvent){kind, element, time, {position[0], position[1], position[2]}};
 }
 
-/// Places after the last particle that have no mass: what lanes without a strand work on. As many as a family has
-/// strands at most.
+/// Nodes without mass after the last particle, for lanes without a strand. Their number is the max number of strands in
+/// a family.
 uint32_t shell_nowhere_count(const Shell *shell);
 
 /// Lays out a State for the shell and fills it with the start: rest positions, initial temperatures,
@@ -258,7 +258,7 @@ void state_rebase(const Shell *shell, State *state, void *arena);
 /// Makes `to` equal to `from`; both were created for this shell. Keeps the arena of `to`.
 void state_copy(const Shell *shell, State *to, const State *from);
 
-/// True for a vertex that waits for a tear.
+/// True for a spare vertex, which no tear has used yet.
 static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
     return vertex - sheet->vertex_first >= sheet->vertex_count - sheet->spare_count + sheet->spare_used;
@@ -293,8 +293,8 @@ static inline float shell_char(float mass, float fuel, float mass_min, float yie
     return share < 0 ? 0 : share > max ? max : share;
 }
 
-/// How many times slower what is left as char burns and cools than the flame's front does: 1 while there is fuel, and 1
-/// for good where pyrolysis leaves no char (burn/glow.c).
+/// Factor by which char burns and cools more slowly than the flame's front: 1 while there is fuel, and always 1 where
+/// pyrolysis leaves no char (burn/glow.c).
 static inline float shell_glow_slowing(const Matter *matter, uint32_t i, float fuel) {
     const float slowest = 4;
     float burnt = (1 - fuel) * (1 - fuel);

@@ -17,7 +17,7 @@ enum {
     SPLIT_MOVED = 8, ///< springs of a colour that splits give another end, at most, for each spare vertex
 };
 
-/// The cells around a vertex and who borders on whom there.
+/// The cells around a vertex and their neighbours there.
 typedef struct Fan {
     int count;                ///< 0 where there are too many; the rest holds as many as it says
     uint32_t cell[SPLIT_FAN]; ///< in the order of shell->fan
@@ -49,7 +49,7 @@ bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *spl
 /// Splits; it must be possible.
 SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split);
 
-/// Does splits that another shell of the same sheets has had. False where they do not fit it.
+/// Repeats the splits of another shell of the same sheets. False if they do not fit it.
 bool split_replay(Shell *shell, const ShellSplit *splits, uint32_t count);
 
 #endif

@@ -12,7 +12,7 @@ typedef struct LooseSprings {
     uint32_t *mate; ///< [2 * count], mates of each other
 } LooseSprings;
 
-/// Makes two ends at one particle run on into each other.
+/// Makes two ends at one particle continue each other.
 static inline void strand_join(LooseSprings *springs, uint32_t a, uint32_t b) {
     springs->mate[a] = b;
     springs->mate[b] = a;
@@ -23,7 +23,7 @@ static inline void strand_join(LooseSprings *springs, uint32_t a, uint32_t b) {
 SingeResult strand_build(Memory *memory, uint32_t particle_count, const LooseSprings *springs, SpringSet *set,
                          uint32_t *number, SingeError *error);
 
-/// Frees what strand_build gave.
+/// Frees what strand_build allocated.
 void strand_free(Memory *memory, SpringSet *set);
 
 #endif

@@ -62,21 +62,21 @@ SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
 /// Everything commit builds from sim->sheets, without the first state (also used by load).
 SingeResult sim_build(SingeSim *sim);
 
-/// Tells the log what was committed, and what will look bad.
+/// Logs what was committed, and what will look bad.
 void sim_log_commit(const SingeSim *sim);
-/// Tells it once that conduction is less exact than was asked for.
+/// Logs once that conduction is less exact than requested.
 void sim_log_unconverged(SingeSim *sim);
-/// Tells it that a collider's mesh was inside out.
+/// Logs that a collider's mesh was inside out.
 void sim_log_turned(const SingeSim *sim, uint32_t collider);
-/// Tells it once that a sheet has no vertices left to tear with.
+/// Logs once that a sheet has no spare vertices left for tears.
 void sim_log_short_of_spares(SingeSim *sim);
 
-/// Tells it once of each: cells that cross from the start, pairs that could not be kept apart, lists that were full.
+/// Logs each once: cells that cross from the start, pairs that could not be kept apart, lists that were full.
 void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts);
 
-/// Tells it of colliders that sheets begin deep inside of.
+/// Logs colliders that sheets begin deep inside of.
 void sim_find_buried(const SingeSim *sim);
-/// Tells it of one, `depth` m deep at `place`.
+/// Logs one, `depth` m deep at `place`.
 void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float depth, Float3 position);
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).

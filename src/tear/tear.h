@@ -18,12 +18,12 @@ void tear_plan_free(Memory *memory, TearPlan *plan);
 /// N/m, the line force that a sheet's substeps can carry; with more it stretches (tear_step.c).
 float tear_carried(const Shell *shell, uint32_t sheet, float h);
 
-/// How far apart a sheet is held, over how far it reaches; changes the strength that it is held against in this step.
+/// Distance at which a sheet is held, over its geodesic length; changes the strength that applies in this step.
 void tear_stretched(TearPlan *plan, uint32_t sheet, float stretch);
 
 /// One step of length h. `pull` are the springs' forces over their lengths in that step, times their target over their
 /// rest lengths, N/m, by colour. Returns the number of new splits, which are the last ones of state->tear.
-/// *short_of_spares: a tear found no vertex left.
+/// *short_of_spares: a tear found no spare vertex.
 uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT], Pool *pool,
                    float h, bool *short_of_spares);
 

@@ -6,7 +6,7 @@
 #include "shell/split.h"
 #include "tear/tear.h"
 
-/// What cells hold that are connected by a vertex alone, of the strength.
+/// Share of the strength between cells that are connected only by a vertex.
 static const float TEAR_HINGE = 0.25f;
 
 /// A symmetric tensor: xx, yy, zz, yz, zx, xy.
@@ -24,7 +24,7 @@ static inline void tensor_add(float *t, Float3 n, float s) {
     t[3] += s * n.y * n.z, t[4] += s * n.z * n.x, t[5] += s * n.x * n.y;
 }
 
-/// What pulls at a vertex.
+/// The load at a vertex.
 typedef struct TearPull {
     float ratio; ///< of the largest principal line force and the strength; 0 where nothing can tear
     Float3 across;  ///< its direction at rest
@@ -33,15 +33,15 @@ typedef struct TearPull {
 
 struct TearPlan {
     uint32_t cell_count, vertex_count, particle_count;
-    Tensor *smooth[2];  ///< [cells] N/m, averaged over the process zone, turn by turn
+    Tensor *smooth[2];  ///< [cells] N/m, averaged over the process zone, alternating
     float *ratio;       ///< [vertices] of TearPull
     uint8_t *torn;      ///< [vertices] an edge at it is torn
     uint32_t split_count; ///< of the shell that `torn` is for
     uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
     double *partial;    ///< [pool_blocks(cells)]
     uint32_t sheet_count;
-    float safe;         ///< N/m, nothing tears below: the smallest strength of all, as char or weakened
-    float *weakened;    ///< [sheets] share of its fresh strength that it has in this step at most
+    float safe;         ///< N/m, nothing tears below: the min of all strengths, as char or weakened
+    float *weakened;    ///< [sheets] max share of its fresh strength in this step
     float *min;       ///< [sheets] that factor where it is pulled farther apart than it reaches
 };
 
@@ -53,7 +53,7 @@ double tear_measure(TearPlan *plan, const Shell *shell, State *state, const floa
                     Pool *pool, float h);
 /// Averages it over the process zone; the result is in plan->smooth[0].
 void tear_smooth(TearPlan *plan, const Shell *shell, const State *state, Pool *pool);
-/// What pulls at a vertex, of the averaged line force.
+/// The load at a vertex, from the averaged line force.
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex);
 
 /// Splits a vertex and gives the new one its state (split_state.c).

@@ -14,7 +14,7 @@
 
 enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
 
-/// Of a bend beyond the limit what a substep takes away (curvature.c).
+/// Share of a bend beyond the limit that a substep removes (curvature.c).
 #define BEND_GAIN 0.5f
 
 /// y of the constraint in strand_kernel.h.
@@ -23,7 +23,7 @@ enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
 /// In StrandSet.beside: the particles of the row are anywhere.
 #define STRAND_GATHERED UINT32_MAX
 
-/// Lanes that are solved together.
+/// A group of lanes that are solved together.
 typedef struct StrandGroup {
     uint32_t row;     ///< its first row in the set
     uint32_t rows;    ///< springs of its longest lane; one more row of nodes
@@ -46,9 +46,9 @@ typedef struct StrandSet {
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N
     float *bend_limit;     ///< [row_count STRAND_LANES] m, as in curvature.c, at a node; NULL: none
-    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: nobody asks
+    float *pull;           ///< [row_count STRAND_LANES] sums of mu, lambda over length; NULL: not needed
     float compliance_all;  ///< m/N, that of every spring; negative where they differ
-    void *block;           ///< that the five lie in
+    void *block;           ///< that the five arrays lie in
 } StrandSet;
 
 static inline uint32_t strand_lane(uint32_t width, uint32_t column) {
