@@ -284,8 +284,8 @@ static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i)
     return (ends[0] == centre ? ends[1] : ends[0]) - shell->vertex_count;
 }
 
-/// Char over what pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 where there is no char: `yield`
-/// is not above mass_min (burn/glow.c).
+/// Char over the char that pyrolysis of all the fuel leaves, c/nu, from mass and fuel: 0 to 1. 0 where there is no
+/// char: `yield` is not above mass_min (burn/glow.c).
 static inline float shell_char(float mass, float fuel, float mass_min, float yield) {
     float span = yield - mass_min, max = 1 - fuel;
     if (!(span > 0)) return 0;
