@@ -4,6 +4,7 @@
 
 #include "common/pool.h"
 #include "shell/shell.h"
+#include "world/step_context.h"
 
 /// Scratch of the stage, built once.
 typedef struct AblatePlan AblatePlan;
@@ -21,15 +22,13 @@ void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate);
 /// them, and enough ids for all pieces that may still separate. The shell's tears have been repeated.
 bool ablate_fits(AblatePlan *plan, const Shell *shell, const AblateState *ablate);
 
-/// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology
-/// changed; pushes hole and piece events. `heat_ambient` (K) is the zero of the enthalpy that removed
-/// particles carry away. Reads `state`, writes `ablate` (which is &state->ablate). First call labels the pieces.
-SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state, Pool *pool, float heat_ambient,
-                        AblateState *ablate, EventList *events, SingeError *error);
+/// Removes burnt triangles, springs, particles and small loose pieces; relabels pieces when topology changed; pushes
+/// hole and piece events. The context's ambient temperature is the zero of the enthalpy that removed particles carry
+/// away. Reads the other parts of the State, and writes `ablate`; cannot fail. The first call labels the pieces.
+void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *ablate);
 
 /// Labels the pieces again after a tear; small loose ones go, and those that came free are reported.
-void ablate_torn(AblatePlan *plan, const Shell *shell, const State *state, float heat_ambient, AblateState *ablate,
-                 EventList *events);
+void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate);
 
 /// Draws the surface (marching triangles, surface.c). Grows `surface` through its allocator.
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,

@@ -32,7 +32,7 @@ struct AblatePlan {
 void ablate_plan_follow(AblatePlan *plan, const Shell *shell);
 
 /// Fills plan->level.
-void ablate_levels(AblatePlan *plan, const Shell *shell, const State *state);
+void ablate_levels(AblatePlan *plan, const Shell *shell, const BurnState *burn);
 
 /// What is left of a cell: bit i is the triangle of side i (corners i, i + 1 and the virtual centre). A
 /// triangle is gone when its three levels are negative.
@@ -49,7 +49,7 @@ static inline unsigned ablate_triangles(const AblatePlan *plan, const Shell *she
 typedef struct Removal {
     AblatePlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     AblateState *ablate;
     float heat_ambient; ///< K
     bool changed;       ///< something was removed
@@ -62,7 +62,8 @@ void remove_spring(Removal *removal, SingeColour colour, uint32_t spring);
 void remove_burnt(Removal *removal);
 
 /// Pushes a SINGE_EVENT_HOLE_OPENED for every hole that opened in this step. Comes before the removal.
-void hole_report(const AblatePlan *plan, const Shell *shell, const State *state, EventList *events);
+void hole_report(const AblatePlan *plan, const Shell *shell, const StateInput *state, const AblateState *ablate,
+                 EventList *events);
 
 /// Finds the pieces after a change: drops small loose ones, keeps or gives ids, pushes SINGE_EVENT_PIECE_FREED.
 void piece_update(Removal *removal, EventList *events);

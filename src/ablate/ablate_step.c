@@ -1,23 +1,24 @@
 // The ablate stage: holes, removal, pieces.
 #include "ablate/ablate_plan.h"
 
-void ablate_torn(AblatePlan *plan, const Shell *shell, const State *state, float heat_ambient, AblateState *ablate,
-                 EventList *events) {
-    Removal removal = {plan, shell, state, ablate, heat_ambient, false};
-    piece_update(&removal, events);
+static Removal removal_begin(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
+    return (Removal){.plan = plan, .shell = context->shell, .state = &context->state, .ablate = ablate,
+                     .heat_ambient = context->ambient_temperature};
+}
+
+void ablate_torn(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
+    Removal removal = removal_begin(plan, context, ablate);
+    piece_update(&removal, context->events);
     ablate->topology_version++;
 }
 
-SingeResult ablate_step(AblatePlan *plan, const Shell *shell, const State *state, Pool *pool, float heat_ambient,
-                        AblateState *ablate, EventList *events, SingeError *error) {
-    (void)pool, (void)error; // too little work to share, and nothing that can fail
-    Removal removal = {plan, shell, state, ablate, heat_ambient, false};
-    ablate_label(plan, shell, ablate);
-    ablate_levels(plan, shell, state);
-    hole_report(plan, shell, state, events);
+void ablate_step(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
+    Removal removal = removal_begin(plan, context, ablate);
+    ablate_label(plan, context->shell, ablate);
+    ablate_levels(plan, context->shell, context->state.burn);
+    hole_report(plan, context->shell, &context->state, ablate, context->events);
     remove_burnt(&removal);
-    if (!removal.changed) return SINGE_OK;
-    piece_update(&removal, events);
+    if (!removal.changed) return;
+    piece_update(&removal, context->events);
     ablate->topology_version++;
-    return SINGE_OK;
 }

@@ -9,18 +9,19 @@
 typedef struct HoleSearch {
     const AblatePlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
+    const AblateState *ablate;
     float now; ///< s, as the burn stage stamped it
 } HoleSearch;
 
 static bool burnt_now(const HoleSearch *search, uint32_t particle) {
-    return search->state->burn.time_burnt[particle] == search->now && search->plan->level[particle] < 0;
+    return search->state->burn->time_burnt[particle] == search->now && search->plan->level[particle] < 0;
 }
 
 /// Burnt through or gone before `particle`, in time or in order.
 static bool open_before(const HoleSearch *search, uint32_t other, uint32_t particle) {
     if (other == particle) return false;
-    if (!(search->state->ablate.particle_flags[other] & SINGE_ALIVE)) return true;
+    if (!(search->ablate->particle_flags[other] & SINGE_ALIVE)) return true;
     return search->plan->level[other] < 0 && (!burnt_now(search, other) || other < particle);
 }
 
@@ -49,12 +50,13 @@ static bool centre_opens(const HoleSearch *search, uint32_t cell) {
     return true;
 }
 
-void hole_report(const AblatePlan *plan, const Shell *shell, const State *state, EventList *events) {
-    HoleSearch search = {plan, shell, state, (float)state->time};
+void hole_report(const AblatePlan *plan, const Shell *shell, const StateInput *state, const AblateState *ablate,
+                 EventList *events) {
+    HoleSearch search = {plan, shell, state, ablate, (float)state->time};
     for (uint32_t i = 0; i < shell->particle_count; i++) {
-        if (!burnt_now(&search, i) || !(state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+        if (!burnt_now(&search, i) || !(ablate->particle_flags[i] & SINGE_ALIVE)) continue;
         bool corner = shell_is_corner(shell, i);
         bool opens = corner ? corner_opens(&search, i) : centre_opens(&search, i - shell->vertex_count);
-        if (opens) event_push(events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics.position[i]);
+        if (opens) event_push(events, SINGE_EVENT_HOLE_OPENED, (int32_t)i, state->time, state->dynamics->position[i]);
     }
 }

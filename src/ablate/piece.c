@@ -113,11 +113,11 @@ void ablate_label(AblatePlan *plan, const Shell *shell, AblateState *ablate) {
 
 void piece_update(Removal *removal, EventList *events) {
     AblatePlan *plan = removal->plan;
-    const State *state = removal->state;
+    const StateInput *state = removal->state;
     AblateState *ablate = removal->ablate;
     bool drop = false;
     find_sets(plan, removal->shell, ablate);
-    piece_measure(plan, removal->shell, ablate, state->dynamics.pinned);
+    piece_measure(plan, removal->shell, ablate, state->dynamics->pinned);
     for (uint32_t s = 0; s < removal->shell->sheet_count; s++) drop |= mark_small(plan, &removal->shell->sheets[s]);
     if (drop) drop_marked(removal);
     choose_heirs(plan, ablate);
@@ -127,7 +127,7 @@ void piece_update(Removal *removal, EventList *events) {
         ablate->piece_count++;
         if (plan->heir[ablate->piece[r]] == r) continue;
         ablate->piece[r] = (int32_t)ablate->next_piece++;
-        event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics.position[r]);
+        event_push(events, SINGE_EVENT_PIECE_FREED, ablate->piece[r], state->time, state->dynamics->position[r]);
     }
     spread_ids(plan, ablate);
 }

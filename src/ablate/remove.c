@@ -16,9 +16,9 @@
 static void remove_particle(Removal *removal, uint32_t particle) {
     const Matter *matter = &removal->shell->matter;
     AblateState *ablate = removal->ablate;
-    double above = (double)removal->state->heat.temperature[particle] - (double)removal->heat_ambient;
+    double above = (double)removal->state->heat->temperature[particle] - (double)removal->heat_ambient;
     ablate->heat_removed += (double)matter->capacity[particle] * above;
-    ablate->mass_removed += (double)removal->state->burn.mass[particle] * (double)matter->mass[particle];
+    ablate->mass_removed += (double)removal->state->burn->mass[particle] * (double)matter->mass[particle];
     ablate->particle_flags[particle] &= (uint8_t)~SINGE_ALIVE;
     ablate->piece[particle] = -1;
 }

@@ -4,15 +4,14 @@
 
 #include "common/pool.h"
 #include "burn/volume.h"
+#include "world/step_context.h"
 
-/// One step of length h: masses, times and target lengths. `thickening` holds F for every sheet; rates
-/// are divided by it. `partial` is scratch of pool_blocks(particle_count) doubles. Reads `state`,
-/// writes `burn` (which is &state->burn). Ignitions are pushed to `events` in order of particle.
-SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float h, float pace, const float *thickening,
-                      double *partial, BurnState *burn, EventList *events, SingeError *error);
+/// One step: masses, times and target lengths. `thickening` holds F for every sheet; rates are divided by it. `partial`
+/// is scratch of pool_blocks(particle_count) doubles. Reads the other parts of the State, and writes `burn`. Ignitions
+/// go to context->events in order of particle. SINGE_ERROR_DIVERGED with the particle when a mass is not finite.
+SingeResult burn_step(const StepContext *context, const float *thickening, double *partial, BurnState *burn);
 
-/// Target lengths from the masses, of all springs alive: to the bit those that the steps left there. Reads `state`,
-/// writes `burn` (which is &state->burn).
-void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn);
+/// Target lengths from the masses, of all springs that `ablate` has left: to the bit those that the steps left there.
+void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn);
 
 #endif

@@ -6,7 +6,7 @@
 
 typedef struct BurnJob {
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     float h;                 ///< s, the step in scene time
     float dt;                ///< s, of fire: h times pace
     float time;              ///< s, stamped on what happens in this step
@@ -24,7 +24,7 @@ static inline void burn_block(const BurnJob *job, int block, uint32_t *first, ui
 /// Whether any of the particles [first, last), at most FIELD_RUN of them, is above its ignition temperature or not a
 /// number: most of a sheet is not, most of the time.
 static inline bool burn_is_hot(const BurnJob *job, uint32_t first, uint32_t last) {
-    const float *temperature = job->state->heat.temperature + first;
+    const float *temperature = job->state->heat->temperature + first;
     const float *ignition = field_run(job->shell->matter.ignition_temperature, first);
     int hot = 0;
     for (uint32_t i = 0; i < last - first; i++) hot |= !(temperature[i] < ignition[i]);

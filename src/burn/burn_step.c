@@ -9,16 +9,17 @@ static SingeResult diverged(const Shell *shell, const BurnState *burn, SingeErro
     return error_set(error, SINGE_ERROR_DIVERGED, "burn", particle, "the mass of particle %u is not finite", particle);
 }
 
-SingeResult burn_step(const Shell *shell, const State *state, Pool *pool, float h, float pace, const float *thickening,
-                      double *partial, BurnState *burn, EventList *events, SingeError *error) {
+SingeResult burn_step(const StepContext *context, const float *thickening, double *partial, BurnState *burn) {
+    const StateInput *state = &context->state;
+    Pool *pool = context->pool;
     BurnJob job = {
-        .shell = shell, .state = state, .h = h, .dt = h * pace, .time = (float)state->time,
-        .thickening = thickening, .partial = partial, .burn = burn,
+        .shell = context->shell, .state = state, .h = context->h, .dt = context->h * context->pace,
+        .time = (float)state->time, .thickening = thickening, .partial = partial, .burn = burn,
     };
-    burn_ignite(&job, pool, events);
+    burn_ignite(&job, pool, context->events);
     burn_air(&job, pool);
     double lost = burn_lose_mass(&job, pool);
-    if (!isfinite(lost)) return diverged(shell, burn, error);
+    if (!isfinite(lost)) return diverged(context->shell, burn, context->error);
     burn->mass_burnt += lost;
     if (lost > 0) burn_shrink(&job, pool);
     return SINGE_OK;

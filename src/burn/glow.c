@@ -46,7 +46,7 @@ static float glow_ash(const BurnJob *job, uint32_t i) {
 }
 
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
-    return cell == SHELL_NONE || !(job->state->ablate.cell_flags[cell] & SINGE_ALIVE);
+    return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
 }
 
 /// w of a cell's centre; 1 beside a cell that is gone, and at the border.
@@ -99,7 +99,7 @@ static void glow_air_run(BurnJob *job, uint32_t first, uint32_t last) {
     const Shell *shell = job->shell;
     for (uint32_t i = first; i < last; i++) {
         bool chars = field_at(shell->matter.char_yield, i) > field_at(shell->matter.mass_min, i);
-        if (!chars || job->burn->fuel[i] >= 1 || !(job->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
+        if (!chars || job->burn->fuel[i] >= 1 || !(job->state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
         float ash = shell_is_corner(shell, i) ? glow_corner(job, i) : glow_centre(job, i - shell->vertex_count);
         float air = fmaxf(ash, field_at(shell->matter.char_air, i));
         job->burn->release[i] = air * glow_power_8(1 - glow_fuel_near(job, i));
@@ -123,14 +123,14 @@ void burn_air(BurnJob *job, Pool *pool) {
 }
 
 float burn_glow_heat(const BurnJob *job, uint32_t i) {
-    float monoxide = GLOW_CO * expf(-GLOW_CO_TEMPERATURE / job->state->heat.temperature[i]);
+    float monoxide = GLOW_CO * expf(-GLOW_CO_TEMPERATURE / job->state->heat->temperature[i]);
     return field_at(job->shell->matter.char_heating, i) * (GLOW_CO_HEAT + (1 - GLOW_CO_HEAT) / (1 + monoxide));
 }
 
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt) {
     if (!(share > 0)) return share;
     float supply = field_at(job->shell->matter.char_rate, i) * air;
-    float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / job->state->heat.temperature[i]);
+    float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / job->state->heat->temperature[i]);
     float rate = supply > 0 && kinetics > 0 ? supply * (kinetics / (kinetics + supply)) : 0;
     float half = 0.5f * dt * rate / shell_glow_slowing(&job->shell->matter, i, fuel), root = sqrtf(share);
     return half > root ? 0 : (root - half) * (root - half);

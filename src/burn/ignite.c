@@ -6,9 +6,9 @@
 
 /// Marks new ignitions among particles [first, last) and counts them.
 static uint32_t mark_run(BurnJob *job, uint32_t first, uint32_t last) {
-    const float *temperature = job->state->heat.temperature;
+    const float *temperature = job->state->heat->temperature;
     const Field ignition = job->shell->matter.ignition_temperature;
-    const uint8_t *flags = job->state->ablate.particle_flags;
+    const uint8_t *flags = job->state->ablate->particle_flags;
     float *time_ignited = job->burn->time_ignited;
     uint32_t count = 0;
     for (uint32_t i = first; i < last; i++) {
@@ -44,7 +44,7 @@ void burn_ignite(BurnJob *job, Pool *pool, EventList *events) {
         for (uint32_t i = first; i < last; i++) {
             if (job->burn->time_ignited[i] != JUST_NOW) continue;
             job->burn->time_ignited[i] = job->time;
-            event_push(events, SINGE_EVENT_IGNITED, (int32_t)i, job->state->time, job->state->dynamics.position[i]);
+            event_push(events, SINGE_EVENT_IGNITED, (int32_t)i, job->state->time, job->state->dynamics->position[i]);
         }
     }
 }

@@ -83,8 +83,8 @@ static void react(BurnJob *job, uint32_t i, float excess) {
 /// Adds the mass that particles [first, last) lose to *lost, kg.
 static void lose_mass(BurnJob *job, uint32_t first, uint32_t last, double *lost) {
     const Matter *matter = &job->shell->matter;
-    const float *temperature = job->state->heat.temperature;
-    const uint8_t *flags = job->state->ablate.particle_flags;
+    const float *temperature = job->state->heat->temperature;
+    const uint8_t *flags = job->state->ablate->particle_flags;
     BurnState *burn = job->burn;
     for (uint32_t i = first; i < last; i++) {
         float excess = temperature[i] - field_at(matter->ignition_temperature, i);

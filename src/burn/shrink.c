@@ -67,7 +67,7 @@ static inline float target_length(const SpringSet *springs, uint32_t s, SpringEn
 
 static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b,
                                  float in_plane) {
-    if (job->state->ablate.spring_flags[colour][s] & SINGE_ALIVE)
+    if (job->state->ablate->spring_flags[colour][s] & SINGE_ALIVE)
         job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
 }
 
@@ -112,11 +112,11 @@ void burn_shrink(BurnJob *job, Pool *pool) {
     pool_for(pool, (int)job->shell->cell_count, POOL_BLOCK, shrink_cells, job);
 }
 
-void burn_restore_lengths(const Shell *shell, const State *state, BurnState *burn) {
+void burn_restore_lengths(const Shell *shell, const AblateState *ablate, BurnState *burn) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         const SpringSet *springs = &shell->springs[colour];
         for (uint32_t s = 0; s < springs->count; s++) {
-            if (!(state->ablate.spring_flags[colour][s] & SINGE_ALIVE)) continue;
+            if (!(ablate->spring_flags[colour][s] & SINGE_ALIVE)) continue;
             uint32_t first = springs->ends[s][0], second = springs->ends[s][1];
             SpringEnd a = spring_end(&shell->matter, burn, first);
             SpringEnd b = spring_end(&shell->matter, burn, second);

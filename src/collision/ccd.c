@@ -122,7 +122,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
 // ---- the step's end
 
 /// Searches for the displacements of this step.
-static SingeResult search_again(Ccd *ccd, const State *state, Pool *pool, float h) {
+static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, float h) {
     CollisionPlan *plan = ccd->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
@@ -157,7 +157,7 @@ static uint32_t list_strayed(CollisionPlan *plan) {
 
 /// Lists what cells that have left their boxes may have met; all again where these are many. *first is the first pair
 /// that is new.
-static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, float h, uint32_t *first) {
+static SingeResult follow_strayed(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
     CollisionPlan *plan = ccd->plan;
     uint32_t count = list_strayed(plan);
     *first = plan->pair_count;
@@ -175,7 +175,7 @@ static SingeResult follow_strayed(Ccd *ccd, const State *state, Pool *pool, floa
 }
 
 /// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
-static SingeResult ccd_look(Ccd *ccd, const State *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
     uint32_t first;
     if (changed) {
         *hits = meet_changed(ccd, pool);
@@ -231,9 +231,9 @@ static void empty_zones(CollisionPlan *plan) {
     plan->stopped_count = 0;
 }
 
-static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                               DynamicsState *dynamics) {
-    Ccd ccd = {plan, shell, dynamics, state->ablate.cell_flags,
+    Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags,
                    h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
@@ -259,7 +259,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     return SINGE_OK;
 }
 
-SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                         DynamicsState *dynamics) {
     double start = clock_seconds();
     SingeResult result = close_step(plan, shell, state, pool, h, dynamics);

@@ -37,13 +37,14 @@ void collision_plan_forget(CollisionPlan *plan);
 
 /// Opens a step whose particles are at `dynamics`, the inverse masses in place. SINGE_ERROR_MEMORY, as ccd_apply:
 /// where sheets crowd, lists grow. After an error the step must be rolled back; the next one searches again.
-SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, const DynamicsState *dynamics);
+SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                           const DynamicsState *dynamics);
 
 /// Pushes points apart that are too near, in a substep of h seconds from `predicted` less h times the velocities.
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics);
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
-SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                         DynamicsState *dynamics);
 
 /// Counts since the plan was made.
@@ -64,6 +65,6 @@ CollisionCounters collision_counters(const CollisionPlan *plan);
 
 /// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the
 /// drawn surface deviates from its flat triangles by less than half of that. Searches up to a quarter of a cell.
-void collision_clearance(const CollisionPlan *plan, const Shell *shell, const State *state, float *room);
+void collision_clearance(const CollisionPlan *plan, const Shell *shell, const StateInput *state, float *room);
 
 #endif

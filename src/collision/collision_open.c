@@ -55,7 +55,7 @@ static void measure_range(void *task, int begin, int end) {
 
 /// Notes where corners are and how they move: as since the last search, for what lies trembles; else by their
 /// velocities.
-static void note_search(CollisionPlan *plan, const State *state, const DynamicsState *dynamics) {
+static void note_search(CollisionPlan *plan, const StateInput *state, const DynamicsState *dynamics) {
     bool known = plan->searched && state->step > plan->step;
     float since = known ? (float)(state->step - plan->step) * plan->time_step : 1;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
@@ -65,7 +65,7 @@ static void note_search(CollisionPlan *plan, const State *state, const DynamicsS
         float4_store(plan->speed[v], speed);
         float4_store(plan->position[v], now);
     }
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate.cell_flags[c] & SINGE_ALIVE;
+    for (uint32_t c = 0; c < plan->cell_count; c++) plan->alive[c] = state->ablate->cell_flags[c] & SINGE_ALIVE;
     plan->step = state->step;
 }
 
@@ -274,11 +274,11 @@ static SingeResult open_repulsions(Opening *job, Pool *pool) {
     return SINGE_OK;
 }
 
-static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool,
+static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                              const DynamicsState *dynamics) {
     bool search = !plan->searched || plan->restless || state->step < plan->step ||
                   state->step - plan->step >= plan->steps;
-    Opening job = {plan, shell, dynamics, state->ablate.cell_flags, search, false};
+    Opening job = {plan, shell, dynamics, state->ablate->cell_flags, search, false};
     if (search) {
         note_search(plan, state, dynamics);
         TRY(broad_search(plan, shell, pool));
@@ -292,7 +292,7 @@ static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const Stat
     return SINGE_OK;
 }
 
-SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State *state, Pool *pool,
+SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                        const DynamicsState *dynamics) {
     double start = clock_seconds();
     SingeResult result = open_step(plan, shell, state, pool, dynamics);
@@ -303,8 +303,8 @@ SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const State 
 
 // ---- for drawing
 
-void collision_clearance(const CollisionPlan *plan, const Shell *shell, const State *state, float *room) {
-    const float(*x)[4] = (const float(*)[4])state->dynamics.position;
+void collision_clearance(const CollisionPlan *plan, const Shell *shell, const StateInput *state, float *room) {
+    const float(*x)[4] = (const float(*)[4])state->dynamics->position;
     float looks = 0.25f * plan->cell_size; // two drawn surfaces leave their triangles by a tenth of a cell each
     FeatureRange far = {looks, looks, looks, true};
     NearFeatures found[NARROW_MAX];
@@ -313,7 +313,7 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         const CollisionPair *pair = &plan->pairs[k];
         const uint32_t *a = shell->cells[pair->a], *b = shell->cells[pair->b];
         if (pair->a == pair->b ||
-            !(state->ablate.cell_flags[pair->a] & state->ablate.cell_flags[pair->b] & SINGE_ALIVE))
+            !(state->ablate->cell_flags[pair->a] & state->ablate->cell_flags[pair->b] & SINGE_ALIVE))
             continue;
         narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);

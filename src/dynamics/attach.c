@@ -47,13 +47,13 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments) {
     geodesic_free(memory, shell->vertex_count, &attachments->search);
 }
 
-static bool attach_may_hold(const State *state, uint32_t v) {
-    return state->dynamics.pinned[v] && (state->ablate.particle_flags[v] & SINGE_ALIVE);
+static bool attach_may_hold(const StateInput *state, uint32_t v) {
+    return state->dynamics->pinned[v] && (state->ablate->particle_flags[v] & SINGE_ALIVE);
 }
 
 /// The held vertex that is farthest, at rest, from the sources found so far; the first one for none. None where it is
 /// nearer than a tenth of the way between the first two: it would hardly hold anything else.
-static uint32_t attach_farthest(const Shell *shell, const State *state, const Sheet *sheet, const uint32_t *source,
+static uint32_t attach_farthest(const Shell *shell, const StateInput *state, const Sheet *sheet, const uint32_t *source,
                                 int count) {
     uint32_t farthest = SHELL_NONE;
     float max = 0;
@@ -99,7 +99,7 @@ static void attach_start(Attachments *attachments, const Sheet *sheet, const Dyn
         attachments->length[v][k] = float3_length(float3_sub(float3_load(dynamics->position[v]), position));
 }
 
-static void attach_measure(Attachments *attachments, const Shell *shell, const State *state, bool at_once) {
+static void attach_measure(Attachments *attachments, const Shell *shell, const StateInput *state, bool at_once) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const Sheet *sheet = &shell->sheets[s];
         uint32_t *source = attachments->source[s];
@@ -111,8 +111,8 @@ static void attach_measure(Attachments *attachments, const Shell *shell, const S
             if (!more) continue;
             geodesic_from(&attachments->search, shell, state, source[k], sheet->vertex_first,
                           sheet->vertex_first + sheet->vertex_count, attachments->distance);
-            if (source[k] != before && !at_once) attach_start(attachments, sheet, &state->dynamics, source[k], k);
-            attach_accept(attachments, sheet, state->ablate.piece, source[k], k, at_once);
+            if (source[k] != before && !at_once) attach_start(attachments, sheet, state->dynamics, source[k], k);
+            attach_accept(attachments, sheet, state->ablate->piece, source[k], k, at_once);
         }
     }
 }
@@ -158,19 +158,19 @@ static void attach_shorten(Attachments *attachments, const Shell *shell, uint64_
         }
 }
 
-void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed) {
-    if (attachments->topology != state->ablate.topology_version)
-        attach_let_go(attachments, shell, state->ablate.piece);
-    attachments->topology = state->ablate.topology_version;
+void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed) {
+    if (attachments->topology != state->ablate->topology_version)
+        attach_let_go(attachments, shell, state->ablate->piece);
+    attachments->topology = state->ablate->topology_version;
     if (!pins_changed) {
         attach_shorten(attachments, shell, state->step);
-        attach_follow(attachments, shell, &state->dynamics);
+        attach_follow(attachments, shell, state->dynamics);
     }
-    bool changed = attachments->mass_burnt != state->burn.mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
+    bool changed = attachments->mass_burnt != state->burn->mass_burnt && (state->step + 1) % ATTACH_PERIOD == 0;
     bool torn = attachments->split_count != shell->split_count && (state->step + 1) % ATTACH_TORN_PERIOD == 0;
     if (!pins_changed && !changed && !torn) return;
     attach_measure(attachments, shell, state, pins_changed);
-    attachments->mass_burnt = state->burn.mass_burnt;
+    attachments->mass_burnt = state->burn->mass_burnt;
     attachments->split_count = shell->split_count;
 }
 

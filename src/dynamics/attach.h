@@ -45,7 +45,7 @@ void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);
 
 /// At the end of a step, and after pins have changed: lets go what has come free of a source, and finds sources and
 /// lengths again where pins have changed, and every ATTACH_PERIOD steps where the sheet has.
-void attach_update(Attachments *attachments, const Shell *shell, const State *state, bool pins_changed);
+void attach_update(Attachments *attachments, const Shell *shell, const StateInput *state, bool pins_changed);
 
 /// A tear has given a vertex a second edge: it is as far from everything.
 void attach_split(Attachments *attachments, uint32_t vertex, uint32_t spare);

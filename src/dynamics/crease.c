@@ -76,7 +76,7 @@ static const float CREASE_PI = 3.14159265f;
 typedef struct Crease {
     DynamicsPlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     DynamicsState *dynamics;
     float follows; ///< share of the way to the present bend that the low pass goes in this step
     bool burning;  ///< something has burnt
@@ -169,11 +169,11 @@ float crease_ratio(const Hinge *hinge, float stays, float now) {
     return fmaxf(cosf(lean) + moment, 0.05f) / cosf(hinge->lean);
 }
 
-float crease_kept(const Shell *shell, const State *state, uint32_t green) {
+float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
     const uint32_t *ends = shell->springs[SINGE_GREEN].ends[green];
     float kept = 1;
     for (int k = 0; k < 2; k++) {
-        float mass = state->burn.mass[ends[k]];
+        float mass = state->burn->mass[ends[k]];
         if (mass < 1) kept -= 0.5f * shell_burn_progress(mass, field_at(shell->matter.mass_min, ends[k]));
     }
     return kept;
@@ -181,7 +181,7 @@ float crease_kept(const Shell *shell, const State *state, uint32_t green) {
 
 /// Of the mesh along a green spring, over what it was at rest: the mean of its cells' four blue springs.
 static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hinge *hinge) {
-    const float *length = job->state->burn.spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
+    const float *length = job->state->burn->spring_length[SINGE_BLUE], *rest = job->shell->springs[SINGE_BLUE].rest;
     float sum = 0;
     for (int k = 0; k < 2; k++) {
         const CellSprings *cell = &job->shell->cell_springs[ends[k] - job->shell->vertex_count];
@@ -195,7 +195,7 @@ static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hi
 
 /// The angle by which layers that have shrunk differently curl of themselves.
 static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
-    float green = job->state->burn.spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
+    float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
     float ratio = green / crease_blue_ratio(job, ends, hinge) * cosf(hinge->lean);
     float lean = acosf(ratio < 1 ? ratio : 1);
     return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
@@ -256,7 +256,7 @@ static void crease_bend(const Crease *job, uint32_t k) {
 
 /// Of a green spring's bend what counts beside those of its neighbours along the strand.
 static float crease_counts(const Crease *job, uint32_t k) {
-    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     const SpringSet *green = &job->shell->springs[SINGE_GREEN];
     const float *bend = job->dynamics->bend;
     float sum = bend[k], weight = 1;
@@ -286,14 +286,14 @@ static bool crease_spring(const Crease *job, uint32_t k) {
 
 static void crease_bends(void *task, int begin, int end) {
     const Crease *job = task;
-    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     for (int k = begin; k < end; k++)
         if (flags[k] & SINGE_ALIVE) crease_bend(job, (uint32_t)k);
 }
 
 static double crease_springs(void *task, int begin, int end) {
     const Crease *job = task;
-    const uint8_t *flags = job->state->ablate.spring_flags[SINGE_GREEN];
+    const uint8_t *flags = job->state->ablate->spring_flags[SINGE_GREEN];
     double creased = 0;
     for (int k = begin; k < end; k++)
         if (flags[k] & SINGE_ALIVE) creased += crease_spring(job, (uint32_t)k);
@@ -306,10 +306,10 @@ static void crease_normals(void *task, int begin, int end) {
     for (int c = begin; c < end; c++) float3_store(job->plan->cell_normal[c], hinge_normal(x, job->shell->cells[c]));
 }
 
-void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics) {
     if (!plan->hinges) return;
-    Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn.mass_burnt > 0};
+    Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
     pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);
     double creased = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);

@@ -51,9 +51,10 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
     return sqrtf(float3_dot(rest, rest) + turned * turned);
 }
 
-void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set) {
+void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
+                       StrandSet *set) {
     const SpringSet *springs = &shell->springs[colour];
-    const float *mass = state->burn.mass, *length = state->burn.spring_length[colour];
+    const float *mass = state->burn->mass, *length = state->burn->spring_length[colour];
     const uint32_t first = springs->strand_first[strand], end = springs->strand_first[strand + 1];
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand];

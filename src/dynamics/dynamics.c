@@ -88,7 +88,7 @@ void dynamics_plan_free(Memory *memory, const Shell *shell, DynamicsPlan *plan) 
 }
 
 void dynamics_plan_hold(DynamicsPlan *plan, const Shell *shell, const State *state) {
-    if (plan->settings.solver.attachments) attach_update(&plan->attachments, shell, state, true);
+    if (plan->settings.solver.attachments) attach_update(&plan->attachments, shell, STATE_INPUT(state), true);
 }
 
 const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour) { return plan->patches.pull[colour]; }
@@ -97,8 +97,7 @@ float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet) {
     return plan->settings.solver.attachments ? attach_stretched(&plan->attachments.spread[sheet]) : 1;
 }
 
-void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare) {
-    (void)shell, (void)state;
+void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare) {
     attach_split(&plan->attachments, vertex, spare);
     if (plan->collision) collision_plan_forget(plan->collision); // cells that shared a corner may touch from now on
 }
@@ -114,7 +113,7 @@ CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan) {
 
 void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room) {
     for (uint32_t v = 0; v < shell->vertex_count; v++) room[v] = INFINITY;
-    if (plan->collision) collision_clearance(plan->collision, shell, state, room);
+    if (plan->collision) collision_clearance(plan->collision, shell, STATE_INPUT(state), room);
 }
 
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity) {
@@ -172,14 +171,15 @@ static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool,
 }
 
 /// Limits and the guard in turn: what the guard has stopped may be too far from what it has not.
-static SingeResult dynamics_close(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
-                                  DynamicsState *dynamics) {
+static SingeResult dynamics_close(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics) {
     enum { TURNS = 8 };
+    const Shell *shell = context->shell;
+    const StateInput *state = &context->state;
     for (int turn = 0; turn < TURNS; turn++) {
-        bool limited = dynamics_limit(plan, shell, state, pool, dynamics);
+        bool limited = dynamics_limit(plan, shell, state, context->pool, dynamics);
         if (!plan->collision || (turn > 0 && !limited)) break;
         uint64_t stops = collision_counters(plan->collision).stops;
-        TRY(ccd_apply(plan->collision, shell, state, pool, h, dynamics));
+        TRY(ccd_apply(plan->collision, shell, state, context->pool, context->h, dynamics));
         if (collision_counters(plan->collision).stops == stops) break;
     }
     return SINGE_OK;
@@ -189,14 +189,18 @@ static SingeResult dynamics_contact_result(SingeResult result, SingeError *error
     return result ? error_set(error, result, "contact", -1, "out of memory for what is near each other") : SINGE_OK;
 }
 
-SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
-                          const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
-                          DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
+SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+                          DynamicsCounters *counters) {
     const SingeSolverDef *solver = &plan->settings.solver;
-    float h_sub = h / (float)solver->substeps;
+    const Shell *shell = context->shell;
+    const StateInput *state = &context->state;
+    const AblateState *ablate = state->ablate;
+    Pool *pool = context->pool;
+    SingeError *error = context->error;
+    float h = context->h, h_sub = h / (float)solver->substeps;
 
     // what stays the same during the step
-    dynamics_prepare(plan, shell, state, wind, pool, dynamics);
+    dynamics_prepare(plan, shell, state, context->wind, pool, dynamics);
     if (plan->paper) paper_prepare(plan, shell, state, pool);
     if (plan->collision)
         TRY(dynamics_contact_result(collision_open(plan->collision, shell, state, pool, dynamics), error));
@@ -211,22 +215,22 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
 
         // velocities of the substep behind, prediction of the one ahead; held particles are where it ends before the
         // others set out
-        if (between.opens) dynamics_move_pins(plan, pins, &state->ablate, after, h_sub, dynamics);
+        if (between.opens) dynamics_move_pins(plan, context->pins, ablate, after, h_sub, dynamics);
         counters->contacts += dynamics_move(plan, shell, pool, h_sub, &between, dynamics);
         if (!between.opens) break;
-        uint32_t collider_count = dynamics_pose_colliders(plan, colliders, before, after);
+        uint32_t collider_count = dynamics_pose_colliders(plan, context->colliders, before, after);
         before = after;
 
         // projection and contact
         if (plan->paper) {
-            TRY(paper_project(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics, counters, error));
+            TRY(paper_project(plan, shell, ablate, collider_count, pool, h_sub, dynamics, counters, error));
             continue;
         }
         for (int projection = 0; projection < solver->projections; projection++)
             dynamics_project(plan, shell, pool, h_sub, projection == 0, dynamics, counters);
-        height_project(plan, shell, &state->ablate, pool, dynamics);
+        height_project(plan, shell, ablate, pool, dynamics);
         if (plan->collision) repulsion_apply(plan->collision, (const float(*)[4])plan->predicted, h_sub, dynamics);
-        contact_centroids(plan, shell, &state->ablate, collider_count, pool, h_sub, dynamics);
+        contact_centroids(plan, shell, ablate, collider_count, pool, h_sub, dynamics);
         between.closes = true;
         between.collider_count = collider_count;
     }
@@ -234,13 +238,15 @@ SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *s
     // forces for the tears; limits and CCD
     if (shell->spare_count > 0) patch_gather(plan, shell, pool, h_sub);
     TRY(dynamics_check(plan, pool, dynamics, error));
-    TRY(dynamics_contact_result(dynamics_close(plan, shell, state, pool, h, dynamics), error));
+    TRY(dynamics_contact_result(dynamics_close(plan, context, dynamics), error));
 
     // once a step: internal friction, order of the layers, creases, attachments
-    dynamics_smooth(plan, shell, &state->ablate, pool, h, dynamics);
-    dynamics_order(plan, shell, &state->ablate, pool, dynamics);
+    dynamics_smooth(plan, shell, ablate, pool, h, dynamics);
+    dynamics_order(plan, shell, ablate, pool, dynamics);
     plan->strands_written = true;
     dynamics_crease(plan, shell, state, pool, h, dynamics);
-    if (solver->attachments) attach_update(&plan->attachments, shell, state, false);
+    StateInput done = *state;
+    done.dynamics = dynamics; // which nothing writes any more
+    if (solver->attachments) attach_update(&plan->attachments, shell, &done, false);
     return SINGE_OK;
 }

@@ -6,8 +6,7 @@
 #include "common/pool.h"
 #include "collision/collision.h"
 #include "shell/shell.h"
-#include "world/collider.h"
-#include "world/pin.h"
+#include "world/step_context.h"
 #include "world/wind.h"
 
 typedef struct DynamicsSettings {
@@ -47,7 +46,7 @@ const float *dynamics_pull(const DynamicsPlan *plan, SingeColour colour);
 float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet);
 
 /// Must be called when a tear has split a vertex.
-void dynamics_plan_torn(DynamicsPlan *plan, const Shell *shell, const State *state, uint32_t vertex, uint32_t spare);
+void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare);
 
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
@@ -63,10 +62,10 @@ typedef struct DynamicsCounters {
     double seconds, flops, bytes; ///< of the projection of springs; see SingeTimers
 } DynamicsCounters;
 
-/// One step of length h in settings.solver.substeps substeps. Reads `state`, writes `dynamics` (which is
-/// &state->dynamics).
-SingeResult dynamics_step(DynamicsPlan *plan, const Shell *shell, const State *state, const PinList *pins,
-                          const ColliderList *colliders, const SingeWindDef *wind, Pool *pool, float h,
-                          DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error);
+/// One step in settings.solver.substeps substeps. Reads the other parts of the State, and writes `dynamics`. Adds to
+/// *counters. SINGE_ERROR_DIVERGED with a particle that has left; SINGE_ERROR_MEMORY where lists of contact cannot
+/// grow.
+SingeResult dynamics_step(DynamicsPlan *plan, const StepContext *context, DynamicsState *dynamics,
+                          DynamicsCounters *counters);
 
 #endif

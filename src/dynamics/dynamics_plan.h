@@ -98,8 +98,8 @@ struct DynamicsPlan {
 };
 
 /// Inverse masses, weights, normals, drag and wind for this step (prepare.c).
-void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
-                      DynamicsState *dynamics);
+void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
+                      Pool *pool, DynamicsState *dynamics);
 
 /// The stages for each particle between two projections (move.c).
 typedef struct Between {
@@ -124,7 +124,8 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
 /// Room for the limits of bends, where a material has one (curvature.c). False when out of memory.
 bool curvature_create(Memory *memory, const Shell *shell, Strands *strands);
 /// Once a step: the limits along a strand, whose weights are known.
-void curvature_prepare(const Shell *shell, const State *state, SingeColour colour, uint32_t strand, StrandSet *set);
+void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour colour, uint32_t strand,
+                       StrandSet *set);
 /// Straightens bends that are sharper than the material's curvature_max.
 void curvature_project(const DynamicsPlan *plan, Pool *pool, DynamicsState *dynamics);
 
@@ -133,7 +134,7 @@ void patches_free(Memory *memory, const Shell *shell, Patches *patches);
 /// Once a step: if tears have changed the shell (then true), finds the springs that are no longer in a strand, ...
 bool patch_follow(DynamicsPlan *plan, const Shell *shell);
 /// ... takes over their weights and lengths, and starts to sum.
-void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state);
+void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state);
 /// Whether a spring still runs where its strand does.
 bool patch_is_in_strand(const DynamicsPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring, size_t slot);
 /// Projects a colour's patches one by one.
@@ -153,7 +154,8 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
                      DynamicsState *dynamics);
 
 /// Shortens sides and diagonals that a step has left far too long (limit.c). True if it has found any.
-bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics);
+bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                    DynamicsState *dynamics);
 
 /// Moves centres that have crossed their corners back over them: the last pass of a step (layer_order.c).
 void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, Pool *pool,
@@ -163,14 +165,14 @@ void dynamics_order(const DynamicsPlan *plan, const Shell *shell, const AblateSt
 void creases_measure(const Shell *shell, Hinge *hinges);
 
 /// Makes bending beyond the crease radius partly plastic, for the steps to come.
-void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, float h,
+void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics);
 
 /// Target length of a green spring with a crease of so many rad, over that without, when it is bent to `now`.
 float crease_ratio(const Hinge *hinge, float stays, float now);
 
 /// Share of a green spring's crease that burning has left.
-float crease_kept(const Shell *shell, const State *state, uint32_t green);
+float crease_kept(const Shell *shell, const StateInput *state, uint32_t green);
 
 /// A collider between two times of a substep.
 MovingCollider contact_collider(const Collider *collider, double before, double after);

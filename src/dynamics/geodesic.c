@@ -72,19 +72,19 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
 }
 
 /// Length of the side or diagonal between corners i and j of a cell. What is held cannot shrink to its target.
-static float cell_length(const Shell *shell, const State *state, uint32_t cell, int i, int j) {
+static float cell_length(const Shell *shell, const StateInput *state, uint32_t cell, int i, int j) {
     const CellSprings *springs = &shell->cell_springs[cell];
-    const DynamicsState *dynamics = &state->dynamics;
+    const DynamicsState *dynamics = state->dynamics;
     int side = ((i + 1) & 3) == j ? i : j;
-    float length = ((i ^ j) & 1) == 0 ? state->burn.spring_length[SINGE_YELLOW][springs->yellow[i & 1]]
-                                      : state->burn.spring_length[SINGE_BLUE][springs->blue[side]];
+    float length = ((i ^ j) & 1) == 0 ? state->burn->spring_length[SINGE_YELLOW][springs->yellow[i & 1]]
+                                      : state->burn->spring_length[SINGE_BLUE][springs->blue[side]];
     uint32_t a = shell->cells[cell][i], b = shell->cells[cell][j];
     if (!dynamics->pinned[a] || !dynamics->pinned[b]) return length;
     return fmaxf(length, float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.
-static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const State *state, uint32_t cell, int i,
+static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
                                 float *distance) {
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
@@ -106,7 +106,7 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
     }
 }
 
-void geodesic_from(Geodesic *search, const Shell *shell, const State *state, uint32_t source, uint32_t first,
+void geodesic_from(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t source, uint32_t first,
                    uint32_t last, float *distance) {
     for (uint32_t v = first; v < last; v++) distance[v] = INFINITY, search->position[v] = GEODESIC_FAR;
     distance[source] = 0;
@@ -116,7 +116,7 @@ void geodesic_from(Geodesic *search, const Shell *shell, const State *state, uin
         uint32_t v = heap_pop(search, distance);
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++) {
             uint32_t cell = shell->fan[k];
-            if (!(state->ablate.cell_flags[cell] & SINGE_ALIVE)) continue;
+            if (!(state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
             int i = 0;
             while (shell->cells[cell][i] != v) i++;
             geodesic_cross_cell(search, shell, state, cell, i, distance);

@@ -28,7 +28,7 @@ enum { LIMIT_ROUNDS = 16, LIMIT_SWEEPS = 4 };
 
 typedef struct Limit {
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     DynamicsState *dynamics;
     const AttachSpread *spread;
     uint32_t sides, first_diagonal, end; ///< springs numbered: sides from 0 on, diagonals from a block's begin on
@@ -49,7 +49,7 @@ static float limit_factor(SingeColour colour) { return colour == SINGE_BLUE ? LI
 
 /// Bit k: whether spring first + k, of four, is too long, by more than rounding.
 static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t first) {
-    Float4 max = limit_factor(colour) * float4_load(job->state->burn.spring_length[colour] + first), displacement[4];
+    Float4 max = limit_factor(colour) * float4_load(job->state->burn->spring_length[colour] + first), displacement[4];
     for (uint32_t k = 0; k < 4; k++) displacement[k] = limit_displacement(job, colour, first + k);
     float4_transpose(displacement);
     return float4_bits(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2] > max * max * 1.0001f);
@@ -61,14 +61,14 @@ static bool limit_holds(const Limit *job, SingeColour colour, uint32_t spring) {
     const uint32_t *ends = job->shell->springs[colour].ends[spring];
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     const Field compliance = job->shell->matter.compliance[SINGE_BLUE];
-    return job->state->ablate.spring_flags[colour][spring] & SINGE_ALIVE && x[ends[0]][3] + x[ends[1]][3] > 0 &&
+    return job->state->ablate->spring_flags[colour][spring] & SINGE_ALIVE && x[ends[0]][3] + x[ends[1]][3] > 0 &&
            field_at(compliance, ends[0]) + field_at(compliance, ends[1]) == 0 &&
            !job->spread[job->shell->matter.sheet[ends[0]]].tight;
 }
 
 static bool limit_is_over(const Limit *job, SingeColour colour, uint32_t spring) {
     Float4 displacement = limit_displacement(job, colour, spring);
-    float max = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
+    float max = limit_factor(colour) * job->state->burn->spring_length[colour][spring];
     return float4_dot(displacement, displacement) > max * max * 1.0001f && limit_holds(job, colour, spring);
 }
 
@@ -95,7 +95,7 @@ static double limit_count(void *task, int begin, int end) {
 static void limit_shorten(const Limit *job, SingeColour colour, uint32_t spring) {
     float(*x)[4] = job->dynamics->position, (*v)[4] = job->dynamics->velocity;
     const uint32_t *ends = job->shell->springs[colour].ends[spring], a = ends[0], b = ends[1];
-    const float max = limit_factor(colour) * job->state->burn.spring_length[colour][spring];
+    const float max = limit_factor(colour) * job->state->burn->spring_length[colour][spring];
     float wa = x[a][3], wb = x[b][3];
     Float4 displacement = limit_displacement(job, colour, spring), relative = float4_load(v[b]) - float4_load(v[a]);
     displacement[3] = 0;
@@ -124,7 +124,8 @@ static bool limit_sweep(const Limit *job, const double *over) {
     return some;
 }
 
-bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool, DynamicsState *dynamics) {
+bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
+                    DynamicsState *dynamics) {
     Limit job = {.shell = shell, .state = state, .dynamics = dynamics, .spread = plan->attachments.spread};
     if (plan->paper) return false;
     job.sides = shell->springs[SINGE_BLUE].count - shell->edge_spare_count + shell->edge_spare_used;

@@ -104,7 +104,7 @@ typedef struct Fill {
     Paper *paper;
     const DynamicsPlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     SpringGroup *group;
     uint32_t offset; ///< of the colour's springs in the group
     SingeColour colour;
@@ -117,7 +117,7 @@ static void paper_fill_particles(void *task, int begin, int end) {
     for (int i = begin; i < end; i++) {
         network->inverse_mass[i] = (double)job->plan->inverse_mass[i];
         // to the letter: M = I, and what is held is put back afterwards
-        if (literal) network->inverse_mass[i] = job->state->ablate.particle_flags[i] & SINGE_ALIVE ? 1 : 0;
+        if (literal) network->inverse_mass[i] = job->state->ablate->particle_flags[i] & SINGE_ALIVE ? 1 : 0;
         network->held[i] = job->plan->inverse_mass[i] == 0;
     }
 }
@@ -126,9 +126,9 @@ static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
     Stiffness stiffness;
     stiffness_begin(job->shell, job->colour, 0, 0, &stiffness);
-    const float *length = job->state->burn.spring_length[job->colour];
+    const float *length = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
-    const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
+    const uint8_t *flags = job->state->ablate->spring_flags[job->colour];
     for (uint32_t k = (uint32_t)begin; k < (uint32_t)end; k++) {
         uint32_t spring = job->paper->order[job->colour][k], row = job->offset + k;
         const uint32_t *ends = job->group->ends[row];
@@ -139,7 +139,7 @@ static void paper_fill_springs(void *task, int begin, int end) {
     }
 }
 
-void paper_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool) {
+void paper_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool) {
     Paper *paper = plan->paper;
     Fill job = {.paper = paper, .plan = plan, .shell = shell, .state = state, .group = paper->network.groups};
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, paper_fill_particles, &job);

@@ -14,7 +14,7 @@ SingeResult paper_create(Memory *memory, const Shell *shell, const DynamicsSetti
 void paper_free(Memory *memory, Paper *paper);
 
 /// Masses, weights and target lengths of a step; after dynamics_prepare.
-void paper_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, Pool *pool);
+void paper_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool);
 
 /// From x~, v~ to x^, v^ in a substep of h seconds: eq 12, 13 and 18, with contacts in each projection.
 SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,

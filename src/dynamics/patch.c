@@ -81,7 +81,7 @@ bool patch_follow(DynamicsPlan *plan, const Shell *shell) {
     return true;
 }
 
-void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state) {
+void patch_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state) {
     for (int colour = 0; colour < SINGE_COLOUR_COUNT && shell->spare_count > 0; colour++) {
         StrandSet *set = &plan->strands.sets[colour];
         if (set->pull) memset(set->pull, 0, (size_t)set->row_count * STRAND_LANES * sizeof *set->pull);
@@ -90,10 +90,10 @@ void patch_prepare(DynamicsPlan *plan, const Shell *shell, const State *state) {
             Patch *patch = &plan->patches.items[colour][left];
             *patch = plan->patches.items[colour][k];
             plan->patches.pull[colour][patch->spring] = 0;
-            if (!(state->ablate.spring_flags[colour][patch->spring] & SINGE_ALIVE)) continue; // gone for good
+            if (!(state->ablate->spring_flags[colour][patch->spring] & SINGE_ALIVE)) continue; // gone for good
             const uint32_t *ends = shell->springs[colour].ends[patch->spring];
             patch->a = ends[0], patch->b = ends[1], patch->pull = 0;
-            patch->length = state->burn.spring_length[colour][patch->spring];
+            patch->length = state->burn->spring_length[colour][patch->spring];
             patch->weight = dynamics_weight(shell->matter.weight[colour], plan->soft, patch->a, patch->b);
             left++;
         }

@@ -15,15 +15,15 @@ static const float PREPARE_MASS_MIN = 0.01f;
 typedef struct Prepare {
     DynamicsPlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     const SingeWindDef *wind;
-    float (*position)[4]; ///< gets the inverse mass
+    DynamicsState *dynamics; ///< its positions get the inverse mass
     SingeColour colour;
 } Prepare;
 
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
-    const float(*x)[4] = (const float(*)[4])job->state->dynamics.position;
+    const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
         Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
@@ -45,23 +45,23 @@ static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const
 static void prepare_particles(void *task, int begin, int end) {
     Prepare *job = task;
     DynamicsPlan *plan = job->plan;
-    const State *state = job->state;
+    const StateInput *state = job->state;
     const Matter *matter = &job->shell->matter;
     for (int i = begin; i < end; i++) {
-        bool alive = state->ablate.particle_flags[i] & SINGE_ALIVE;
-        float left = state->burn.mass[i];
+        bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE;
+        float left = state->burn->mass[i];
         float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
-        plan->inverse_mass[i] = alive && !state->dynamics.pinned[i] && mass > 0 ? 1 / mass : 0;
-        job->position[i][3] = plan->inverse_mass[i];
-        float progress = shell_burn_progress(state->burn.mass[i], field_at(matter->mass_min, (uint32_t)i));
+        plan->inverse_mass[i] = alive && !job->dynamics->pinned[i] && mass > 0 ? 1 / mass : 0;
+        job->dynamics->position[i][3] = plan->inverse_mass[i];
+        float progress = shell_burn_progress(state->burn->mass[i], field_at(matter->mass_min, (uint32_t)i));
         plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
-        float3_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate.cell_flags, (uint32_t)i));
-        Float3 air = wind_velocity(job->wind, float3_load(state->dynamics.position[i]), state->time);
-        float3_store(plan->air[i], state->gas.awake ? float3_add(air, float3_load(state->gas.air[i])) : air);
+        float3_store(plan->normal[i], prepare_normal(plan, job->shell, state->ablate->cell_flags, (uint32_t)i));
+        Float3 air = wind_velocity(job->wind, float3_load(job->dynamics->position[i]), state->time);
+        float3_store(plan->air[i], state->gas->awake ? float3_add(air, float3_load(state->gas->air[i])) : air);
     }
 }
 
@@ -69,12 +69,12 @@ static void prepare_strands(void *task, int begin, int end) {
     Prepare *job = task;
     const SpringSet *springs = &job->shell->springs[job->colour];
     StrandSet *set = &job->plan->strands.sets[job->colour];
-    const uint8_t *flags = job->state->ablate.spring_flags[job->colour];
-    const float *target = job->state->burn.spring_length[job->colour];
+    const uint8_t *flags = job->state->ablate->spring_flags[job->colour];
+    const float *target = job->state->burn->spring_length[job->colour];
     const Field material = job->shell->matter.weight[job->colour];
     const float *soft = job->plan->soft;
     const Hinge *hinges = job->colour == SINGE_GREEN ? job->plan->hinges : NULL;
-    const float *crease = job->state->dynamics.crease, *bend = job->state->dynamics.bend;
+    const float *crease = job->dynamics->crease, *bend = job->dynamics->bend;
     const bool torn = job->shell->split_count > 0;
     for (int s = begin; s < end; s++) {
         size_t slot = set->strand_slot[s];
@@ -92,15 +92,15 @@ static void prepare_strands(void *task, int begin, int end) {
     }
 }
 
-void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const State *state, const SingeWindDef *wind, Pool *pool,
-                      DynamicsState *dynamics) {
-    Prepare job = {plan, shell, state, wind, dynamics->position, SINGE_RED};
+void dynamics_prepare(DynamicsPlan *plan, const Shell *shell, const StateInput *state, const SingeWindDef *wind,
+                      Pool *pool, DynamicsState *dynamics) {
+    Prepare job = {plan, shell, state, wind, dynamics, SINGE_RED};
     memset(plan->height_wait, 0, height_wait_count(shell));
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, prepare_cells, &job);
     pool_for(pool, (int)shell->particle_count, POOL_BLOCK, prepare_particles, &job);
     bool torn = patch_follow(plan, shell);
     // nothing has burnt, so what was written for an earlier step is still right
-    bool same = plan->strands_written && state->burn.mass_burnt == 0 && !torn;
+    bool same = plan->strands_written && state->burn->mass_burnt == 0 && !torn;
     plan->strands_written = false; // till the step is done: one that is undone may have written other weights
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         if (same && !(plan->creased && colour == SINGE_GREEN)) continue;

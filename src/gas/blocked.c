@@ -47,9 +47,9 @@ static void blocked_by_sheets(const GasPass *pass) {
     const Shell *shell = pass->shell;
     float face = 1 / (plan->cell * plan->cell), position[3];
     for (uint32_t c = 0; c < shell->cell_count; c++) {
-        if (!(pass->state->ablate.cell_flags[c] & SINGE_ALIVE)) continue;
+        if (!(pass->state->ablate->cell_flags[c] & SINGE_ALIVE)) continue;
         uint32_t i = shell_centre(shell, c);
-        if (!gas_position(plan, float3_load(pass->state->dynamics.position[i]), position)) continue;
+        if (!gas_position(plan, float3_load(pass->state->dynamics->position[i]), position)) continue;
         for (int d = 0; d < 3; d++)
             blocked_cover(plan, d, position, shell->matter.area[i] * face * fabsf(plan->normal[i][d]));
     }

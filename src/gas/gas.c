@@ -73,16 +73,17 @@ static void gas_part(GasPass *pass) {
     gas_project(pass);
 }
 
-void gas_step(GasPlan *plan, const Shell *shell, const State *state, const ColliderList *colliders,
-              const SingeWindDef *wind, Pool *pool, GasState *gas) {
+void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
+    const StateInput *state = &context->state;
     if ((state->step + 1) % plan->every != 0) return;
-    GasPass pass = {.plan = plan, .shell = shell, .state = state, .colliders = colliders, .pool = pool,
+    GasPass pass = {.plan = plan, .shell = context->shell, .state = state,
+                    .colliders = context->colliders, .pool = context->pool,
                     .from = &plan->turn[gas->turn], .to = &plan->turn[!gas->turn], .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
     if (!gas_fed(&pass) && !gas->awake) return;
     Float3 middle = float3_load(plan->origin);
     for (int d = 0; d < 3; d++) (&middle.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
-    float3_store(pass.wind, wind_velocity(wind, middle, state->time));
+    float3_store(pass.wind, wind_velocity(context->wind, middle, state->time));
     gas_normals(&pass);
     gas_blocked(&pass);
     gas->awake = true;

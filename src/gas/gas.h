@@ -7,6 +7,7 @@
 #include "shell/shell.h"
 #include "singe/sim.h"
 #include "world/collider.h"
+#include "world/step_context.h"
 
 /// Checks the numbers of a Def.
 SingeResult gas_check(const SingeGasDef *def, SingeError *error);
@@ -36,8 +37,7 @@ void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare);
 
 /// Called at the end of a step, with what it has made of the sheets; cannot fail. The gas has a step of its own, of
 /// about 1/96 s: it moves at every n-th call, and not while there is nothing hot.
-void gas_step(GasPlan *plan, const Shell *shell, const State *state, const ColliderList *colliders,
-              const SingeWindDef *wind, Pool *pool, GasState *gas);
+void gas_step(GasPlan *plan, const StepContext *context, GasState *gas);
 
 /// What readers see of the last step.
 SingeGas gas_view(const GasPlan *plan);

@@ -121,7 +121,7 @@ struct GasPlan {
 typedef struct GasPass {
     GasPlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     const ColliderList *colliders;
     Pool *pool;
     const GasTurn *from;

@@ -32,7 +32,7 @@ static const float SHEET_CP = 1005;         ///< J/(kg K)
 static void sheets_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
     const Shell *shell = pass->shell;
-    const float(*x)[4] = (const float(*)[4])pass->state->dynamics.position;
+    const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = shell->cells[c];
         Float3 a = float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]]));
@@ -47,7 +47,7 @@ static void sheets_corners(void *context, int begin, int end) {
     for (int v = begin; v < end; v++) {
         Float3 sum = {0, 0, 0};
         for (uint32_t k = shell->fan_first[v]; k < shell->fan_first[v + 1]; k++)
-            if (pass->state->ablate.cell_flags[shell->fan[k]] & SINGE_ALIVE)
+            if (pass->state->ablate->cell_flags[shell->fan[k]] & SINGE_ALIVE)
                 sum = float3_add(sum, float3_load(pass->plan->normal[shell_centre(shell, shell->fan[k])]));
         float3_store(pass->plan->normal[v], float3_unit(sum));
     }
@@ -72,7 +72,7 @@ static float sheets_vent(const GasPass *pass, uint32_t i) {
 /// outside of the grid.
 static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 *x) {
     const GasPlan *plan = pass->plan;
-    Float3 at = float3_load(pass->state->dynamics.position[i]), normal = float3_load(plan->normal[i]);
+    Float3 at = float3_load(pass->state->dynamics->position[i]), normal = float3_load(plan->normal[i]);
     float position[3];
     for (int k = 0; k < 2; k++, side = -side) {
         *x = float3_mad(at, normal, side * plan->cell);
@@ -112,7 +112,7 @@ static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount
 }
 
 bool gas_fed(const GasPass *pass) {
-    const float *now = pass->state->burn.fuel, *before = pass->from->fuel;
+    const float *now = pass->state->burn->fuel, *before = pass->from->fuel;
     bool fed = false;
     for (uint32_t i = 0; i < pass->plan->particles && !fed; i++) fed = now[i] < before[i];
     return fed;
@@ -121,7 +121,7 @@ bool gas_fed(const GasPass *pass) {
 void gas_feed(GasPass *pass) {
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
-    const float *now = pass->state->burn.fuel, *before = pass->from->fuel;
+    const float *now = pass->state->burn->fuel, *before = pass->from->fuel;
     float volume = plan->cell * plan->cell * plan->cell;
     float scale = (1 - plan->settings.def.radiated) / (plan->settings.pace * volume);
     Float3 x;
@@ -176,8 +176,8 @@ static void sheets_meet(void *context, int begin, int end) {
         float *air = pass->to->air[i];
         air[0] = air[1] = air[2] = air[3] = 0;
         pass->to->conductance[i] = 0, pass->to->temperature[i] = ambient;
-        if (!(pass->state->ablate.particle_flags[i] & SINGE_ALIVE)) continue;
-        Float3 x = float3_load(pass->state->dynamics.position[i]);
+        if (!(pass->state->ablate->particle_flags[i] & SINGE_ALIVE)) continue;
+        Float3 x = float3_load(pass->state->dynamics->position[i]);
         if (!gas_position(plan, x, position)) continue;
         float open = sheets_open(plan, position, plan->normal[i]);
         for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
@@ -185,9 +185,9 @@ static void sheets_meet(void *context, int begin, int end) {
         if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], position));
         if (temperature < ambient + SHEET_MIN) continue;
-        float gone = (pass->from->fuel[i] - pass->state->burn.fuel[i]) * (1 - field_at(matter->char_yield, i));
+        float gone = (pass->from->fuel[i] - pass->state->burn->fuel[i]) * (1 - field_at(matter->char_yield, i));
         float flux = gone * matter->mass[i] / (matter->area[i] * pass->fire); // m''
-        float slower = shell_glow_slowing(matter, i, pass->state->burn.fuel[i]);
+        float slower = shell_glow_slowing(matter, i, pass->state->burn->fuel[i]);
         pass->to->conductance[i] = g0 * sheets_blown(flux * SHEET_CP / g0) / slower;
         pass->to->temperature[i] = temperature;
     }
@@ -196,7 +196,7 @@ static void sheets_meet(void *context, int begin, int end) {
 /// Takes from the gas what it gives to the sheets in a step.
 static void sheets_cool(GasPass *pass) {
     const GasPlan *plan = pass->plan;
-    const float *sheet = pass->state->heat.temperature;
+    const float *sheet = pass->state->heat->temperature;
     float volume = plan->cell * plan->cell * plan->cell, scale = pass->dt / (GAS_HEAT * volume), position[3];
     Float3 x;
     for (uint32_t i = 0; i < plan->particles; i++) {

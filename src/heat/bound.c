@@ -26,7 +26,7 @@ static bool bound_of_surface(const HeatPass *pass, uint32_t i) {
 
 /// T* of a particle, K.
 static double bound_star(const HeatPass *pass, uint32_t i) {
-    return bound_within(pass, (double)pass->state->heat.temperature[i] + (double)pass->plan->delta[i]);
+    return bound_within(pass, (double)pass->heat->temperature[i] + (double)pass->plan->delta[i]);
 }
 
 static double bound_mean(const HeatPass *pass, uint32_t i) {
@@ -75,7 +75,7 @@ static void bound_shares(void *context, int begin, int end) {
             if (!plan->rest.awake[pass->turn][g]) continue;
             for (uint32_t i = g * HEAT_GROUP; i < heat_group_last(plan, g); i++) {
                 if (!plan->alive[i]) {
-                    plan->next[i] = pass->state->heat.temperature[i];
+                    plan->next[i] = pass->heat->temperature[i];
                     continue;
                 }
                 double T = (double)plan->next[i];

@@ -166,7 +166,7 @@ static void conduct_settle(void *context, int begin, int end) {
 /// The new temperatures of a group; adds the heat made there, and returns whether all are within the range of T*.
 static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *made) {
     HeatPlan *plan = pass->plan;
-    const float *temperature = pass->state->heat.temperature;
+    const float *temperature = pass->heat->temperature;
     const Matter *matter = &pass->shell->matter;
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);
     bool within = true;

@@ -40,9 +40,9 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
     HeatPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     uint32_t sheet = matter->sheet[i];
-    const float *temperature = pass->state->heat.temperature, *mass = pass->state->burn.mass;
-    const float *burn_rate = pass->state->burn.burn_rate, *release = pass->state->burn.release;
-    const float *fuel = pass->state->burn.fuel;
+    const float *temperature = pass->heat->temperature, *mass = pass->state->burn->mass;
+    const float *burn_rate = pass->state->burn->burn_rate, *release = pass->state->burn->release;
+    const float *fuel = pass->state->burn->fuel;
     float ambient = plan->settings.ambient_temperature, dt = pass->dt, h = pass->h;
     float slower = 1 / plan->thickening[sheet];
     for (; i < end; i++) {
@@ -85,7 +85,7 @@ static void heat_exchange_run(const HeatPass *pass, uint32_t i, uint32_t end, do
 /// Nothing of eq 1 happens at particles [first, last): all at the ambient temperature, and no source and no fire there.
 static bool heat_is_calm(const HeatPass *pass, uint32_t first, uint32_t last) {
     const HeatPlan *plan = pass->plan;
-    const float *temperature = pass->state->heat.temperature, *burn_rate = pass->state->burn.burn_rate;
+    const float *temperature = pass->heat->temperature, *burn_rate = pass->state->burn->burn_rate;
     const float *flux = plan->flux, *conductance = plan->source_conductance, *tends = plan->source_temperature;
     float ambient = plan->settings.ambient_temperature;
     int busy = 0;
@@ -147,22 +147,23 @@ static void heat_take_over(void *context, int begin, int end) {
     }
 }
 
-SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
-                      const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
-                      HeatCounters *counters, SingeError *error) {
-    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = pool, .h = h,
-                     .dt = h * plan->settings.pace};
+SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceList *sources, HeatState *heat,
+                      HeatCounters *counters) {
+    const Shell *shell = context->shell;
+    const StateInput *state = &context->state;
+    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = context->pool,
+                     .h = context->h, .dt = context->h * plan->settings.pace};
     double made = 0;
     heat_plan_follow(plan, shell, state);
-    heat_matrix_follow(plan, shell, &state->ablate, pass.dt);
+    heat_matrix_follow(plan, shell, state->ablate, pass.dt);
 
     // eq 1: sources, combustion, losses
-    heat_gather(&pass, sources, colliders, view);
+    heat_gather(&pass, sources, context->colliders, context->view);
     heat_blocks(&pass, heat_exchange);
     double in = heat_sum(plan, 0), lost = heat_sum(plan, 1), combustion = heat_sum(plan, 2);
 
     // eq 2 and 3: diffusion
-    TRY(heat_conduct(&pass, counters, &made, error));
+    TRY(heat_conduct(&pass, counters, &made, context->error));
 
     heat_blocks(&pass, heat_take_over);
     heat->heat_in += in + made;

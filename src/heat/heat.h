@@ -5,6 +5,7 @@
 #include "common/pool.h"
 #include "shell/shell.h"
 #include "world/collider.h"
+#include "world/step_context.h"
 
 /// A heat source of the simulation. Pictures are evaluated once, at every particle.
 typedef struct Source {
@@ -68,11 +69,10 @@ typedef struct HeatCounters {
     uint64_t bounded;     ///< steps whose temperatures had to be limited to the range of conduction
 } HeatCounters;
 
-/// One step of length h (s, scene time; the plan applies pace). Reads `state`, writes `heat` (which is
-/// &state->heat). `view` is handed to callback sources. Returns SINGE_ERROR_DIVERGED with the
-/// particle when a temperature is not finite. Adds to *counters.
-SingeResult heat_step(HeatPlan *plan, const Shell *shell, const State *state, const SourceList *sources,
-                      const ColliderList *colliders, const SingeView *view, Pool *pool, float h, HeatState *heat,
-                      HeatCounters *counters, SingeError *error);
+/// One step; the plan applies its own pace. Reads the other parts of the State, and writes `heat`. Callback sources get
+/// context->view. `sources` and context->colliders may be NULL. SINGE_ERROR_DIVERGED with the particle when a
+/// temperature is not finite. Adds to *counters.
+SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceList *sources, HeatState *heat,
+                      HeatCounters *counters);
 
 #endif

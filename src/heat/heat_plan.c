@@ -149,8 +149,8 @@ static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
 
 /// Follows a few splits by what is around them: what building all again would give, to the bit (heat_torn). False where
 /// that cannot be.
-static bool follow_splits(HeatPlan *plan, const Shell *shell, const State *state, uint32_t first) {
-    const ShellSplit *splits = state->tear.splits;
+static bool follow_splits(HeatPlan *plan, const Shell *shell, const StateInput *state, uint32_t first) {
+    const ShellSplit *splits = state->tear->splits;
     uint32_t last = shell->split_count;
     if (plan->matrix.full || plan->matrix.twin_capacity > 0 || last - first > shell->cell_count / 64 + 1) return false;
     for (uint32_t s = 0; s < shell->sheet_count; s++)
@@ -169,7 +169,7 @@ static bool follow_splits(HeatPlan *plan, const Shell *shell, const State *state
     return true;
 }
 
-void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state) {
+void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *state) {
     uint32_t first = plan->split_count;
     plan->split_count = shell->split_count;
     if (first < shell->split_count && !follow_splits(plan, shell, state, first)) plan_rebuild(plan, shell);

@@ -90,7 +90,7 @@ struct HeatPlan {
 typedef struct HeatPass {
     HeatPlan *plan;
     const Shell *shell;
-    const State *state;
+    const StateInput *state;
     HeatState *heat;
     Pool *pool;
     float h;  ///< s of scene time
@@ -104,7 +104,7 @@ typedef struct HeatPass {
 } HeatPass;
 
 /// Makes operator and matrix follow a shell that has torn since the last call (heat_plan.c).
-void heat_plan_follow(HeatPlan *plan, const Shell *shell, const State *state);
+void heat_plan_follow(HeatPlan *plan, const Shell *shell, const StateInput *state);
 
 /// What one cell gives to the springs along its four sides and two diagonals by linear elements, without diffusivity
 /// and F. Sides opposite to obtuse angles are negative. False, and zeros, where it cannot be cut into two triangles

@@ -148,7 +148,7 @@ static void source_ball_task(void *context, int begin, int end) {
     HeatPlan *plan = job->pass->plan;
     const SingeSourceDef *def = &job->source->def;
     float reach = def->radius + def->falloff, square = reach * reach;
-    const float(*position)[4] = (const float(*)[4])job->pass->state->dynamics.position;
+    const float(*position)[4] = (const float(*)[4])job->pass->state->dynamics->position;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         Float3 away = float3_sub(float3_load(position[i]), job->pose.position);
         float d2 = float3_dot(away, away);
@@ -209,13 +209,13 @@ static SourceFn *const SOURCE_KINDS[] = {
 /// The sheet's normal at a particle, of any length.
 static Float3 source_normal(const HeatPass *pass, uint32_t i) {
     const Shell *shell = pass->shell;
-    const float(*x)[4] = (const float(*)[4])pass->state->dynamics.position;
+    const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
     Float3 sum = {0, 0, 0};
     bool corner = shell_is_corner(shell, i);
     uint32_t first = corner ? shell->fan_first[i] : 0, last = corner ? shell->fan_first[i + 1] : 1;
     for (uint32_t k = first; k < last; k++) {
         uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
-        if (!(pass->state->ablate.cell_flags[cell] & SINGE_ALIVE)) continue;
+        if (!(pass->state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
         const uint32_t *at = shell->cells[cell];
         Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]])), b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
         sum = float3_add(sum, float3_cross(a, b));
@@ -232,7 +232,7 @@ static void source_contact_task(void *context, int begin, int end) {
     const Field thickness = job->pass->shell->matter.thickness;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if (!plan->alive[i]) continue;
-        Float3 normal, local = pose_unapply(&job->pose, float3_load(job->pass->state->dynamics.position[i]));
+        Float3 normal, local = pose_unapply(&job->pose, float3_load(job->pass->state->dynamics->position[i]));
         float behind = def->contact_distance + (def->sides == SINGE_SIDES_BOTH ? field_at(thickness, i) : 0);
         float limit = nextafterf(behind, INFINITY), distance = collider_distance(job->collider, local, limit, &normal);
         if (!(distance <= behind)) continue;
@@ -257,9 +257,9 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
     HeatPlan *plan = job->pass->plan;
-    const GasState *gas = &job->pass->state->gas;
-    const float *temperature = job->pass->state->heat.temperature, ambient = plan->settings.ambient_temperature;
-    const float *mass = job->pass->state->burn.mass, *fuel = job->pass->state->burn.fuel;
+    const GasState *gas = job->pass->state->gas;
+    const float *temperature = job->pass->heat->temperature, ambient = plan->settings.ambient_temperature;
+    const float *mass = job->pass->state->burn->mass, *fuel = job->pass->state->burn->fuel;
     const Matter *matter = &job->pass->shell->matter;
     for (int i = begin; i < end; i++)
         if (gas->conductance[i] > 0 && gas->temperature[i] > temperature[i] && plan->alive[i]) {
@@ -296,5 +296,5 @@ void heat_gather(HeatPass *pass, const SourceList *sources, const ColliderList *
         const Collider *collider = &colliders->items[k];
         if (collider->generation && collider->def.conductance > 0) source_contact(pass, collider);
     }
-    if (pass->state->gas.warm) source_gas(pass);
+    if (pass->state->gas->warm) source_gas(pass);
 }

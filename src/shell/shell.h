@@ -231,6 +231,27 @@ typedef struct State {
     size_t basic_size; ///< of the arena's start: all except the springs' lengths, which follow from the rest
 } State;
 
+/// What a stage reads of the State: the parts that it does not write. The part that it writes is NULL here, and an
+/// argument of its own, so that no part is reached by two pointers of which one writes.
+typedef struct StateInput {
+    double time;   ///< s
+    uint64_t step;
+    const HeatState *heat;
+    const BurnState *burn;
+    const AblateState *ablate;
+    const DynamicsState *dynamics;
+    const GasState *gas;
+    const TearState *tear;
+} StateInput;
+
+/// All parts of a State that nobody writes at the time.
+static inline StateInput state_input(const State *state) {
+    return (StateInput){state->time,    state->step,      &state->heat, &state->burn,
+                        &state->ablate, &state->dynamics, &state->gas,  &state->tear};
+}
+/// The same as an argument of a call: const StateInput *.
+#define STATE_INPUT(state) ((const StateInput[]){state_input(state)})
+
 /// Events of one step. The capacity is fixed; events beyond it are dropped and counted.
 typedef struct EventList {
     SingeEvent *items;

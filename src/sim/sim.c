@@ -248,14 +248,14 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     if (sim->committed) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "the simulation is committed already");
     if (sim->sheet_count == 0) return sim_fail(sim, SINGE_ERROR_STATE, "commit", -1, "there is no sheet");
     SingeResult result = sim_build(sim);
-    // the first look: pieces are labelled before anything burns
-    if (!result)
-        result = ablate_step(sim->ablate, &sim->shell, &sim->state, sim->pool, sim->def.ambient_temperature,
-                             &sim->state.ablate, &sim->events, &sim->error);
     if (result) {
         sim_unbuild(sim);
         return result;
     }
+    // the first look: pieces are labelled before anything burns
+    StepContext context = sim_context(sim, NULL);
+    context.state.ablate = NULL;
+    ablate_step(sim->ablate, &context, &sim->state.ablate);
     sim->events.count = 0;
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;

@@ -59,6 +59,9 @@ bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
 /// Checks the numbers of a simulation's Def.
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);
 
+/// What the stages of a step are given, with all parts of the State; `view` may be NULL (step.c).
+StepContext sim_context(SingeSim *sim, const SingeView *view);
+
 /// Everything commit builds from sim->sheets, without the first state (also used by load).
 SingeResult sim_build(SingeSim *sim);
 

@@ -101,7 +101,7 @@ bool snapshot_state_fits(SingeSim *sim) {
     State *state = &sim->state;
     if (!sums_fit(sim) || !burn_fits(sim) || !dynamics_fits(sim) || !pins_fit(sim)) return false;
     if (!ablate_fits(sim->ablate, &sim->shell, &state->ablate)) return false;
-    burn_restore_lengths(&sim->shell, state, &state->burn);
+    burn_restore_lengths(&sim->shell, &state->ablate, &state->burn);
     memset(state->dynamics.position + sim->shell.particle_count, 0,
            shell_nowhere_count(&sim->shell) * sizeof *state->dynamics.position);
     return lengths_fit(sim);

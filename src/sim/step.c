@@ -27,7 +27,7 @@ static void step_note_contacts(SingeSim *sim) {
 
 /// What is kept for a vertex beside the State, for its new half.
 static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
-    dynamics_plan_torn(sim->dynamics, &sim->shell, &sim->state, vertex, spare);
+    dynamics_plan_torn(sim->dynamics, vertex, spare);
     if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
     for (uint32_t i = 0; i < sim->sources.count; i++)
         if (sim->sources.items[i].texture)
@@ -35,7 +35,7 @@ static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
 }
 
 /// Tears, and what follows from them.
-static void step_tear(SingeSim *sim, float h) {
+static void step_tear(SingeSim *sim, StepContext context) {
     State *state = &sim->state;
     bool short_of_spares = false;
     const float *pull[SINGE_COLOUR_COUNT];
@@ -43,64 +43,90 @@ static void step_tear(SingeSim *sim, float h) {
         pull[colour] = dynamics_pull(sim->dynamics, (SingeColour)colour);
     for (uint32_t s = 0; s < sim->shell.sheet_count; s++)
         tear_stretched(sim->tear, s, dynamics_stretch(sim->dynamics, s));
-    uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, h, &short_of_spares);
+    uint32_t tears = tear_step(sim->tear, &sim->shell, state, pull, sim->pool, context.h, &short_of_spares);
     if (short_of_spares) sim_log_short_of_spares(sim);
     if (tears == 0) return;
     for (uint32_t k = state->tear.split_count - tears; k < state->tear.split_count; k++)
         step_share(sim, state->tear.splits[k].vertex, state->tear.splits[k].spare);
-    ablate_torn(sim->ablate, &sim->shell, state, sim->def.ambient_temperature, &state->ablate, &sim->events);
+    context.state.ablate = NULL;
+    ablate_torn(sim->ablate, &context, &state->ablate);
 }
 
+StepContext sim_context(SingeSim *sim, const SingeView *view) {
+    return (StepContext){.shell = &sim->shell,
+                         .state = state_input(&sim->state),
+                         .pins = &sim->pins,
+                         .colliders = &sim->colliders,
+                         .wind = &sim->def.wind,
+                         .view = view,
+                         .pool = sim->pool,
+                         .events = &sim->events,
+                         .error = &sim->error,
+                         .h = sim->def.time_step,
+                         .pace = sim->def.pace,
+                         .ambient_temperature = sim->def.ambient_temperature};
+}
+
+/// Notes what the stages counted.
+static void step_note(SingeSim *sim, const HeatCounters *heat, const DynamicsCounters *dynamics) {
+    SingeTimers *timers = &sim->timers;
+    timers->heat_iterations += heat->iterations;
+    timers->strands_projected += dynamics->strands;
+    timers->contacts += dynamics->contacts;
+    timers->projection_seconds += dynamics->seconds;
+    timers->springs_projected += dynamics->springs;
+    timers->projection_iterations += dynamics->iterations;
+    timers->projection_flops += dynamics->flops;
+    timers->projection_bytes += dynamics->bytes;
+    step_note_contacts(sim);
+}
+
+/// A stage's context is without the part of the State that the stage writes.
 static SingeResult step_stages(SingeSim *sim) {
-    const Shell *shell = &sim->shell;
-    const SingeSimDef *def = &sim->def;
     const SingeView view = singe_sim_view(sim);
+    const StepContext all = sim_context(sim, &view);
     State *state = &sim->state;
-    SingeError *error = &sim->error;
-    float h = def->time_step;
+    HeatCounters heat = {0};
+    DynamicsCounters dynamics = {0};
     double start = clock_seconds();
     sim->events.count = 0;
 
     // 1. temperatures from sources, combustion, losses and conduction (eq 1 to 3)
-    HeatCounters heat = {0};
-    TRY(heat_step(sim->heat, shell, state, &sim->sources, &sim->colliders, &view, sim->pool, h, &state->heat, &heat,
-                  error));
+    StepContext context = all;
+    context.state.heat = NULL;
+    TRY(heat_step(sim->heat, &context, &sim->sources, &state->heat, &heat));
     if (heat.unconverged) sim_log_unconverged(sim);
     step_lap(sim, SINGE_STAGE_HEAT, &start);
 
     // 2. masses of what is above the ignition point, and target lengths (eq 4 to 6)
-    TRY(burn_step(shell, state, sim->pool, h, def->pace, sim->thickening, sim->partial, &state->burn, &sim->events,
-                  error));
+    context = all;
+    context.state.burn = NULL;
+    TRY(burn_step(&context, sim->thickening, sim->partial, &state->burn));
     step_lap(sim, SINGE_STAGE_BURN, &start);
 
     // 3. burnt springs and particles go (eq 7)
-    TRY(ablate_step(sim->ablate, shell, state, sim->pool, def->ambient_temperature, &state->ablate, &sim->events,
-                    error));
+    context = all;
+    context.state.ablate = NULL;
+    ablate_step(sim->ablate, &context, &state->ablate);
     step_lap(sim, SINGE_STAGE_ABLATE, &start);
 
     // 4. positions and velocities (eq 8 to 19)
-    DynamicsCounters counters = {0};
-    TRY(dynamics_step(sim->dynamics, shell, state, &sim->pins, &sim->colliders, &def->wind, sim->pool, h,
-                      &state->dynamics, &counters, error));
+    context = all;
+    context.state.dynamics = NULL;
+    TRY(dynamics_step(sim->dynamics, &context, &state->dynamics, &dynamics));
     step_lap(sim, SINGE_STAGE_DYNAMICS, &start);
 
     // 5. what was pulled at too hard has torn; as it cannot fail, no step has to be undone that tore
-    if (sim->tear) step_tear(sim, h);
+    if (sim->tear) step_tear(sim, all);
     step_lap(sim, SINGE_STAGE_ABLATE, &start);
 
     // 6. the gas above what burns; what it does to the sheets is felt from the next step on
-    if (sim->gas) gas_step(sim->gas, shell, state, &sim->colliders, &def->wind, sim->pool, &state->gas);
+    context = all;
+    context.state.gas = NULL;
+    if (sim->gas) gas_step(sim->gas, &context, &state->gas);
     step_lap(sim, SINGE_STAGE_GAS, &start);
 
-    sim->timers.heat_iterations += heat.iterations;
-    sim->timers.strands_projected += counters.strands;
-    sim->timers.contacts += counters.contacts;
-    sim->timers.projection_seconds += counters.seconds;
-    sim->timers.springs_projected += counters.springs;
-    sim->timers.projection_iterations += counters.iterations;
-    sim->timers.projection_flops += counters.flops;
-    sim->timers.projection_bytes += counters.bytes;
-    step_note_contacts(sim);
+    step_note(sim, &heat, &dynamics);
     return SINGE_OK;
 }
 
@@ -116,7 +142,7 @@ SingeResult singe_sim_step(SingeSim *sim) {
         sim->state = before;
         sim->timers = timers;
         memcpy(sim->state.arena, sim->backup, sim->state.basic_size);
-        burn_restore_lengths(&sim->shell, &sim->state, &sim->state.burn);
+        burn_restore_lengths(&sim->shell, &sim->state.ablate, &sim->state.burn);
         sim->events.count = 0;
         return result;
     }

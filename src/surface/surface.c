@@ -130,7 +130,7 @@ static SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const Stat
 
 SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *state, SingeSurface *surface,
                            SingeError *error) {
-    ablate_levels(plan, shell, state);
+    ablate_levels(plan, shell, &state->burn);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     if (!shell->corner_uv) return surface_draw(plan, shell, state, NULL, surface, error);
     Memory memory = memory_make(surface->allocator);

@@ -123,7 +123,7 @@ SingeResult ablate_surface_fine(AblatePlan *plan, const Shell *shell, const Stat
                                 Memory *memory, Pool *pool, SingeSurface *surface, SingeError *error) {
     Fine fine = {.plan = plan, .shell = shell, .state = state, .memory = memory, .pool = pool, .surface = surface};
     fine.room = detail->room, fine.bulge_max = detail->bulge_max > 0 ? detail->bulge_max : INFINITY;
-    ablate_levels(plan, shell, state);
+    ablate_levels(plan, shell, &state->burn);
     surface->vertex_count = surface->triangle_count = surface->fine_triangle_count = 0;
     SingeResult result = fine_draw(&fine, detail, error);
     fine_release(&fine);

@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "ablate/ablate.h"
+#include "burn/burn.h"
 #include "shell/shell.h"
 
 #include <math.h>
@@ -22,6 +24,25 @@ typedef struct BurningSheet {
     SingeError error;
     uint32_t nx, ny;
 } BurningSheet;
+
+/// One step of a stage on the sheet, with nothing around it.
+static inline StepContext sheet_context(BurningSheet *b, Pool *pool, float h, float pace) {
+    return (StepContext){.shell = &b->shell, .state = state_input(&b->state), .pool = pool, .events = &b->events,
+                         .error = &b->error, .h = h, .pace = pace, .ambient_temperature = 293};
+}
+
+static inline SingeResult sheet_burn(BurningSheet *b, Pool *pool, float h, float pace, const float *thickening,
+                                     double *partial) {
+    StepContext context = sheet_context(b, pool, h, pace);
+    context.state.burn = NULL;
+    return burn_step(&context, thickening, partial, &b->state.burn);
+}
+
+static inline void sheet_ablate(BurningSheet *b, AblatePlan *plan) {
+    StepContext context = sheet_context(b, NULL, 0, 1);
+    context.state.ablate = NULL;
+    ablate_step(plan, &context, &b->state.ablate);
+}
 
 /// m_min 0.15, m_loss 0.25, p = 0, mu = 1e-3 1/(K s), T_ign 500 K, constant density, the paper's shrinkage.
 static inline SingeMaterialDef plain_material(void) {

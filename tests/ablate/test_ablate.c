@@ -20,12 +20,6 @@ static void finish(BurningSheet *b, AblatePlan *plan) {
     burning_sheet_free(b);
 }
 
-static void ablate(BurningSheet *b, AblatePlan *plan) {
-    State *state = &b->state;
-    SingeResult result = ablate_step(plan, &b->shell, state, NULL, AMBIENT, &state->ablate, &b->events, &b->error);
-    assert_int_equal(result, SINGE_OK);
-}
-
 /// Lets a particle burn to nothing at the present time.
 static void burn_out(BurningSheet *b, uint32_t particle) {
     b->state.burn.mass[particle] = 0;
@@ -105,12 +99,12 @@ static void burnt_centre_removes_nothing(void **unused) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     burn_out(b, centre_at(b, 1, 1));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18);
     assert_int_equal(b->state.ablate.topology_version, 0);
     burn_out(b, corner_at(b, 1, 1)); // of its four triangles each has a corner left
     burn_out(b, corner_at(b, 2, 2));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18);
     finish(b, plan);
 }
@@ -121,15 +115,15 @@ static void blue_goes_with_both_triangles(void **unused) {
     AblatePlan *plan = plan_for(b);
     uint32_t spring = b->shell.cell_springs[cell_at(b, 1, 1)].blue[0];
     burn_out(b, corner_at(b, 1, 1)), burn_out(b, corner_at(b, 2, 1)), burn_out(b, centre_at(b, 1, 1));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18); // the triangle below is still there
     burn_out(b, centre_at(b, 1, 0));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 23, 18);
     assert_int_equal(b->state.ablate.spring_flags[SINGE_BLUE][spring] & SINGE_ALIVE, 0);
     assert_int_equal(b->state.ablate.topology_version, 1);
     expect_consistent(b);
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.topology_version, 1);
     finish(b, plan);
 }
@@ -139,7 +133,7 @@ static void blue_goes_at_the_boundary(void **unused) {
     BurningSheet *b = three_by_three();
     AblatePlan *plan = plan_for(b);
     burn_out(b, corner_at(b, 1, 0)), burn_out(b, corner_at(b, 2, 0)), burn_out(b, centre_at(b, 1, 0));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 23, 18);
     assert_int_equal(b->state.ablate.spring_flags[SINGE_BLUE][b->shell.cell_springs[1].blue[0]] & SINGE_ALIVE, 0);
     finish(b, plan);
@@ -151,7 +145,7 @@ static void red_goes_with_both_triangles(void **unused) {
     AblatePlan *plan = plan_for(b);
     burn_out(b, corner_at(b, 1, 1)), burn_out(b, corner_at(b, 2, 1)), burn_out(b, corner_at(b, 1, 2));
     burn_out(b, centre_at(b, 1, 1));
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 35, 12, 24, 18);
     assert_int_equal(b->state.ablate.spring_flags[SINGE_RED][b->shell.cell_springs[4].red[0]] & SINGE_ALIVE, 0);
     expect_consistent(b);
@@ -165,7 +159,7 @@ static void yellow_and_green_go_with_the_cell(void **unused) {
     uint32_t centre = centre_at(b, 1, 1);
     b->state.burn.mass[centre] = 0.125f, b->state.heat.temperature[centre] = 900;
     for (int k = 0; k < 4; k++) b->state.burn.mass[b->shell.cells[4][k]] = 0.125f;
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 32, 8, 24, 16); // blue: the triangles around are there
     expect_consistent(b);
     assert_int_equal(b->state.ablate.cell_flags[4] & SINGE_ALIVE, 0);
@@ -183,13 +177,13 @@ static void all_can_go(void **unused) {
     AblatePlan *plan = plan_for(b);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.burn.mass[i] = 0.2f;
     double mass = mass_left(b);
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 0, 0, 0, 0);
     expect_consistent(b);
     assert_int_equal(b->state.ablate.piece_count, 0);
     assert_int_equal(b->state.ablate.topology_version, 1);
     assert_true(fabs(b->state.ablate.mass_removed - mass) < 1e-12 * mass);
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.topology_version, 1);
     finish(b, plan);
 }
@@ -201,7 +195,7 @@ static void nothing_goes_without_ablation(void **unused) {
     BurningSheet *b = burning_sheet(3, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
     for (uint32_t i = 0; i < b->shell.particle_count; i++) burn_out(b, i);
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     expect_springs(b, 36, 12, 24, 18);
     assert_int_equal(b->state.ablate.topology_version, 0);
     assert_int_equal(b->events.count, 0);
@@ -219,10 +213,8 @@ static void ash_stays_where_loss_is_below_min(void **unused) {
     float thickening = 1;
     for (uint32_t i = 0; i < b->shell.particle_count; i++) b->state.heat.temperature[i] = 900;
     for (int n = 0; n < 50; n++) { // 0.04 of the mass a step: ash after 18
-        assert_int_equal(burn_step(&b->shell, &b->state, NULL, 0.1f, 1, &thickening, partial, &b->state.burn,
-                                   &b->events, &b->error),
-                         SINGE_OK);
-        ablate(b, plan);
+        assert_int_equal(sheet_burn(b, NULL, 0.1f, 1, &thickening, partial), SINGE_OK);
+        sheet_ablate(b, plan);
     }
     for (uint32_t i = 0; i < b->shell.particle_count; i++) {
         assert_true(b->state.burn.mass[i] == 0.3f);
@@ -251,7 +243,7 @@ static void pieces_split_and_keep_ids(void **unused) {
     BurningSheet *b = burning_sheets(2, 9, 3, 0.01f, &material, 0);
     AblatePlan *plan = plan_for(b);
     const int32_t *piece = b->state.ablate.piece;
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece_count, 2);
     assert_int_equal(b->events.count, 0);
     assert_int_equal(piece[0], 0);
@@ -260,7 +252,7 @@ static void pieces_split_and_keep_ids(void **unused) {
     assert_int_equal(piece[80 + 27], 1);
 
     burn_out_column(b, 2); // left 2 columns, right 6: the right is larger and keeps the id
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece_count, 3);
     assert_int_equal(piece[corner_at(b, 0, 0)], 2);
     assert_int_equal(piece[corner_at(b, 2, 3)], 2);
@@ -277,7 +269,7 @@ static void pieces_split_and_keep_ids(void **unused) {
     b->events.count = 0;
     burn_out_column(b, 5); // columns 3, 4 and 6, 7, 8: the larger one keeps
     burn_out_column(b, 7); // 6 and 8: now columns 3, 4 are the largest
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece_count, 5);
     assert_int_equal(piece[centre_at(b, 3, 0)], 0);
     assert_int_equal(piece[centre_at(b, 6, 0)], 3);
@@ -296,7 +288,7 @@ static void equal_parts_keep_by_smallest_particle(void **unused) {
     BurningSheet *b = burning_sheet(7, 3, 0.01f, &material);
     AblatePlan *plan = plan_for(b);
     burn_out_column(b, 3); // in the first step of all
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->state.ablate.piece[centre_at(b, 0, 0)], 0);
     assert_int_equal(b->state.ablate.piece[centre_at(b, 6, 0)], 1);
     count_freed(b, 1);
@@ -311,7 +303,7 @@ static BurningSheet *cut_off(float drop_below_cells, bool pinned, AblatePlan **p
     *plan = plan_for(b);
     if (pinned) b->state.dynamics.pinned[corner_at(b, 7, 2)] = 1;
     burn_out_column(b, 5);
-    ablate(b, *plan);
+    sheet_ablate(b, *plan);
     expect_consistent(b);
     return b;
 }
@@ -342,7 +334,7 @@ static void small_loose_pieces_are_dropped(void **unused) {
 
 static void expect_hole(BurningSheet *b, AblatePlan *plan, int64_t particle) {
     b->events.count = 0;
-    ablate(b, plan);
+    sheet_ablate(b, plan);
     assert_int_equal(b->events.count, particle >= 0);
     if (particle < 0) return;
     assert_int_equal(b->events.items[0].kind, SINGE_EVENT_HOLE_OPENED);
@@ -395,12 +387,10 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
             float away = b->shell.rest_position[i][0] - 0.0004f * (float)n;
             b->state.heat.temperature[i] = 300 + 700 * expf(-away * away * 2e4f);
         }
-        SingeResult result = burn_step(&b->shell, &b->state, NULL, 0.05f, 1, &thickening, partial, &b->state.burn,
-                                       &b->events, &b->error);
-        assert_int_equal(result, SINGE_OK);
+        assert_int_equal(sheet_burn(b, NULL, 0.05f, 1, &thickening, partial), SINGE_OK);
         uint8_t *before = malloc(count);
         memcpy(before, b->state.ablate.particle_flags, count);
-        ablate(b, plan);
+        sheet_ablate(b, plan);
         for (uint32_t i = 0; i < count; i++)
             if (before[i] != b->state.ablate.particle_flags[i])
                 heat += (double)b->shell.matter.capacity[i] * ((double)b->state.heat.temperature[i] - AMBIENT);

@@ -9,7 +9,7 @@ static SingeResult step(BurningSheet *b, Pool *pool, float h, float pace, float 
     double partial[64];
     float factors[4] = {thickening, thickening, thickening, thickening};
     assert_true(pool_blocks((int)b->shell.particle_count) <= 64);
-    return burn_step(&b->shell, &b->state, pool, h, pace, factors, partial, &b->state.burn, &b->events, &b->error);
+    return sheet_burn(b, pool, h, pace, factors, partial);
 }
 
 static void heat_all(BurningSheet *b, float temperature) {

@@ -14,7 +14,7 @@ static SingeResult step(BurningSheet *b, float h, float pace, float thickening) 
     double partial[64];
     float factors[4] = {thickening, thickening, thickening, thickening};
     assert_true(pool_blocks((int)b->shell.particle_count) <= 64);
-    return burn_step(&b->shell, &b->state, NULL, h, pace, factors, partial, &b->state.burn, &b->events, &b->error);
+    return sheet_burn(b, NULL, h, pace, factors, partial);
 }
 
 static SingeMaterialDef charring(void) {

@@ -77,9 +77,11 @@ void bench_close(Bench *bench) {
 }
 
 void bench_step(Bench *bench, float h) {
-    SingeResult result =
-        dynamics_step(bench->plan, &bench->shell, &bench->state, &bench->pins, &bench->colliders, &bench->wind,
-                      bench->pool, h, &bench->state.dynamics, &bench->counters, &bench->error);
+    StepContext context = {.shell = &bench->shell, .state = state_input(&bench->state), .pins = &bench->pins,
+                           .colliders = &bench->colliders, .wind = &bench->wind, .pool = bench->pool,
+                           .error = &bench->error, .h = h};
+    context.state.dynamics = NULL;
+    SingeResult result = dynamics_step(bench->plan, &context, &bench->state.dynamics, &bench->counters);
     assert_int_equal(result, SINGE_OK);
     bench->state.time += (double)h;
     bench->state.step++;

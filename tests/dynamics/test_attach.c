@@ -20,7 +20,8 @@ static void hold(Bench *bench, const SingeMaterialDef *material, int count, cons
     bench_open(bench, quads_grid(SIDE, SIDE, cell, cell, false), material, 1);
     for (int k = 0; k < count; k++) bench->state.dynamics.pinned[held[k]] = 1;
     dynamics_plan_hold(bench->plan, &bench->shell, &bench->state);
-    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, bench->pool, &bench->state.dynamics);
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, bench->pool,
+                     &bench->state.dynamics);
 }
 
 /// Throws what is free about, up to 10 cm.
@@ -103,7 +104,7 @@ static void test_loose_piece_is_free(void **unused) {
     hold(&bench, NULL, 1, &corner);
     for (uint32_t v = vertex(0, 10); v < bench.shell.vertex_count; v++) bench.state.ablate.piece[v] = 7;
     bench.state.ablate.topology_version++;
-    attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+    attach_update(&bench.plan->attachments, &bench.shell, STATE_INPUT(&bench.state), false);
     for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
     project(&bench);
     for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
@@ -112,7 +113,7 @@ static void test_loose_piece_is_free(void **unused) {
     dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
     bench.state.burn.mass_burnt = 1e-6, bench.state.step = ATTACH_PERIOD - 1;
     for (int step = 0; step < 3; step++, bench.state.step++) {
-        attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+        attach_update(&bench.plan->attachments, &bench.shell, STATE_INPUT(&bench.state), false);
         for (uint32_t v = 0; v < bench.shell.vertex_count; v++) {
             float length = bench.plan->attachments.length[v][0];
             assert_true(v >= vertex(0, 10) ? isinf(length) && length > 0 : isfinite(length));
@@ -131,13 +132,14 @@ static void test_let_go(void **unused) {
         if (burnt) {
             bench.state.ablate.particle_flags[corner] = 0, bench.state.ablate.piece[corner] = -1;
             bench.state.ablate.topology_version++;
-            attach_update(&bench.plan->attachments, &bench.shell, &bench.state, false);
+            attach_update(&bench.plan->attachments, &bench.shell, STATE_INPUT(&bench.state), false);
         } else {
             bench.state.dynamics.pinned[corner] = 0;
             dynamics_plan_hold(bench.plan, &bench.shell, &bench.state);
             assert_int_equal(bench.plan->attachments.source[0][0], SHELL_NONE);
         }
-        dynamics_prepare(bench.plan, &bench.shell, &bench.state, &bench.wind, bench.pool, &bench.state.dynamics);
+        dynamics_prepare(bench.plan, &bench.shell, STATE_INPUT(&bench.state), &bench.wind, bench.pool,
+                         &bench.state.dynamics);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
         project(&bench);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
@@ -173,7 +175,7 @@ static void test_sources(void **unused) {
 /// The end of the step before a measurement is due, or of the one in which it is.
 static void end_step(Bench *bench, uint64_t step) {
     bench->state.step = step - 1;
-    attach_update(&bench->plan->attachments, &bench->shell, &bench->state, false);
+    attach_update(&bench->plan->attachments, &bench->shell, STATE_INPUT(&bench->state), false);
 }
 
 /// A fire that eats a disc from the middle: ways round it are longer at once, and none is shorter.

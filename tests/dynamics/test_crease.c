@@ -75,7 +75,7 @@ static void rig_roll_aslant(Rig *rig, double curvature, double turn) {
 
 static void rig_pass(Rig *rig, int steps) {
     for (int s = 0; s < steps; s++)
-        dynamics_crease(rig->plan, &rig->shell, &rig->state, rig->pool, 1.0f / 480, &rig->state.dynamics);
+        dynamics_crease(rig->plan, &rig->shell, STATE_INPUT(&rig->state), rig->pool, 1.0f / 480, &rig->state.dynamics);
 }
 
 /// Whether a green spring lies along x.
@@ -297,11 +297,11 @@ static void test_char_forgets(void **unused) {
         float crease = rig.state.dynamics.crease[0], min = singe_default_material().mass_min.value;
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = min;
         rig.state.burn.mass_burnt = 1;
-        assert_true(crease_kept(&rig.shell, &rig.state, 0) == 0);
+        assert_true(crease_kept(&rig.shell, STATE_INPUT(&rig.state), 0) == 0);
         rig_pass(&rig, 200);
         assert_true(rig.state.dynamics.crease[0] == crease && (crease == 0) == (ash == 1));
         for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.mass[i] = 0.5f * (1 + min);
-        assert_true(fabsf(crease_kept(&rig.shell, &rig.state, 0) - 0.5f) < 1e-6f);
+        assert_true(fabsf(crease_kept(&rig.shell, STATE_INPUT(&rig.state), 0) - 0.5f) < 1e-6f);
         rig_close(&rig);
     }
 }

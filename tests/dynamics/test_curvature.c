@@ -37,7 +37,8 @@ static void fold(Bench *bench, float angle, int turns) {
 }
 
 static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, NULL, &bench->state.dynamics);
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, NULL,
+                     &bench->state.dynamics);
 }
 
 /// The largest |r| of three vertices in a row along x, over what an arc of the limit has.

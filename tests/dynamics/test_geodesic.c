@@ -30,7 +30,8 @@ static void distances_close(Distances *d) {
 }
 
 static void distances_from(Distances *d, uint32_t source) {
-    geodesic_from(&d->search, &d->bench.shell, &d->bench.state, source, 0, d->bench.shell.vertex_count, d->distance);
+    geodesic_from(&d->search, &d->bench.shell, STATE_INPUT(&d->bench.state), source, 0, d->bench.shell.vertex_count,
+                  d->distance);
 }
 
 static double apart(const Distances *d, uint32_t a, uint32_t b) {

@@ -20,7 +20,8 @@ static SingeMaterialDef plain(void) {
 }
 
 static void prepare(Bench *bench) {
-    dynamics_prepare(bench->plan, &bench->shell, &bench->state, &bench->wind, bench->pool, &bench->state.dynamics);
+    dynamics_prepare(bench->plan, &bench->shell, STATE_INPUT(&bench->state), &bench->wind, bench->pool,
+                     &bench->state.dynamics);
 }
 
 static void momentum(const Bench *bench, double p[3]) {
@@ -162,17 +163,18 @@ static void test_sides_have_a_max(void **unused) {
     x[at][2] += 0.03f, v[at][2] = 5, x[0][0] -= 0.02f;
     double before[3], after[3];
     momentum(&bench, before);
-    dynamics_limit(bench.plan, &bench.shell, &bench.state, bench.pool, &bench.state.dynamics);
+    dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
     momentum(&bench, after);
     for (int k = 0; k < 3; k++) assert_true(fabs(after[k] - before[k]) < 1e-5 * fabs(before[2]));
     assert_true(longest_side(&bench) < 1.3);
     assert_true(v[at][2] < 4);
     for (bench.state.step = 1; bench.state.step < 5; bench.state.step++) { // in every step
         x[at][2] += 0.03f;
-        dynamics_limit(bench.plan, &bench.shell, &bench.state, bench.pool, &bench.state.dynamics);
+        dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
         assert_true(longest_side(&bench) < 1.3);
     }
-    assert_false(dynamics_limit(bench.plan, &bench.shell, &bench.state, bench.pool, &bench.state.dynamics));
+    assert_false(dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool,
+                                &bench.state.dynamics));
     bench_close(&bench);
 }
 
@@ -195,7 +197,8 @@ static void test_some_sides_have_no_max(void **unused) {
             bench.state.ablate.spring_flags[SINGE_YELLOW][springs->yellow[k]] = 0;
         for (uint32_t v = 0; kind == 2 && v < bench.shell.vertex_count; v++) x[v][3] = 0;
         bench.plan->attachments.spread[0].tight = kind == 3;
-        bool found = dynamics_limit(bench.plan, &bench.shell, &bench.state, bench.pool, &bench.state.dynamics);
+        bool found = dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool,
+                                    &bench.state.dynamics);
         assert_true(found == (kind == 4)); // there is none of these
         assert_true(kind == 4 ? x[7][0] < far - 1e-3f : x[7][0] == far);
         bench_close(&bench);

@@ -35,7 +35,10 @@ static void air_close(Air *air) {
 
 static void air_step(Air *air) {
     Rig *rig = &air->rig;
-    gas_step(air->plan, &rig->shell, &rig->state, &rig->colliders, &air->wind, rig->pool, &rig->state.gas);
+    StepContext context = {.shell = &rig->shell, .state = state_input(&rig->state), .colliders = &rig->colliders,
+                           .wind = &air->wind, .pool = rig->pool};
+    context.state.gas = NULL;
+    gas_step(air->plan, &context, &rig->state.gas);
     rig->state.step++;
     rig->state.time = (double)rig->state.step / 72;
 }

@@ -66,12 +66,17 @@ void rig_close(Rig *rig) {
     assert_int_equal(rig->memory.held, 0);
 }
 
-void rig_step(Rig *rig) {
+SingeResult rig_try_step(Rig *rig) {
     SingeView view = {.time = rig->state.time, .particle_count = rig->shell.particle_count,
                       .temperature = rig->state.heat.temperature};
-    if (heat_step(rig->plan, &rig->shell, &rig->state, &rig->sources, &rig->colliders, &view, rig->pool, rig->h,
-                  &rig->state.heat, &rig->counters, &rig->error))
-        fail_msg("%s", rig->error.message);
+    StepContext context = {.shell = &rig->shell, .state = state_input(&rig->state), .colliders = &rig->colliders,
+                           .view = &view, .pool = rig->pool, .error = &rig->error, .h = rig->h};
+    context.state.heat = NULL;
+    return heat_step(rig->plan, &context, &rig->sources, &rig->state.heat, &rig->counters);
+}
+
+void rig_step(Rig *rig) {
+    if (rig_try_step(rig)) fail_msg("%s", rig->error.message);
     rig->state.time += (double)rig->h;
     rig->state.step++;
 }

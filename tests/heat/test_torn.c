@@ -103,8 +103,8 @@ static void rows_are_as_if_built_anew(void **unused) {
             for (int k = 0; k < 5; k++) burn_somewhere(&t);
             uint32_t before = t.by_rows->split_count;
             t.anew->matrix.full = true; // which it cannot follow by rows
-            heat_plan_follow(t.by_rows, &t.shell, &t.state);
-            heat_plan_follow(t.anew, &t.shell, &t.state);
+            heat_plan_follow(t.by_rows, &t.shell, STATE_INPUT(&t.state));
+            heat_plan_follow(t.anew, &t.shell, STATE_INPUT(&t.state));
             by_rows += t.by_rows->split_count > before && t.by_rows->matrix.dt > 0;
             assert_true(t.anew->split_count == before || t.anew->matrix.dt == 0);
             heat_matrix_follow(t.by_rows, &t.shell, &t.state.ablate, 1e-3f);

@@ -51,9 +51,7 @@ static inline void draw_fine(Drawing *d) {
 
 /// Removes what has burnt.
 static inline void ablate(Drawing *d) {
-    State *state = &d->sheet->state;
-    assert_int_equal(ablate_step(d->plan, &d->sheet->shell, state, NULL, 293, &state->ablate, &d->sheet->events, NULL),
-                     SINGE_OK);
+    sheet_ablate(d->sheet, d->plan);
 }
 
 static inline void set_level(Drawing *d, uint32_t particle, float level) {

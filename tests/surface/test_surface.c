@@ -166,9 +166,7 @@ static void random_levels_leave_no_cracks(void **unused) {
                 for (int k = 0; k < 3; k++) level[k] = ablate_level(shell, &d->sheet->state, at[k]);
                 expected += part_inside(level, 0.25);
             }
-        State *state = &d->sheet->state;
-        SingeResult result = ablate_step(d->plan, shell, state, NULL, 293, &state->ablate, &d->sheet->events, NULL);
-        assert_int_equal(result, SINGE_OK);
+        ablate(d);
         draw_coarse(d);
         assert_true(expected > 1);
         assert_float_equal(area_of(s), expected, 1e-4);
