@@ -5,6 +5,7 @@
 
 #include "cli/machine_memory.h"
 #include "cli/text.h"
+#include "common/allocator.h"
 
 void set_add(SetList *sets, const char *text) {
     if (sets->count == sets->capacity) {
@@ -41,13 +42,6 @@ ExitCode job_exit(SingeResult result) {
     return result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
 }
 
-static void *libc_resize(void *context, void *block, size_t old_size, size_t new_size) {
-    (void)context, (void)old_size;
-    if (new_size) return realloc(block, new_size);
-    free(block);
-    return NULL;
-}
-
 /// Prints what is wrong and closes the job, if the result says so.
 static ExitCode job_tell(Job *job, Console *console, SingeResult result, SceneMessages *messages) {
     if (result) {
@@ -62,7 +56,7 @@ static ExitCode job_tell(Job *job, Console *console, SingeResult result, SceneMe
 
 static void set_hooks(Job *job, Console *console, int threads) {
     job->hooks = singe_default_sim();
-    job->hooks.allocator = (SingeAllocator){libc_resize, NULL};
+    job->hooks.allocator = allocator_or_libc((SingeAllocator){0});
     job->hooks.log = console_log(console);
     job->hooks.thread_count = threads;
 }

@@ -1,20 +1,11 @@
 #include "common/memory.h"
 
-#include <stdlib.h>
+#include "common/allocator.h"
+
 #include <string.h>
 
-static void *memory_libc(void *context, void *block, size_t old_size, size_t new_size) {
-    (void)context, (void)old_size;
-    if (new_size == 0) {
-        free(block);
-        return NULL;
-    }
-    return realloc(block, new_size);
-}
-
 Memory memory_make(SingeAllocator hook) {
-    if (!hook.resize) hook.resize = memory_libc;
-    return (Memory){hook, 0};
+    return (Memory){allocator_or_libc(hook), 0};
 }
 
 /// Bytes of `count` elements, at least 1; 0 when the product overflows.

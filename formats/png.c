@@ -1,4 +1,5 @@
 // PNG by libpng. libpng reports errors by a jump: whatever must survive it lives in a struct, not in locals.
+#include "common/allocator.h"
 #include "formats/codec.h"
 #include "formats/store.h"
 
@@ -44,7 +45,7 @@ typedef union PngBlock {
 
 static png_voidp png_take(png_structp png, png_alloc_size_t size) {
     PngJob *job = png_get_mem_ptr(png);
-    PngBlock *block = size < SIZE_MAX / 2 ? store_resize(job->allocator, NULL, 0, size + sizeof *block) : NULL;
+    PngBlock *block = size < SIZE_MAX / 2 ? allocator_resize(job->allocator, NULL, 0, size + sizeof *block) : NULL;
     if (!block) {
         job->out_of_memory = true;
         return NULL;
@@ -56,7 +57,7 @@ static png_voidp png_take(png_structp png, png_alloc_size_t size) {
 static void png_supply(png_structp png, png_voidp memory) {
     PngJob *job = png_get_mem_ptr(png);
     PngBlock *block = memory;
-    if (block) store_resize(job->allocator, block - 1, block[-1].size, 0);
+    if (block) allocator_resize(job->allocator, block - 1, block[-1].size, 0);
 }
 
 // ---- reading
@@ -133,7 +134,7 @@ static bool png_flatten(PngJob *job) {
         unsigned alpha = in[3], white = 255 * (255 - alpha);
         for (int k = 0; k < 3; k++) out[k] = (uint8_t)((in[k] * alpha + white + 127) / 255);
     }
-    uint8_t *cut = store_resize(job->allocator, job->pixels, 4 * job->pixel_count, 3 * job->pixel_count);
+    uint8_t *cut = allocator_resize(job->allocator, job->pixels, 4 * job->pixel_count, 3 * job->pixel_count);
     if (!cut) return false;
     job->pixels = cut;
     job->channels = 3;

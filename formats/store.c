@@ -1,20 +1,11 @@
 #include "formats/store.h"
 
+#include "common/allocator.h"
 #include "formats/printable.h"
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-void *store_resize(SingeAllocator allocator, void *block, size_t old_size, size_t new_size) {
-    if (allocator.resize) return allocator.resize(allocator.context, block, old_size, new_size);
-    if (new_size == 0) {
-        free(block);
-        return NULL;
-    }
-    return realloc(block, new_size);
-}
 
 static bool store_bytes(size_t count, size_t element_size, size_t *bytes) {
     if (element_size && count > SIZE_MAX / 2 / element_size) return false;
@@ -25,12 +16,12 @@ static bool store_bytes(size_t count, size_t element_size, size_t *bytes) {
 
 void *store_new(SingeAllocator allocator, size_t count, size_t element_size) {
     size_t bytes;
-    return store_bytes(count, element_size, &bytes) ? store_resize(allocator, NULL, 0, bytes) : NULL;
+    return store_bytes(count, element_size, &bytes) ? allocator_resize(allocator, NULL, 0, bytes) : NULL;
 }
 
 void store_free(SingeAllocator allocator, void *array, size_t count, size_t element_size) {
     size_t bytes;
-    if (array && store_bytes(count, element_size, &bytes)) store_resize(allocator, array, bytes, 0);
+    if (array && store_bytes(count, element_size, &bytes)) allocator_resize(allocator, array, bytes, 0);
 }
 
 static bool store_set(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count,
@@ -40,7 +31,7 @@ static bool store_set(SingeAllocator allocator, void *array_pointer, size_t *cap
     size_t old_bytes = 0, bytes;
     if (!store_bytes(count, element_size, &bytes)) return false;
     if (old && !store_bytes(*capacity, element_size, &old_bytes)) return false;
-    moved = store_resize(allocator, old, old_bytes, bytes);
+    moved = allocator_resize(allocator, old, old_bytes, bytes);
     if (!moved) return false;
     memcpy(array_pointer, &moved, sizeof moved);
     *capacity = count;

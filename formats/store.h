@@ -10,10 +10,6 @@
         if (try_result_) return try_result_; \
     } while (0)
 
-/// Resizes a block through the hook, or through libc where the hook is zeroed. As realloc, but a new
-/// size of 0 frees and returns NULL.
-void *store_resize(SingeAllocator allocator, void *block, size_t old_size, size_t new_size);
-
 /// An uninitialised array; NULL when out of memory or when its size overflows. At least one byte is
 /// allocated, so NULL always means failure; free it with the same count.
 void *store_new(SingeAllocator allocator, size_t count, size_t element_size);

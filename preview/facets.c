@@ -58,17 +58,17 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
     const PreviewSolid *solid = facets->solid;
     SingeAllocator *allocator = &preview->allocator;
     size_t corners = 3 * (size_t)solid->triangle_count, vertices = (size_t)solid->vertex_count + 2;
-    uint32_t *first = preview_resize(allocator, NULL, 0, vertices * sizeof *first);
-    uint32_t *fan = preview_resize(allocator, NULL, 0, corners * sizeof *fan);
-    facets->normals = preview_resize(allocator, NULL, 0, corners * sizeof *facets->normals);
+    uint32_t *first = allocator_resize(*allocator, NULL, 0, vertices * sizeof *first);
+    uint32_t *fan = allocator_resize(*allocator, NULL, 0, corners * sizeof *fan);
+    facets->normals = allocator_resize(*allocator, NULL, 0, corners * sizeof *facets->normals);
     bool ok = first && fan && facets->normals;
     if (ok) {
         facets_fans(solid, first, fan);
         facets_smooth(facets, first, fan);
         facets_bounds(facets);
     }
-    preview_resize(allocator, first, first ? vertices * sizeof *first : 0, 0);
-    preview_resize(allocator, fan, fan ? corners * sizeof *fan : 0, 0);
+    allocator_resize(*allocator, first, first ? vertices * sizeof *first : 0, 0);
+    allocator_resize(*allocator, fan, fan ? corners * sizeof *fan : 0, 0);
     return ok ? SINGE_OK : preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
 }
 
@@ -116,7 +116,7 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
     if (!facets) {
         SingeResult result = facets_check(solid, error);
         if (result) return result;
-        facets = preview_resize(&preview->allocator, NULL, 0, sizeof *facets);
+        facets = allocator_resize(preview->allocator, NULL, 0, sizeof *facets);
         if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
         *facets = (Facets){.solid = solid, .triangle_count = solid->triangle_count, .next = preview->facets};
         preview->facets = facets;
@@ -134,8 +134,8 @@ void facets_free(Preview *preview) {
         preview->facets = facets->next;
         if (facets->embree) rtcReleaseScene(facets->embree);
         size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
-        preview_resize(&preview->allocator, facets->normals, size, 0);
-        preview_resize(&preview->allocator, facets, sizeof *facets, 0);
+        allocator_resize(preview->allocator, facets->normals, size, 0);
+        allocator_resize(preview->allocator, facets, sizeof *facets, 0);
     }
 }
 

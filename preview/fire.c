@@ -195,11 +195,11 @@ void fire_raise(Preview *preview) {
 /// A block that could not be had is NULL and has no size.
 static void free_cells(const Preview *preview, const Fire *fire) {
     const SingeAllocator *allocator = &preview->allocator;
-    preview_resize(allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
-    preview_resize(allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
-    preview_resize(allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
-    preview_resize(allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
-    preview_resize(allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
+    allocator_resize(*allocator, fire->cells, fire->cells ? fire->cell_capacity * sizeof *fire->cells : 0, 0);
+    allocator_resize(*allocator, fire->seen, fire->seen ? fire->brick_capacity : 0, 0);
+    allocator_resize(*allocator, fire->burns, fire->burns ? fire->cell_capacity : 0, 0);
+    allocator_resize(*allocator, fire->source, fire->source ? fire->cell_capacity * sizeof *fire->source : 0, 0);
+    allocator_resize(*allocator, fire->roots, fire->roots ? fire->cell_capacity * sizeof *fire->roots : 0, 0);
 }
 
 static bool make_room(const Preview *preview, Fire *fire) {
@@ -210,11 +210,11 @@ static bool make_room(const Preview *preview, Fire *fire) {
     }
     if (cells != fire->cell_capacity || bricks != fire->brick_capacity) {
         Fire old = *fire;
-        fire->cells = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->cells);
-        fire->seen = preview_resize(&preview->allocator, NULL, 0, bricks);
-        fire->burns = preview_resize(&preview->allocator, NULL, 0, cells);
-        fire->source = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->source);
-        fire->roots = preview_resize(&preview->allocator, NULL, 0, cells * sizeof *fire->roots);
+        fire->cells = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->cells);
+        fire->seen = allocator_resize(preview->allocator, NULL, 0, bricks);
+        fire->burns = allocator_resize(preview->allocator, NULL, 0, cells);
+        fire->source = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->source);
+        fire->roots = allocator_resize(preview->allocator, NULL, 0, cells * sizeof *fire->roots);
         fire->cell_capacity = cells, fire->brick_capacity = bricks;
         free_cells(preview, &old);
     }
@@ -245,9 +245,9 @@ static bool make_tables(Preview *preview) {
     Fire *fire = &preview->fire;
     if (fire->noise && fire->tiles) return true;
     size_t count = (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE;
-    if (!fire->noise) fire->noise = preview_resize(&preview->allocator, NULL, 0, count * sizeof *fire->noise);
+    if (!fire->noise) fire->noise = allocator_resize(preview->allocator, NULL, 0, count * sizeof *fire->noise);
     if (!fire->noise) return false;
-    fire->tiles = preview_resize(&preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
+    fire->tiles = allocator_resize(preview->allocator, NULL, 0, (size_t)preview->def.thread_count * sizeof(FireTile));
     if (!fire->tiles) return false;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t c = 0; c < 4; c++) fire->noise[i][c] = 2 * hash_unit(4 * i + c + 1) - 1;
@@ -299,9 +299,9 @@ void fire_light_smoke(Preview *preview) {
 void fire_free(Preview *preview) {
     Fire *fire = &preview->fire;
     free_cells(preview, fire);
-    preview_resize(&preview->allocator, fire->noise,
+    allocator_resize(preview->allocator, fire->noise,
                    fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
-    preview_resize(&preview->allocator, fire->tiles,
+    allocator_resize(preview->allocator, fire->tiles,
                    fire->tiles ? (size_t)preview->def.thread_count * sizeof(FireTile) : 0, 0);
     *fire = (Fire){.cells = NULL};
 }

@@ -2,6 +2,7 @@
 #ifndef PREVIEW_INTERNAL_H
 #define PREVIEW_INTERNAL_H
 
+#include "common/allocator.h"
 #include "preview/fire.h"
 #include "preview/noise.h"
 #include "preview/preview.h"
@@ -164,7 +165,6 @@ typedef struct Point {
 // preview.c
 SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, const char *format, ...)
     SINGE_PRINTF(4, 5);
-void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_size, size_t new_size);
 
 // lens.c
 Camera camera_make(const PreviewDef *def);

@@ -13,7 +13,7 @@ static bool mesh_in_grow(Preview *preview, void *array_pointer, uint32_t *capaci
     if (count <= *capacity) return true;
     uint32_t wanted = count + count / 4 < count ? count : count + count / 4;
     if ((size_t)wanted > SIZE_MAX / size / 2) return false;
-    void *grown = preview_resize(&preview->allocator, *array, *capacity * size, wanted * size);
+    void *grown = allocator_resize(preview->allocator, *array, *capacity * size, wanted * size);
     if (!grown) return false;
     *array = grown, *capacity = wanted;
     return true;
@@ -241,11 +241,11 @@ SingeResult tracer_load(Preview *preview, const SingeSurface *surface, SingeErro
 void tracer_free(Preview *preview) {
     Scene *scene = &preview->scene;
     tracer_release(preview);
-    preview_resize(&preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
-    preview_resize(&preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
+    allocator_resize(preview->allocator, scene->vertices, scene->vertex_capacity * sizeof *scene->vertices, 0);
+    allocator_resize(preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
     for (int end = 0; end < 2; end++)
-        preview_resize(&preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
+        allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
                        0);
-    preview_resize(&preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
+    allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
     *scene = (Scene){0};
 }

@@ -17,16 +17,6 @@ SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, c
     return code;
 }
 
-void *preview_resize(const SingeAllocator *allocator, void *block, size_t old_size, size_t new_size) {
-    if (!block && !new_size) return NULL;
-    if (allocator->resize) return allocator->resize(allocator->context, block, block ? old_size : 0, new_size);
-    if (!new_size) {
-        free(block);
-        return NULL;
-    }
-    return realloc(block, new_size);
-}
-
 PreviewDef preview_default(void) {
     return (PreviewDef){
         .width = 960, .height = 540, .samples = 8, .thread_count = 1,
@@ -151,13 +141,14 @@ static size_t glow_count(const PreviewDef *def) {
 static SingeResult preview_allocate(Preview *preview, SingeError *error) {
     const PreviewDef *def = &preview->def;
     const SingeAllocator *allocator = &preview->allocator;
-    preview->picture = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
-    preview->table = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Table));
-    preview->lamps = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
-    preview->seen = preview_resize(allocator, NULL, 0, pixel_count(def) * sizeof(float));
-    preview->mask = preview_resize(allocator, NULL, 0, mask_size(preview));
-    for (int i = 0; i < 2; i++) preview->glow[i] = preview_resize(allocator, NULL, 0, glow_count(def) * sizeof(Float3));
-    preview->textures = preview_resize(allocator, NULL, 0, def->sheet_count * sizeof(Texture));
+    preview->picture = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Float3));
+    preview->table = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Table));
+    preview->lamps = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(Lamp));
+    preview->seen = allocator_resize(*allocator, NULL, 0, pixel_count(def) * sizeof(float));
+    preview->mask = allocator_resize(*allocator, NULL, 0, mask_size(preview));
+    for (int i = 0; i < 2; i++)
+        preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
+    preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
     if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
         (def->sheet_count && !preview->textures))
@@ -185,7 +176,7 @@ SingeResult preview_create(const PreviewDef *def, SingeAllocator allocator, Prev
     *out = NULL;
     SingeResult result = check_def(def, error);
     if (result) return result;
-    Preview *preview = preview_resize(&allocator, NULL, 0, sizeof *preview);
+    Preview *preview = allocator_resize(allocator, NULL, 0, sizeof *preview);
     if (!preview) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory");
     *preview = (Preview){.def = *def, .allocator = allocator};
     preview_aim(preview);
@@ -205,7 +196,7 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
     if (result) return result;
     uint32_t drawn = 0; // planes are left to the ground
     for (uint32_t i = 0; i < count; i++) drawn += shapes[i].kind != SINGE_COLLIDER_PLANE;
-    PreviewShape *copy = preview_resize(&preview->allocator, NULL, 0, drawn * sizeof *copy);
+    PreviewShape *copy = allocator_resize(preview->allocator, NULL, 0, drawn * sizeof *copy);
     if (drawn && !copy) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for %u shapes", count);
     for (uint32_t i = 0, next = 0; i < count && !result; i++) {
         if (shapes[i].kind == SINGE_COLLIDER_PLANE) continue;
@@ -215,10 +206,10 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
         if (shape->solid) result = facets_get(preview, shape->solid, &shape->facets, error);
     }
     if (result) {
-        preview_resize(&preview->allocator, copy, drawn * sizeof *copy, 0);
+        allocator_resize(preview->allocator, copy, drawn * sizeof *copy, 0);
         return result;
     }
-    preview_resize(&preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    allocator_resize(preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview->shapes = copy, preview->shape_count = drawn;
     return SINGE_OK;
 }
@@ -232,13 +223,13 @@ void preview_destroy(Preview *preview) {
     facets_free(preview);
     if (preview->device) rtcReleaseDevice(preview->device);
     for (uint32_t s = 0; preview->textures && s < def->sheet_count; s++) texture_free(preview, &preview->textures[s]);
-    preview_resize(&allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
-    preview_resize(&allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
-    preview_resize(&allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
-    preview_resize(&allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
-    preview_resize(&allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
-    preview_resize(&allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
-    preview_resize(&allocator, preview->mask, mask_size(preview), 0);
-    for (int i = 0; i < 2; i++) preview_resize(&allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
-    preview_resize(&allocator, preview, sizeof *preview, 0);
+    allocator_resize(allocator, preview->textures, def->sheet_count * sizeof(Texture), 0);
+    allocator_resize(allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
+    allocator_resize(allocator, preview->picture, pixel_count(def) * sizeof(Float3), 0);
+    allocator_resize(allocator, preview->lamps, preview->lamps ? pixel_count(def) * sizeof(Lamp) : 0, 0);
+    allocator_resize(allocator, preview->seen, preview->seen ? pixel_count(def) * sizeof(float) : 0, 0);
+    allocator_resize(allocator, preview->table, pixel_count(def) * sizeof(Table), 0);
+    allocator_resize(allocator, preview->mask, mask_size(preview), 0);
+    for (int i = 0; i < 2; i++) allocator_resize(allocator, preview->glow[i], glow_count(def) * sizeof(Float3), 0);
+    allocator_resize(allocator, preview, sizeof *preview, 0);
 }

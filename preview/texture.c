@@ -38,7 +38,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
         int level = texture->count, w = texture->width[level - 1], h = texture->height[level - 1];
         if (w == 1 && h == 1) break;
         texture->width[level] = (w + 1) / 2, texture->height[level] = (h + 1) / 2;
-        uint8_t *out = preview_resize(&preview->allocator, NULL, 0, level_size(texture, level));
+        uint8_t *out = allocator_resize(preview->allocator, NULL, 0, level_size(texture, level));
         if (!out) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture's smaller copies");
         texture->levels[level] = out;
         texture->count++;
@@ -49,7 +49,7 @@ SingeResult texture_create(Preview *preview, Texture *texture, const Image *imag
 
 void texture_free(const Preview *preview, Texture *texture) {
     for (int level = 1; level < texture->count; level++)
-        preview_resize(&preview->allocator, (void *)texture->levels[level], level_size(texture, level), 0);
+        allocator_resize(preview->allocator, (void *)texture->levels[level], level_size(texture, level), 0);
     *texture = (Texture){0};
 }
 

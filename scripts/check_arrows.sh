@@ -10,13 +10,13 @@
 #   src/reference   common
 #   src/dynamics    also collision and reference
 #   src/sim         everything in src
-#   formats         formats
+#   formats         formats, common/allocator.h
 #   mesh            formats
-#   preview         formats, common/float3.h
+#   preview         formats, common/allocator.h, common/float3.h
 #   scene           formats, mesh/mesh.h, preview/preview.h
 #   analysis        formats
 #   bench           mesh/mesh.h
-#   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h
+#   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h, common/allocator.h
 #   experiments     cli, and what it may include
 #
 # and everyone the own folder and the public headers. Only src and tests see src. include/singe sees itself alone. No
@@ -57,13 +57,13 @@ check src/reference "$public|(common|reference)/.*"
 check src/dynamics "$public|(common|shell|world|collision|reference|dynamics)/.*"
 check src/sim "$public|(common|$rooms)/.*"
 outside="formats/.*|mesh/mesh\.h|preview/preview\.h"
-check formats "$public|formats/.*"
+check formats "$public|common/allocator\.h|formats/.*"
 check mesh "$public|(formats|mesh)/.*"
-check preview "$public|(formats|preview)/.*|common/float3\.h"
+check preview "$public|(formats|preview)/.*|common/(allocator|float3)\.h"
 check scene "$public|$outside|scene/.*"
 check analysis "$public|(formats|analysis)/.*"
 check bench "$public|mesh/mesh\.h|bench/.*"
-check cli "$public|$outside|(scene|analysis|bench|cli)/.*"
+check cli "$public|$outside|(scene|analysis|bench|cli)/.*|common/allocator\.h"
 check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"
 check examples "$public"
 
