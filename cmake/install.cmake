@@ -1,20 +1,20 @@
 # Installs the library with its headers, find_package and pkg-config files, and the program.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS singe EXPORT singeTargets
+install(TARGETS singe singe_input EXPORT singeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(NOT BUILD_SHARED_LIBS AND CMAKE_OBJCOPY AND CMAKE_SYSTEM_NAME STREQUAL Linux
    AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
   install(CODE "
-    set(singe_archive \"${CMAKE_INSTALL_LIBDIR}/libsinge.a\")
+    set(singe_archives \"${CMAKE_INSTALL_LIBDIR}/libsinge.a\" \"${CMAKE_INSTALL_LIBDIR}/libsinge_input.a\")
     set(singe_cc \"${CMAKE_C_COMPILER}\")
     set(singe_objcopy \"${CMAKE_OBJCOPY}\")
     set(singe_ar \"${CMAKE_AR}\")")
   install(SCRIPT cmake/localise.cmake)
 endif()
-set_target_properties(singe PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+set_target_properties(singe singe_input PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 install(DIRECTORY include/singe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.def")
 
 set(singe_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/singe)
@@ -35,7 +35,8 @@ endif()
 file(RELATIVE_PATH singe_pc_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" singe_pc_prefix ${singe_pc_prefix})
 configure_file(cmake/singe.pc.in ${PROJECT_BINARY_DIR}/singe.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/singe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+configure_file(cmake/singe-input.pc.in ${PROJECT_BINARY_DIR}/singe-input.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/singe.pc ${PROJECT_BINARY_DIR}/singe-input.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 if(SINGE_PROGRAM)
   if(BUILD_SHARED_LIBS) # the program finds the library beside it wherever both are moved

@@ -14,7 +14,4 @@ enum { MESH_ANSWER_BASE = 16 << 20, MESH_ANSWER_TIMES = 64 };
 /// Whether a file's name has this ending (".obj"), in capitals or not.
 bool mesh_name_ends(const char *name, const char *ending);
 
-/// Frees the names and the values, [count] each, and the array.
-void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count);
-
 #endif

@@ -50,6 +50,15 @@ bool store_trim(SingeAllocator allocator, void *array_pointer, size_t *capacity,
     return store_set(allocator, array_pointer, capacity, count, element_size);
 }
 
+void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count) {
+    for (uint32_t i = 0; i < attribute_count; i++) {
+        const SingeAttribute *attribute = &attributes[i];
+        if (attribute->name) store_free(allocator, (void *)attribute->name, strlen(attribute->name) + 1, 1);
+        store_free(allocator, (void *)attribute->values, count, sizeof *attribute->values);
+    }
+    store_free(allocator, attributes, attribute_count, sizeof *attributes);
+}
+
 SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...) {
     if (!error) return code;
     memset(error, 0, sizeof *error);

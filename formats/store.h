@@ -2,7 +2,7 @@
 #ifndef FORMATS_STORE_H
 #define FORMATS_STORE_H
 
-#include "singe/base.h"
+#include "singe/material.h"
 
 #define TRY(call)                          \
     do {                                   \
@@ -20,6 +20,9 @@ bool store_grow(SingeAllocator allocator, void *array_pointer, size_t *capacity,
 
 /// Cuts an array down to `count` elements, as store_new would have allocated it. False when out of memory.
 bool store_trim(SingeAllocator allocator, void *array_pointer, size_t *capacity, size_t count, size_t element_size);
+
+/// Frees the names and the values, [count] each, and the array.
+void attributes_free(SingeAllocator allocator, SingeAttribute *attributes, uint32_t attribute_count, size_t count);
 
 /// Fills *error (may be NULL) and returns `code`.
 SingeResult refuse(SingeError *error, SingeResult code, const char *stage, int64_t element, const char *format, ...)

@@ -5,6 +5,42 @@
 
 #include "formats/formats.h"
 
+/// A sheet's mesh: quads.
+typedef struct Mesh {
+    uint32_t vertex_count, cell_count, attribute_count;
+    float *positions;  ///< [3 * vertex_count], m or file units
+    float *uv;         ///< [2 * vertex_count] or NULL; on a seam that of one of its charts
+    float *corner_uv;  ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
+    uint32_t *cells;   ///< [4 * cell_count]
+    uint32_t *cell_lines; ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
+    uint32_t *cell_faces; ///< [cell_count] the file's face of each, or NULL where they are the same
+    int32_t *source;      ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    int32_t *corner_source; ///< [4 * cell_count] the same of the cells' corners, where the file had several; else NULL
+    uint32_t source_count; ///< vertices of the file
+    uint32_t *became;     ///< [source_count] the vertex that the file's vertex is now, UINT32_MAX where it is left out;
+                          ///< NULL with source
+    SingeAttribute *attributes; ///< of the vertices
+    SingeAllocator allocator;
+} Mesh;
+
+/// A flat grid of cells_x × cells_y cells of the given size (m), centred at the origin in the x-y plane,
+/// uv from (0,0) at (-x,-y) to (1,1).
+SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells_x, uint32_t cells_y,
+                                      SingeAllocator allocator, Mesh *mesh, SingeError *error);
+/// What keeps a grid from being perfect.
+typedef struct GridWear {
+    float jitter;  ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3
+    float displacement;  ///< m, root mean square height of the waves in which the sheet lies, >= 0
+    uint32_t seed;
+} GridWear;
+
+/// Moves the vertices of a mesh_grid: off its lines, so that folds and fronts find none to follow, and up and down
+/// in smooth waves about half as long as the shorter side. The outline from above, and what uv means, stay.
+void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWear *wear);
+void mesh_free(Mesh *mesh);
+
+// ---- from polygons to quads
+
 /// How faces that are not quads become quads.
 typedef enum MeshQuads {
     MESH_QUADS_PAIR = 0, ///< triangles are joined two by two; cells are as large as the file's

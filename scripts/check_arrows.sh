@@ -12,9 +12,10 @@
 #   src/sim         everything in src
 #   formats         formats, common/allocator.h
 #   mesh            formats
+#   materials       formats/store.h
 #   preview         formats, common/allocator.h, common/float3.h
 #   scene           formats, mesh/mesh.h, preview/preview.h
-#   analysis        formats
+#   analysis        formats, mesh/mesh.h
 #   bench           mesh/mesh.h
 #   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h, common/allocator.h
 #   experiments     cli, and what it may include
@@ -59,9 +60,10 @@ check src/sim "$public|(common|$rooms)/.*"
 outside="formats/.*|mesh/mesh\.h|preview/preview\.h"
 check formats "$public|common/allocator\.h|formats/.*"
 check mesh "$public|(formats|mesh)/.*"
+check materials "$public|formats/store\.h|materials/.*"
 check preview "$public|(formats|preview)/.*|common/(allocator|float3)\.h"
 check scene "$public|$outside|scene/.*"
-check analysis "$public|(formats|analysis)/.*"
+check analysis "$public|(formats|analysis)/.*|mesh/mesh\.h"
 check bench "$public|mesh/mesh\.h|bench/.*"
 check cli "$public|$outside|(scene|analysis|bench|cli)/.*|common/allocator\.h"
 check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"

@@ -87,6 +87,14 @@ static inline SingeMaterialDef singe_default_material(void) {
     return def;
 }
 
+/// A material that Singe brings along, by name: "office-paper", "newsprint", "tissue", "cotton" or "one-reaction"
+/// (docs/materials.md). *def holds its struct_size, as after singe_default_material(). SINGE_ERROR_ARGUMENT: there is
+/// none of this name; *error (may be NULL) lists those that there are, and *def stays as it was. In libsinge_input.
+SINGE_API SINGE_NODISCARD SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, SingeError *error);
+
+/// The name of the index-th of these materials; NULL behind the last. In libsinge_input.
+SINGE_API const char *singe_material_preset_name(uint32_t index);
+
 #ifdef __cplusplus
 }
 #endif

@@ -29,13 +29,13 @@ SINGE_API const SingeError *singe_sim_error(const SingeSim *sim);
 /// SINGE_ERROR_ARGUMENT name the cell or vertex. On failure *id is zeroed, here and below.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_sheet(SingeSim *sim, const SingeSheetDef *def, SingeSheetId *id);
 
-/// Builds the shell (springs, strands, families) and every buffer a step needs. After it no sheet
-/// can be added. Sources, pins and colliders are added, moved and removed at any time after it. SINGE_ERROR_STATE:
-/// there is no sheet, or it is committed already.
+/// Builds the shell (springs, strands, families) and every buffer a step needs. After it no sheet can be added.
+/// SINGE_ERROR_STATE: there is no sheet, or it is committed already. After a failure it may be called again.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_commit(SingeSim *sim);
 
-// Objects. Before the commit adding is SINGE_ERROR_STATE; a Def out of its ranges is SINGE_ERROR_ARGUMENT, a handle
-// that is stale SINGE_ERROR_HANDLE. A call that fails changes nothing.
+// Objects are added, moved and removed at any time; a pin after its sheet. Before the commit a texture is not yet held
+// against the sheets' uv, and a pin's vertices are not yet counted: the commit does that. A Def out of its ranges is
+// SINGE_ERROR_ARGUMENT, a handle that is stale SINGE_ERROR_HANDLE. A call that fails changes nothing.
 
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *def, SingeSourceId *id);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_remove_source(SingeSim *sim, SingeSourceId id);
@@ -55,13 +55,66 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, Sin
                                                               const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count,
                                                          const SingePoseKey *path);
+/// The handles of all objects there are: writes at most `capacity` of them, in the order of their slots, and returns how
+/// many there are. `ids` may be NULL where `capacity` is 0. After a load they are those of the saved simulation.
+SINGE_API uint32_t singe_sim_sheets(const SingeSim *sim, SingeSheetId *ids, uint32_t capacity);
+SINGE_API uint32_t singe_sim_sources(const SingeSim *sim, SingeSourceId *ids, uint32_t capacity);
+SINGE_API uint32_t singe_sim_colliders(const SingeSim *sim, SingeColliderId *ids, uint32_t capacity);
+SINGE_API uint32_t singe_sim_pins(const SingeSim *sim, SingePinId *ids, uint32_t capacity);
+
+/// What the caller keeps with an object: `user_data` of its Def, or what was set since. The library never looks at it.
+/// It is not saved, and NULL after a load; a clone has the same. NULL for a stale handle.
+SINGE_API void *singe_sim_sheet_user_data(const SingeSim *sim, SingeSheetId id);
+SINGE_API void *singe_sim_source_user_data(const SingeSim *sim, SingeSourceId id);
+SINGE_API void *singe_sim_collider_user_data(const SingeSim *sim, SingeColliderId id);
+SINGE_API void *singe_sim_pin_user_data(const SingeSim *sim, SingePinId id);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_sheet_user_data(SingeSim *sim, SingeSheetId id, void *user_data);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_source_user_data(SingeSim *sim, SingeSourceId id, void *user_data);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_collider_user_data(SingeSim *sim, SingeColliderId id,
+                                                                       void *user_data);
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_pin_user_data(SingeSim *sim, SingePinId id, void *user_data);
+
 /// Replaces the wind, from the next step on; at any time.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_wind(SingeSim *sim, const SingeWindDef *def);
+
+// Setters, from the next step on; at any time, before the commit too.
+
+/// m/s2, each -10000 to 10000. With gas the axis along which it is largest must stay: SINGE_ERROR_STATE.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]);
+/// Seconds of fire per second of motion, 1e-6 to 1e6.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_pace(SingeSim *sim, float pace);
+/// K, 1 to 10000. The ledger goes on: what is stored counts from the new temperature. Takes as long as a load, and
+/// memory for a second simulation meanwhile; arrays of views and events before it are no longer valid.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature);
+/// Velocities in m/s, each -10000 to 10000, of `count` vertices of a sheet from its `first` on: velocity[3 * count].
+/// Those that tears have made come after those of its mesh (SingeSheetRange). Centres of cells follow their corners;
+/// what is pinned keeps to its pin. SINGE_ERROR_STATE before the commit.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first,
+                                                             uint32_t count, const float *velocity);
+/// Another material for a region: share[vertex_count of the sheet's Def], 0 (as it was) to 1 (as *def says), linear in
+/// between; NULL is 1 everywhere. Cells take the mean of their corners. grammage, specific_heat, thickness and
+/// temperature, of which the sheet was made, stay, and so does what is one for the sheet (heat_operator, thickening,
+/// reference_grammage, ablate). Parameters cannot follow attributes here. Takes as long as a load, and memory for a
+/// second simulation meanwhile; arrays of views and events before it are no longer valid.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id,
+                                                             const SingeMaterialDef *def, const float *share);
 
 /// One step of length time_step: heat, burn, ablate, dynamics, tears, gas. Allocates nothing. On failure the
 /// simulation is as it was before the call and the error names stage and element: SINGE_ERROR_DIVERGED, or
 /// SINGE_ERROR_STATE before the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
+
+/// As many steps as fit in `seconds` (0 to 1e6) and what calls before have left; the rest, less than a step, is kept for
+/// the next call and saved. `steps_max` bounds the steps of a call, 0 is any number: whole steps beyond are dropped, so
+/// that a host that falls behind slows down. *steps (may be NULL) is how many were made. A rest that lacks less than a
+/// hundredth of a step counts as one. The first call allocates room
+/// for events, which singe_sim_events then gives for all steps of the call. A step that fails ends it as
+/// singe_sim_step does: those before it are done.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
+                                                        uint32_t *steps);
+
+/// s, of the last call, less than a step: how far a renderer may extrapolate by the velocities.
+SINGE_API double singe_sim_remainder(const SingeSim *sim);
 
 /// Flags of a particle, spring or cell.
 enum {
@@ -105,6 +158,29 @@ typedef struct SingeView {
     const int32_t *source_vertex; ///< [vertex_count] of the input, numbered over all sheets; -1: new, or in reserve
 } SingeView;
 
+/// Where a sheet's elements are in the arrays of a view. These numbers never change: vertex v of the sheet's Def is
+/// particle vertex_first + v, cell c is cell cell_first + c and its centre particle centre_first + c, for as long as the
+/// simulation lives. Tears make vertices of the sheet's reserve, in order, from vertex_first + vertex_count on, each
+/// with the source_vertex of the one that it was split from.
+typedef struct SingeSheetRange {
+    size_t struct_size;
+    uint32_t vertex_first, vertex_count; ///< vertices of the sheet's Def
+    uint32_t torn_count;    ///< vertices that tears have made so far
+    uint32_t reserve_count; ///< vertices that tears can make
+    uint32_t cell_first, cell_count;
+    uint32_t centre_first;
+} SingeSheetRange;
+
+/// Fills `struct_size` bytes, the caller's sizeof; all 0 before the commit and for a stale handle.
+SINGE_API void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheetRange *range,
+                                          size_t struct_size);
+
+static inline SingeSheetRange singe_sim_sheet_range(const SingeSim *sim, SingeSheetId id) {
+    SingeSheetRange range;
+    singe_sim_read_sheet_range(sim, id, &range, sizeof range);
+    return range;
+}
+
 /// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL.
 SINGE_API SingeView singe_sim_view(const SingeSim *sim);
 
@@ -121,8 +197,8 @@ typedef struct SingeEvent {
     float position[3]; ///< m
 } SingeEvent;
 
-/// The events of the last step, *count of them. Owned by the simulation and valid until the next step; none after a
-/// load or in a clone: events are not saved.
+/// The events of the last step, or of all steps of the last singe_sim_advance, *count of them. Owned by the simulation
+/// and valid until the next step; none after a load or in a clone: events are not saved.
 SINGE_API const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count);
 
 typedef enum SingeStage {

@@ -5,6 +5,7 @@
 #include "singe/base.h"
 #include "singe/material.h"
 #include "singe/types.h"
+#include "singe/mesh.h"
 #include "singe/surface.h"
 #include "singe/sim.h"
 #include "singe/research.h"

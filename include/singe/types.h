@@ -51,6 +51,7 @@ typedef struct SingeSheetDef {
     /// [4 * cell_count] the same of each cell's corners, or NULL: where a seam's vertices were several in that mesh.
     /// Needs corner_uv and source_vertex.
     const int32_t *corner_source_vertex;
+    void *user_data; ///< the caller's own; see singe_sim_sheet_user_data
 } SingeSheetDef;
 
 SINGE_API void singe_init_sheet(SingeSheetDef *def, size_t struct_size);
@@ -88,7 +89,7 @@ typedef struct SingeSourceDef {
     float temperature;         ///< K, of ball and spot, 1e-3 to 1e5
     float conductance;         ///< W/(m2 K), of ball and spot, 0 to 1e9
     float radius, falloff;     ///< m, of ball and spot, >= 0
-    uint32_t path_count;       ///< ball: at least 1; spot: exactly 1
+    uint32_t path_count;       ///< of ball and spot; 0: it stands still at `position`. A spot has at most 1
     const SingePoseKey *path;  ///< [path_count] positions only
     SingeTexture texture;      ///< texture source
     /// W/m2 into each layer where the texture is white, at most 1e15 with texture and strength; below 0 it cools, down
@@ -98,6 +99,8 @@ typedef struct SingeSourceDef {
     const SingeValueKey *strength; ///< [strength_count]
     SingeFluxFn *callback;     ///< not saved: set it again after a load
     void *callback_context;
+    float position[3];         ///< m, of a ball or spot without a path
+    void *user_data;           ///< the caller's own; see singe_sim_source_user_data
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);
@@ -135,7 +138,7 @@ typedef struct SingeColliderDef {
     float temperature;        ///< K, > 0; only used when conductance > 0
     float conductance;        ///< W/(m2 K) in contact, >= 0; 0 for none
     float contact_distance;   ///< m, how near counts as contact for heat, >= 0
-    uint32_t path_count;      ///< at least 1
+    uint32_t path_count;      ///< 0: it stands still at `position` and `rotation`
     const SingePoseKey *path; ///< [path_count] of its own frame
     SingeContactSides sides;  ///< of a sheet in contact that exchange heat
     /// mesh: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
@@ -147,6 +150,9 @@ typedef struct SingeColliderDef {
     uint32_t columns, rows;    ///< heightfield: nodes along local x and y, 2 to 32768
     float size[2];             ///< m, heightfield: of its rectangle along local x and y, 1e-6 to 1e4
     const float *heights;      ///< [rows * columns] m, each within 1e4, from the least y, each row from the least x
+    float position[3];         ///< m, without a path
+    float rotation[4];         ///< quaternion x, y, z, w, without a path; {0,0,0,1} is none
+    void *user_data;           ///< the caller's own; see singe_sim_collider_user_data
 } SingeColliderDef;
 
 SINGE_API void singe_init_collider(SingeColliderDef *def, size_t struct_size);
@@ -169,6 +175,7 @@ typedef struct SingePinDef {
     const uint32_t *vertices; ///< [vertex_count] of the sheet's mesh, from 0
     uint32_t path_count;      ///< 0: held still
     const SingePoseKey *path; ///< [path_count]
+    void *user_data;          ///< the caller's own; see singe_sim_pin_user_data
 } SingePinDef;
 
 SINGE_API void singe_init_pin(SingePinDef *def, size_t struct_size);

@@ -102,6 +102,14 @@ void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare) {
     if (plan->collision) collision_plan_forget(plan->collision); // cells that shared a corner may touch from now on
 }
 
+void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]) {
+    memcpy(plan->settings.gravity, gravity, sizeof plan->settings.gravity);
+}
+
+void dynamics_plan_pushed(DynamicsPlan *plan) {
+    if (plan->collision) collision_plan_forget(plan->collision); // its boxes are for the velocities of before
+}
+
 SingeResult dynamics_plan_stream(DynamicsPlan *plan, const Shell *shell, const State *state, Stream *stream) {
     attach_stream(&plan->attachments, shell, stream);
     return plan->collision ? collision_plan_stream(plan->collision, shell, state->ablate.cell_flags, stream) : SINGE_OK;

@@ -48,6 +48,12 @@ float dynamics_stretch(const DynamicsPlan *plan, uint32_t sheet);
 /// Must be called when a tear has split a vertex.
 void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare);
 
+/// From the next step on.
+void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]);
+
+/// Must be called when velocities were changed from outside a step.
+void dynamics_plan_pushed(DynamicsPlan *plan);
+
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);
 

@@ -32,6 +32,10 @@ void gas_plan_free(Memory *memory, GasPlan *plan);
 /// Passes the fields through a stream, as they do not follow from anything else.
 void gas_plan_stream(GasPlan *plan, GasState *gas, Stream *stream);
 
+/// From the next step on. Gravity must keep the axis along which it is largest.
+void gas_plan_set_gravity(GasPlan *plan, const float gravity[3]);
+void gas_plan_set_pace(GasPlan *plan, float pace);
+
 /// To be called when a tear has split a vertex.
 void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare);
 

@@ -196,6 +196,12 @@ void gas_plan_free(Memory *memory, GasPlan *plan) {
     FREE(memory, plan, 1);
 }
 
+void gas_plan_set_gravity(GasPlan *plan, const float gravity[3]) {
+    memcpy(plan->settings.gravity, gravity, sizeof plan->settings.gravity);
+}
+
+void gas_plan_set_pace(GasPlan *plan, float pace) { plan->settings.pace = pace; }
+
 void gas_plan_torn(GasPlan *plan, uint32_t vertex, uint32_t spare) {
     for (int t = 0; t < 2; t++) { // only one of them holds, and nobody asks the other before it is written
         GasTurn *turn = &plan->turn[t];

@@ -15,6 +15,7 @@ typedef struct Source {
     uint32_t strength_count;
     SingeValueKey *strength;
     float *texture;      ///< [particle_count] or NULL
+    SingeTexture waiting; ///< of a texture source that was added before the commit, until then: its own copy
 } Source;
 
 typedef struct SourceList {
@@ -22,9 +23,15 @@ typedef struct SourceList {
     Source *items;
 } SourceList;
 
-/// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell.
+/// Checks a Def and fills a slot's contents (all but generation). The uv of particles come from the shell; with an
+/// empty one a texture waits for source_settle.
 SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                           SingeError *error);
+/// Evaluates a texture that waits, once the shell is there; it goes on waiting till source_settled.
+SingeResult source_settle(Memory *memory, const Shell *shell, Source *source, SingeError *error);
+void source_settled(Memory *memory, Source *source);
+/// Takes source_settle back.
+void source_unsettle(Memory *memory, const Shell *shell, Source *source);
 void source_free(Memory *memory, const Shell *shell, Source *source);
 
 /// Checks a source that was read back as source_create and later moves of it would; its picture's values are those at
@@ -46,6 +53,9 @@ typedef struct HeatPlan HeatPlan;
 SingeResult heat_plan_create(Memory *memory, const Shell *shell, const HeatSettings *settings, HeatPlan **plan,
                              SingeError *error);
 void heat_plan_free(Memory *memory, HeatPlan *plan);
+
+/// From the next step on.
+void heat_plan_set_pace(HeatPlan *plan, float pace);
 
 /// Memory that the stage needs while it runs, and that the caller may use from one heat_step to the next: at least
 /// settings.scratch_min bytes.

@@ -193,3 +193,5 @@ void heat_plan_free(Memory *memory, HeatPlan *plan) {
 void *heat_scratch(HeatPlan *plan) { return plan->scratch; }
 
 float heat_thickening(const HeatPlan *plan, uint32_t sheet) { return plan->thickening[sheet]; }
+
+void heat_plan_set_pace(HeatPlan *plan, float pace) { plan->settings.pace = pace; }

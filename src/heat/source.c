@@ -63,39 +63,77 @@ static SingeResult source_check(const SingeSourceDef *def, SingeError *error) {
     return source_bad(error, "there is no such kind of source");
 }
 
-static SingeResult source_set_texture(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+static bool source_has_path(const SingeSourceDef *def) {
+    return def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT;
+}
+
+static size_t texture_size(const SingeTexture *texture) { return (size_t)texture->width * (size_t)texture->height; }
+
+static SingeResult source_no_memory(SingeError *error) {
+    return error_set(error, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
+}
+
+static SingeResult source_set_texture(Memory *memory, const Shell *shell, const SingeTexture *texture, Source *source,
                                       SingeError *error) {
     bool mapped = false;
     for (uint32_t i = 0; i < shell->particle_count && !mapped; i++)
         mapped = shell->uv[i][0] != 0 || shell->uv[i][1] != 0;
     if (!mapped) return source_bad(error, "a picture needs a sheet with uv");
-    if (!NEW(memory, source->texture, shell->particle_count) || !NEW(memory, source->strength, def->strength_count))
-        return error_set(error, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
-    source->strength_count = def->strength_count;
-    if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
+    if (!NEW(memory, source->texture, shell->particle_count)) return source_no_memory(error);
     for (uint32_t i = 0; i < shell->particle_count; i++)
-        source->texture[i] = shell_sample_texture(&def->texture, shell->uv[i][0], shell->uv[i][1]);
+        source->texture[i] = shell_sample_texture(texture, shell->uv[i][0], shell->uv[i][1]);
     return SINGE_OK;
 }
 
-SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+static SingeResult source_copy_texture(Memory *memory, const SingeTexture *texture, Source *source, SingeError *error) {
+    float *values;
+    if (!NEW(memory, values, texture_size(texture))) return source_no_memory(error);
+    memcpy(values, texture->values, texture_size(texture) * sizeof *values);
+    source->waiting = (SingeTexture){texture->width, texture->height, values};
+    return SINGE_OK;
+}
+
+static SingeResult source_copy_arrays(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
+                                      SingeError *error) {
+    if (source_has_path(def))
+        return path_set(&source->path, memory, def->path_count, def->path, "source", error);
+    if (def->kind != SINGE_SOURCE_TEXTURE) return SINGE_OK;
+    if (!NEW(memory, source->strength, def->strength_count)) return source_no_memory(error);
+    source->strength_count = def->strength_count;
+    if (def->strength_count) memcpy(source->strength, def->strength, def->strength_count * sizeof *def->strength);
+    return shell->particle_count ? source_set_texture(memory, shell, &def->texture, source, error)
+                                 : source_copy_texture(memory, &def->texture, source, error);
+}
+
+SingeResult source_create(Memory *memory, const Shell *shell, const SingeSourceDef *given, Source *source,
                           SingeError *error) {
-    TRY(source_check(def, error));
+    SingeSourceDef def = *given;
+    SingePoseKey still = {.rotation = {0, 0, 0, 1}};
+    memcpy(still.position, def.position, sizeof still.position);
+    if (def.path_count == 0 && source_has_path(&def)) def.path_count = 1, def.path = &still;
+    TRY(source_check(&def, error));
     uint32_t generation = source->generation;
-    *source = (Source){.generation = generation, .def = *def};
+    *source = (Source){.generation = generation, .def = def};
     source->def.path = NULL;
     source->def.strength = NULL;
     source->def.texture.values = NULL;
-    SingeResult result = SINGE_OK;
-    if (def->kind == SINGE_SOURCE_BALL || def->kind == SINGE_SOURCE_SPOT)
-        result = path_set(&source->path, memory, def->path_count, def->path, "source", error);
-    else if (def->kind == SINGE_SOURCE_TEXTURE)
-        result = source_set_texture(memory, shell, def, source, error);
-    if (result) {
-        source->strength_count = def->strength_count; // as it was asked for, should the array be there
-        source_free(memory, shell, source);
-    }
+    SingeResult result = source_copy_arrays(memory, shell, &def, source, error);
+    if (result) source_free(memory, shell, source);
     return result;
+}
+
+SingeResult source_settle(Memory *memory, const Shell *shell, Source *source, SingeError *error) {
+    return source->waiting.values ? source_set_texture(memory, shell, &source->waiting, source, error) : SINGE_OK;
+}
+
+void source_settled(Memory *memory, Source *source) {
+    float *values = (float *)(uintptr_t)source->waiting.values; // its own
+    FREE(memory, values, texture_size(&source->waiting));
+    source->waiting = (SingeTexture){0};
+}
+
+void source_unsettle(Memory *memory, const Shell *shell, Source *source) {
+    if (source->waiting.values) FREE(memory, source->texture, shell->particle_count);
 }
 
 SingeResult source_check_read(const Shell *shell, const Source *source, SingeError *error) {
@@ -113,6 +151,7 @@ void source_free(Memory *memory, const Shell *shell, Source *source) {
     path_free(&source->path, memory);
     FREE(memory, source->strength, source->strength_count);
     FREE(memory, source->texture, shell->particle_count);
+    source_settled(memory, source);
     source->strength_count = 0;
 }
 

@@ -180,6 +180,7 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     sheet->drop_pieces_below = def.drop_pieces_below;
     sheet->source_count = def.source_vertex ? def.source_count : def.vertex_count;
     memcpy(sheet->velocity, def.velocity, sizeof sheet->velocity);
+    source->user_data = def.user_data;
     memcpy(&sheet->material, &def.material, sizeof sheet->material);
     material_forget_fields(&sheet->material);
     if (!source_alloc(memory, &def, source)) {

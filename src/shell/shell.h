@@ -120,6 +120,7 @@ typedef struct SheetSource {
     int32_t (*corner_source)[4]; ///< [cell_count] or NULL
     float value[PARAM_COUNT];   ///< each parameter, where it has one value for the sheet
     float *values[PARAM_COUNT]; ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
+    void *user_data;            ///< the caller's
 } SheetSource;
 
 /// uv of corner i of a cell, as this cell has it.

@@ -129,6 +129,8 @@ static void sim_unbuild(SingeSim *sim) {
     FREE(memory, sim->partial, pool_blocks((int)sim->shell.particle_count));
     FREE(memory, sim->sample, sim->shell.springs[SINGE_BLUE].count);
     sim->events = (EventList){0};
+    FREE(memory, sim->gathered.items, sim->gathered.capacity);
+    sim->gathered = (EventList){0}, sim->gathers = false;
     memory_free(memory, (void *)&sim->backup, sim->state.basic_size, 1);
     state_free(memory, &sim->state);
     shell_free(memory, &sim->shell);
@@ -257,6 +259,11 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     context.state.ablate = NULL;
     ablate_step(sim->ablate, &context, &sim->state.ablate);
     sim->events.count = 0;
+    result = sim_settle_objects(sim);
+    if (result) {
+        sim_unbuild(sim);
+        return result;
+    }
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;
     sim_log_commit(sim);

@@ -59,6 +59,7 @@ static SingeColliderDef standard_collider(void) {
         .temperature = 293.15f,
         .contact_distance = 0.002f,
         .size = {0.2f, 0.2f},
+        .rotation = {0, 0, 0, 1},
     };
 }
 

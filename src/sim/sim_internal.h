@@ -34,6 +34,9 @@ struct SingeSim {
     double heat_start; ///< J, enthalpy at the start
     void *backup;      ///< the state's basic part before the step
     EventList events;
+    EventList gathered;   ///< of the steps of the last advance
+    bool gathers;         ///< the last step was one of an advance
+    double remainder;     ///< s that an advance has left for the next
     SingeTimers timers;
     bool intersecting_warned, crossing_warned, crowd_warned; ///< of contact, once each
     bool heat_warned;  ///< that the diffusion ran out of iterations
@@ -48,6 +51,9 @@ struct SingeSim {
     double *partial;      ///< [pool_blocks(particles)]
     float *sample;        ///< [blue springs], at least as many as cells: of a statistic
 };
+
+/// One step, for singe_sim_step and singe_sim_advance.
+SingeResult sim_step(SingeSim *sim);
 
 /// Notes a failure in sim->error and returns it.
 SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t element, const char *message);
@@ -84,6 +90,13 @@ void sim_log_buried(const SingeSim *sim, uint32_t collider, double share, float 
 
 /// Enthalpy of what is left above ambient, J, sum of capacity (T - T_amb).
 double sim_enthalpy(const SingeSim *sim);
+
+/// Evaluates the textures and gathers the particles of what was added before the commit, which goes on waiting after a
+/// failure.
+SingeResult sim_settle_objects(SingeSim *sim);
+
+/// Callbacks and user data, from one simulation to another with the same objects.
+void sim_copy_hooks(const SingeSim *from, SingeSim *to);
 
 void sim_free_source(SingeSim *sim, Source *source);
 void sim_free_pin(SingeSim *sim, Pin *pin);

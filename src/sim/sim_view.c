@@ -1,6 +1,15 @@
 // Read-only views, events, timers, counts and the drawn surface.
 #include "sim/sim_internal.h"
 
+#include <string.h>
+
+/// Fills the caller's `size` bytes of a result that begins with its struct_size; 0 where the caller's is longer.
+static void sim_give(void *result, size_t size, const void *ours, size_t known) {
+    memset(result, 0, size);
+    memcpy(result, ours, size < known ? size : known);
+    if (size >= sizeof size) memcpy(result, &size, sizeof size);
+}
+
 SingeView singe_sim_view(const SingeSim *sim) {
     const Shell *shell = &sim->shell;
     const State *state = &sim->state;
@@ -40,9 +49,24 @@ SingeView singe_sim_view(const SingeSim *sim) {
     return view;
 }
 
+void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheetRange *range, size_t struct_size) {
+    SingeSheetRange ours = {0};
+    if (sim->committed && id.generation == 1 && id.index < sim->sheet_count) {
+        const Sheet *sheet = &sim->shell.sheets[id.index];
+        ours.vertex_first = sheet->vertex_first;
+        ours.vertex_count = sheet->vertex_count - sheet->spare_count;
+        ours.reserve_count = sheet->spare_count;
+        ours.torn_count = sheet->spare_used;
+        ours.cell_first = sheet->cell_first, ours.cell_count = sheet->cell_count;
+        ours.centre_first = shell_centre(&sim->shell, sheet->cell_first);
+    }
+    sim_give(range, struct_size, &ours, sizeof ours);
+}
+
 const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
-    *count = sim->events.count;
-    return sim->events.items;
+    const EventList *events = sim->gathers ? &sim->gathered : &sim->events;
+    *count = events->count;
+    return events->items;
 }
 
 SingeGas singe_sim_gas(const SingeSim *sim) {

@@ -166,7 +166,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     if (stream->failed || !snapshot_path(stream, &sim->memory, &collider->path)) return false;
     SingeColliderDef def = collider->def;
     def.path_count = collider->path.count; // it may have been given another one
-    if (!snapshot_held(stream, collider_check(&def, NULL) == SINGE_OK)) return false;
+    if (!snapshot_held(stream, def.path_count > 0 && collider_check(&def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
     if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)
         return snapshot_heights(stream, &sim->memory, &collider->def, &collider->heights);
@@ -231,8 +231,19 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     if (stream->failed) return SINGE_OK; // the caller tells
     SingeResult result = dynamics_plan_stream(sim->dynamics, &sim->shell, state, stream);
     if (sim->gas) gas_plan_stream(sim->gas, &sim->state.gas, stream);
-    stream->failed |= stream->mode == STREAM_READ && stream->offset != stream->size;
     return result;
+}
+
+/// What most simulations have nothing of comes last, and only where there is something: a word that says what, and
+/// that.
+static bool snapshot_more(Stream *stream, SingeSim *sim) {
+    enum { MORE_REMAINDER = 1, MORE_ALL = 1 };
+    uint32_t more = sim->remainder != 0 ? MORE_REMAINDER : 0;
+    if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
+    STREAM(stream, more);
+    if (!snapshot_held(stream, more != 0 && (more & ~(uint32_t)MORE_ALL) == 0)) return false;
+    if (more & MORE_REMAINDER) STREAM(stream, sim->remainder);
+    return snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim));
 }
 
 /// Walks the whole body. When reading, builds the shell once the sheets are there.
@@ -249,7 +260,8 @@ static SingeResult snapshot_body(Stream *stream, SingeSim *sim) {
     ok = ok && snapshot_objects(stream, sim);
     if (ok && stream->mode == STREAM_READ)
         ok = dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count);
-    ok = ok && snapshot_state(stream, sim) == SINGE_OK;
+    ok = ok && snapshot_state(stream, sim) == SINGE_OK && snapshot_more(stream, sim);
+    stream->failed |= ok && stream->mode == STREAM_READ && stream->offset != stream->size;
     if (stream->failed)
         return sim_fail(sim, SINGE_ERROR_FORMAT, "load", (int64_t)stream->offset,
                         "the snapshot ends too soon or does not fit together");
@@ -327,9 +339,6 @@ SingeResult singe_sim_clone(SingeSim *sim, SingeSim **copy) {
     SingeResult result = singe_sim_load(&sim->def, bytes, size, copy, &sim->error);
     singe_sim_free_bytes(sim, bytes, size);
     if (result) return result;
-    for (uint32_t i = 0; i < sim->sources.count; i++) {
-        (*copy)->sources.items[i].def.callback = sim->sources.items[i].def.callback;
-        (*copy)->sources.items[i].def.callback_context = sim->sources.items[i].def.callback_context;
-    }
+    sim_copy_hooks(sim, *copy);
     return SINGE_OK;
 }

@@ -25,6 +25,11 @@ bool snapshot_pin_fits(const Shell *shell, const Pin *pin) {
     return true;
 }
 
+bool snapshot_remainder_fits(const SingeSim *sim) {
+    const double h = (double)sim->def.time_step;
+    return isfinite(sim->remainder) && sim->remainder != 0 && fabs(sim->remainder) <= 1e6 + h;
+}
+
 // ---- state
 
 static bool in_range(double x, double low, double high) { return x >= low && x <= high; }

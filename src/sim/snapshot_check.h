@@ -5,6 +5,9 @@
 
 #include "sim/sim_internal.h"
 
+/// Whether an advance can have left such a remainder.
+bool snapshot_remainder_fits(const SingeSim *sim);
+
 /// Objects have generations that were given out.
 bool snapshot_generations_fit(const SingeSim *sim);
 

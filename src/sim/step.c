@@ -130,7 +130,7 @@ static SingeResult step_stages(SingeSim *sim) {
     return SINGE_OK;
 }
 
-SingeResult singe_sim_step(SingeSim *sim) {
+SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
     if (sim->state.step == 0) sim_find_buried(sim);
@@ -150,4 +150,9 @@ SingeResult singe_sim_step(SingeSim *sim) {
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
     return SINGE_OK;
+}
+
+SingeResult singe_sim_step(SingeSim *sim) {
+    sim->gathers = false;
+    return sim_step(sim);
 }

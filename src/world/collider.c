@@ -1,6 +1,8 @@
 // Signed distances in the colliders' own frames: of the primitives here, of the others from their solids.
 #include "world/collider.h"
 
+#include <string.h>
+
 static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
 
 SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
@@ -18,7 +20,6 @@ SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     if (!in_range(def->contact_distance, 0, 1e3f)) what = "contact_distance must be 0 or more";
     if (def->conductance > 0 && !in_range(def->temperature, 1e-3f, 1e5f)) what = "temperature must be above 0 K";
     if (def->sides < SINGE_SIDES_TOUCHING || def->sides > SINGE_SIDES_BOTH) what = "sides is unknown";
-    if (def->path_count == 0) what = "path needs at least one key";
     return what ? error_set(error, SINGE_ERROR_ARGUMENT, "collider", -1, "%s", what) : SINGE_OK;
 }
 
@@ -48,10 +49,16 @@ static float collider_box(const float half[3], Float3 p, Float3 *normal) {
 
 SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collider *collider, SingeError *error) {
     TRY(collider_check(def, error));
+    SingePoseKey still = {0};
+    memcpy(still.position, def->position, sizeof still.position);
+    memcpy(still.rotation, def->rotation, sizeof still.rotation);
+    const bool stands = def->path_count == 0;
     collider->def = *def;
+    collider->def.path_count = stands ? 1 : def->path_count;
     collider->def.path = NULL;
     collider->def.vertices = NULL, collider->def.triangles = NULL, collider->def.heights = NULL;
-    SingeResult result = path_set(&collider->path, memory, def->path_count, def->path, "collider", error);
+    SingeResult result =
+        path_set(&collider->path, memory, collider->def.path_count, stands ? &still : def->path, "collider", error);
     if (!result && def->kind == SINGE_COLLIDER_MESH)
         result = mesh_solid_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
                                    &collider->mesh, error);

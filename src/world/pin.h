@@ -11,6 +11,8 @@ typedef struct Pin {
     uint32_t *particles;   ///< held particles, increasing
     float (*anchors)[3];   ///< m, in the frame of the path's pose
     Path path;
+    void *user_data;
+    SingePinDef waiting;   ///< of a pin that was added before the commit, until then: its points and vertices are its own
 } Pin;
 
 typedef struct PinList {

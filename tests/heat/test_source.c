@@ -319,7 +319,7 @@ static void bad_defs_are_refused(void **unused) {
     bad[count] = spot, bad[count++].conductance = 2e9f;
     bad[count] = spot, bad[count++].radius = INFINITY;
     bad[count] = spot, bad[count++].falloff = -1;
-    bad[count] = spot, bad[count++].path_count = 0;
+    bad[count] = spot, bad[count].path_count = 0, bad[count++].position[2] = NAN;
     bad[count] = spot, bad[count++].path_count = 2;
     bad[count] = spot, bad[count++].path = NULL;
     bad[count] = spot, bad[count++].start = NAN;

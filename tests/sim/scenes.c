@@ -151,6 +151,17 @@ SingeResult scene_build(const SingeSimDef *def, uint32_t cells, Scene *scene) {
     return scene_pins(scene);
 }
 
+SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *scene) {
+    SingeError error;
+    memset(scene, 0, sizeof *scene);
+    SCENE_TRY(singe_sim_create(def, &scene->sim, &error));
+    SCENE_TRY(scene_sources(scene));
+    SCENE_TRY(scene_colliders(scene));
+    SCENE_TRY(scene_sheets(scene, cells));
+    SCENE_TRY(scene_pins(scene));
+    return singe_sim_commit(scene->sim);
+}
+
 Scene scene_make(const SingeSimDef *def, uint32_t cells) {
     Scene scene;
     SingeSimDef standard = scene_def();

@@ -21,6 +21,9 @@ typedef struct Scene {
 /// even that), for the caller to destroy. `cells` is the larger sheet's side.
 SingeResult scene_build(const SingeSimDef *def, uint32_t cells, Scene *scene);
 
+/// The same with all objects before the commit.
+SingeResult scene_build_early(const SingeSimDef *def, uint32_t cells, Scene *scene);
+
 /// The same, failing the test on failure. NULL: the default Def with a larger time step.
 Scene scene_make(const SingeSimDef *def, uint32_t cells);
 SingeSimDef scene_def(void);

@@ -113,7 +113,7 @@ static void bad_sources(void **state) {
     SOURCE_BAD(SINGE_SOURCE_BALL, def.conductance = -1);
     SOURCE_BAD(SINGE_SOURCE_BALL, def.radius = NAN);
     SOURCE_BAD(SINGE_SOURCE_BALL, def.falloff = -1);
-    SOURCE_BAD(SINGE_SOURCE_BALL, def.path_count = 0);
+    SOURCE_BAD(SINGE_SOURCE_BALL, (def.path_count = 0, def.position[1] = NAN));
     SOURCE_BAD(SINGE_SOURCE_BALL, def.path = NULL);
     SOURCE_BAD(SINGE_SOURCE_BALL, (def.path = keys, def.path_count = 2)); // not later than the one before
     SOURCE_BAD(SINGE_SOURCE_SPOT, (keys[1].time = 1, def.path = keys, def.path_count = 2));
@@ -174,7 +174,8 @@ static void bad_colliders_and_wind(void **state) {
     SingeSim *sim = small_sim();
     SingeColliderDef def = singe_default_collider();
     SingeColliderId id;
-    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // no path
+    def.rotation[3] = 0;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // without a path, no rotation
     SingePoseKey key = {0, {0, 0, 0}, {0, 0, 0, 0}};
     def.path_count = 1, def.path = &key;
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &def, &id)); // no rotation

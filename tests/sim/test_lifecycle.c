@@ -22,14 +22,16 @@ static void before_the_commit(void **state) {
     test_refused(sim, SINGE_ERROR_STATE, singe_sim_commit(sim));
     SingeSourceDef source = singe_default_source();
     SingeSourceId source_id = {1, 1};
-    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_source(sim, &source, &source_id));
+    source.radius = -1;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &source, &source_id));
     assert_int_equal(source_id.generation, 0);
     SingeColliderDef collider = singe_default_collider();
     SingeColliderId collider_id;
-    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_collider(sim, &collider, &collider_id));
-    SingePinDef pin = singe_default_pin();
+    collider.rotation[3] = 0;
+    test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_collider(sim, &collider, &collider_id));
+    SingePinDef pin = singe_default_pin(); // of no sheet
     SingePinId pin_id;
-    test_refused(sim, SINGE_ERROR_STATE, singe_sim_add_pin(sim, &pin, &pin_id));
+    test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_add_pin(sim, &pin, &pin_id));
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_remove_source(sim, (SingeSourceId){0, 1}));
     uint8_t *bytes = (uint8_t *)1;
     size_t size = 1;

@@ -111,7 +111,6 @@ static void spoil_offset(SingeColliderDef *def) { def->offset = INFINITY; }
 static void spoil_conductance(SingeColliderDef *def) { def->conductance = -1; }
 static void spoil_distance(SingeColliderDef *def) { def->contact_distance = NAN; }
 static void spoil_temperature(SingeColliderDef *def) { def->conductance = 1, def->temperature = 0; }
-static void spoil_path(SingeColliderDef *def) { def->path_count = 0; }
 
 static void bad_fields_are_named(void **state) {
     (void)state;
@@ -128,8 +127,7 @@ static void bad_fields_are_named(void **state) {
                  {spoil_offset, "offset"},
                  {spoil_conductance, "conductance"},
                  {spoil_distance, "contact_distance"},
-                 {spoil_temperature, "temperature"},
-                 {spoil_path, "path"}};
+                 {spoil_temperature, "temperature"}};
     SingeError error;
     SingeColliderDef good = make(SINGE_COLLIDER_SPHERE);
     good.path_count = 1;

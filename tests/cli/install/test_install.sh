@@ -18,10 +18,11 @@ cmake --build "$work/build" >>"$work/log"
 library=$(dirname "$(find "$work/prefix" -name 'libsinge.*' | head -n 1)")
 export LD_LIBRARY_PATH=$library
 [ "$("$work/build/consumer")" = "$version 5" ]
+[ "$("$work/build/dresser")" = "2.4 g" ] # 0.02 m2 of 120 g/m2
 
 # a client may use any name that does not begin with singe_
 if [ "$(uname)" = Linux ] && [ -f "$library/libsinge.a" ]; then
-    strangers=$(nm -g --defined-only "$library/libsinge.a" | awk 'NF == 3 && $3 !~ /^singe_/ { print $3 }')
+    strangers=$(nm -g --defined-only "$library"/libsinge*.a | awk 'NF == 3 && $3 !~ /^singe_/ { print $3 }')
     [ -z "$strangers" ] || { echo "global names: $strangers"; exit 1; }
 fi
 
@@ -33,6 +34,9 @@ export PKG_CONFIG_PATH=$pc LD_LIBRARY_PATH=${library/prefix/moved}
 "$cc" $flags "$consumer/consumer.c" $(pkg-config --cflags --libs singe) -o "$work/by_pkg_config"
 [ "$("$work/by_pkg_config")" = "$version 5" ]
 [ "$(pkg-config --modversion singe)" = "$version" ]
+# shellcheck disable=SC2046,SC2086
+"$cc" $flags "$consumer/dresser.c" $(pkg-config --cflags --libs singe-input) -o "$work/dresser"
+[ "$("$work/dresser")" = "2.4 g" ]
 
 if [ -x "$work/moved/bin/singe" ]; then "$work/moved/bin/singe" --version; fi
 echo "installed, found and linked by find_package and pkg-config"

@@ -1,0 +1,134 @@
+/// Singe: meshes as programs have them, of triangles and polygons, made into the quads of a sheet (docs/meshes.md).
+/// These functions are in libsinge_input, beside libsinge. They need no simulation.
+#ifndef SINGE_MESH_H
+#define SINGE_MESH_H
+
+#include "singe/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// How faces that are not quads become quads.
+typedef enum SingeMeshQuads {
+    SINGE_MESH_PAIR = 0,  ///< triangles are joined two by two; cells are about as large as the faces
+    SINGE_MESH_SPLIT = 1, ///< every face of n corners becomes n quads; its sides are halved
+} SingeMeshQuads;
+
+/// A mesh of faces with three corners or more, counter-clockwise seen from the front. What it points to may be freed
+/// after the call.
+typedef struct SingeMeshDef {
+    size_t struct_size;
+    const char *name;           ///< for messages; NULL, the default, is "mesh"
+    uint32_t vertex_count;
+    const float *positions;     ///< [3 * vertex_count] m, finite
+    uint32_t face_count;        ///< at least 1
+    const uint32_t *face_sizes; ///< [face_count] corners of each face, 3 to 4096; NULL, the default: all have 3
+    const uint32_t *corners;    ///< [sum of face_sizes] vertices, face after face
+    const float *uv;            ///< [2 * vertex_count], or NULL
+    const float *corner_uv;     ///< [2 * corners] in place of uv where a mesh has seams, or NULL
+    uint32_t attribute_count;
+    const SingeAttribute *attributes; ///< [attribute_count] of the vertices; carried to the sheet's
+    SingeMeshQuads quads;       ///< SINGE_MESH_PAIR
+    float weld;     ///< m, vertices on open edges that are this near become one, >= 0; 0, the default: 1e-5 of the size
+    float smallest; ///< sides below this share of the median side shrink to a point, 0 (none) to 1; 0.02
+    SingeAllocator allocator;   ///< zeroed: libc's
+    SingeLog log;               ///< receives what the mesh is and each repair; zeroed: nobody
+} SingeMeshDef;
+
+SINGE_API void singe_init_mesh(SingeMeshDef *def, size_t struct_size);
+
+static inline SingeMeshDef singe_default_mesh(void) {
+    SingeMeshDef def;
+    singe_init_mesh(&def, sizeof def);
+    return def;
+}
+
+/// A flat rectangle of cells about the origin of the x-y plane, front upwards, with uv from (0, 0) at its lowest x and y.
+typedef struct SingeGridDef {
+    size_t struct_size;
+    float size[2];      ///< m along x and y, > 0; 0.2
+    uint32_t cells[2];  ///< along x and y, at least 1; 50
+    float jitter;       ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3, so that folds find no lines
+                        ///< to follow; 0.15
+    float displacement; ///< m, root mean square height of the waves in which it lies, >= 0; 0
+    uint32_t seed;      ///< of both; 1
+    SingeAllocator allocator; ///< zeroed: libc's
+} SingeGridDef;
+
+SINGE_API void singe_init_grid(SingeGridDef *def, size_t struct_size);
+
+static inline SingeGridDef singe_default_grid(void) {
+    SingeGridDef def;
+    singe_init_grid(&def, sizeof def);
+    return def;
+}
+
+/// Quads, ready for a sheet.
+typedef struct SingeMesh SingeMesh;
+
+/// Makes quads of a mesh: vertices are welded, what is broken is repaired or refused. A mesh of quads without faults
+/// keeps its vertices, its cells and their order. To be freed by singe_mesh_destroy. On failure *mesh is NULL and *error
+/// (may be NULL) says why: SINGE_ERROR_MESH with the face or vertex in `element`, SINGE_ERROR_ARGUMENT,
+/// SINGE_ERROR_LIMIT or SINGE_ERROR_MEMORY.
+SINGE_API SINGE_NODISCARD SingeResult singe_mesh_create(const SingeMeshDef *def, SingeMesh **mesh, SingeError *error);
+
+/// Makes a grid. Errors as singe_mesh_create.
+SINGE_API SINGE_NODISCARD SingeResult singe_mesh_create_grid(const SingeGridDef *def, SingeMesh **mesh,
+                                                             SingeError *error);
+
+/// Frees a mesh; NULL is allowed.
+SINGE_API void singe_mesh_destroy(SingeMesh *mesh);
+
+/// The mesh, as a sheet's Def has it. The arrays belong to the mesh.
+typedef struct SingeMeshView {
+    size_t struct_size;
+    uint32_t vertex_count, cell_count, attribute_count;
+    uint32_t source_count;    ///< vertices of the SingeMeshDef; 0 without source_vertex
+    const float *positions;   ///< [3 * vertex_count] m
+    const uint32_t *cells;    ///< [4 * cell_count]
+    const float *uv;          ///< [2 * vertex_count], or NULL
+    const float *corner_uv;   ///< [8 * cell_count], or NULL where those of the vertices hold
+    const SingeAttribute *attributes;    ///< [attribute_count]
+    const int32_t *source_vertex;        ///< [vertex_count] of the SingeMeshDef, -1 for a new one; NULL: the same
+    const int32_t *corner_source_vertex; ///< [4 * cell_count] the same of the cells' corners, or NULL
+    const uint32_t *became; ///< [source_count] what each vertex of the SingeMeshDef is now, UINT32_MAX: of no face; NULL
+                            ///< with source_vertex
+} SingeMeshView;
+
+/// Fills `struct_size` bytes of a view, the caller's sizeof. Its fields that this library does not know become 0.
+SINGE_API void singe_mesh_read(const SingeMesh *mesh, SingeMeshView *view, size_t struct_size);
+
+static inline SingeMeshView singe_mesh_view(const SingeMesh *mesh) {
+    SingeMeshView view;
+    singe_mesh_read(mesh, &view, sizeof view);
+    return view;
+}
+
+/// Points a sheet's Def at the mesh, which must outlive the call of singe_sim_add_sheet. The rest of the Def stays.
+static inline void singe_mesh_fill_sheet(const SingeMesh *mesh, SingeSheetDef *sheet) {
+    const SingeMeshView view = singe_mesh_view(mesh);
+    sheet->vertex_count = view.vertex_count;
+    sheet->positions = view.positions;
+    sheet->cell_count = view.cell_count;
+    sheet->cells = view.cells;
+    sheet->uv = view.uv;
+    sheet->corner_uv = view.corner_uv;
+    sheet->attribute_count = view.attribute_count;
+    sheet->attributes = view.attributes;
+    sheet->source_vertex = view.source_vertex;
+    sheet->source_count = view.source_count;
+    sheet->corner_source_vertex = view.corner_source_vertex;
+}
+
+/// What a vertex of the SingeMeshDef is now, for pins; UINT32_MAX where no face has it, or there is none of this number.
+static inline uint32_t singe_mesh_vertex(const SingeMesh *mesh, uint32_t vertex) {
+    const SingeMeshView view = singe_mesh_view(mesh);
+    if (view.became) return vertex < view.source_count ? view.became[vertex] : UINT32_MAX;
+    return vertex < view.vertex_count ? vertex : UINT32_MAX;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

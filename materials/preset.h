@@ -1,0 +1,18 @@
+// The table of materials that have names: materials/presets.c, made from materials/*.yaml.
+#ifndef MATERIALS_PRESET_H
+#define MATERIALS_PRESET_H
+
+#include "singe/material.h"
+
+typedef struct MaterialPreset {
+    const char *name;
+    void (*apply)(SingeMaterialDef *def); ///< to the defaults
+} MaterialPreset;
+
+/// In the order of their names; a row of zeros behind the last.
+extern const MaterialPreset material_presets[];
+
+void preset_even(SingeParam *param, float value);
+void preset_noise(SingeParam *param, float from, float to, float scale, int octaves, uint32_t seed);
+
+#endif

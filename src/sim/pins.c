@@ -1,0 +1,222 @@
+// Pins: added, moved and removed at any time. What is added before the commit waits for it as it was given, as the
+// textures of sources do, and is settled there.
+#include "sim/objects.h"
+
+#include <string.h>
+
+static void pin_stop_waiting(SingeSim *sim, Pin *pin) {
+    float *points = (float *)(uintptr_t)pin->waiting.points; // its own, as the vertices
+    uint32_t *vertices = (uint32_t *)(uintptr_t)pin->waiting.vertices;
+    FREE(&sim->memory, points, 3 * (size_t)pin->waiting.point_count);
+    FREE(&sim->memory, vertices, pin->waiting.vertex_count);
+    pin->waiting = (SingePinDef){0};
+}
+
+/// Keeps a pin's Def until the commit; false when out of memory.
+static bool pin_wait(SingeSim *sim, const SingePinDef *def, Pin *pin) {
+    float *points = NULL;
+    uint32_t *vertices = NULL;
+    bool ok = NEW(&sim->memory, points, 3 * (size_t)def->point_count) && NEW(&sim->memory, vertices, def->vertex_count);
+    if (ok && def->point_count) memcpy(points, def->points, 3 * (size_t)def->point_count * sizeof *points);
+    if (ok && def->vertex_count) memcpy(vertices, def->vertices, def->vertex_count * sizeof *vertices);
+    pin->waiting = *def;
+    pin->waiting.points = points, pin->waiting.vertices = vertices;
+    pin->waiting.path_count = 0, pin->waiting.path = NULL;
+    return ok;
+}
+
+static void pin_count(SingeSim *sim, const Pin *pin, int change) {
+    for (uint32_t k = 0; k < pin->count; k++) {
+        uint32_t particle = pin->particles[k];
+        uint8_t *held = &sim->state.dynamics.pinned[particle];
+        *held = (uint8_t)(*held + change);
+        uint8_t *flags = &sim->state.ablate.particle_flags[particle];
+        *flags = (uint8_t)(*held ? *flags | SINGE_PINNED : *flags & ~SINGE_PINNED);
+    }
+}
+
+void sim_free_pin(SingeSim *sim, Pin *pin) {
+    FREE(&sim->memory, pin->particles, pin->count);
+    FREE(&sim->memory, pin->anchors, pin->count);
+    path_free(&pin->path, &sim->memory);
+    pin_stop_waiting(sim, pin);
+    memset(pin, 0, sizeof *pin);
+}
+
+static float pin_distance2(const Shell *shell, uint32_t particle, const float *point) {
+    Float3 d = float3_sub(float3_load(shell->rest_position[particle]), float3_load(point));
+    return float3_dot(d, d);
+}
+
+/// Nearest vertex of the sheet to a point; the first of equals. Vertices without cells are not looked at.
+static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float *point) {
+    uint32_t best = sheet->vertex_first;
+    float min = INFINITY;
+    for (uint32_t v = sheet->vertex_first; v < sheet->vertex_first + sheet->vertex_count; v++) {
+        float d = pin_distance2(shell, v, point);
+        if (d < min && shell->matter.area[v] > 0) min = d, best = v;
+    }
+    return best;
+}
+
+/// Whether a pin takes a particle; `nearest` are the points' nearest vertices.
+static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
+                      uint32_t particle) {
+    if (listed[particle]) return true;
+    if (shell_is_corner(shell, particle) && shell_is_spare(shell, particle)) return false;
+    // centres lie a thickness off the mesh, where points are given
+    float reach = def->radius + (shell_is_corner(shell, particle) ? 0 : field_at(shell->matter.thickness, particle));
+    for (uint32_t k = 0; k < def->point_count; k++)
+        if (nearest[k] == particle ||
+            (def->radius > 0 && pin_distance2(shell, particle, def->points + 3 * (size_t)k) <= reach * reach))
+            return true;
+    return false;
+}
+
+/// Points (m) up to this size have finite squared distances.
+static const float pin_position_max = 1e9f;
+
+static SingeResult pin_check(SingeSim *sim, const SingePinDef *def) {
+    if (def->sheet.generation != 1 || def->sheet.index >= sim->sheet_count)
+        return object_stale(sim, "pin", def->sheet.index);
+    const Sheet *sheet = &sim->sheets[def->sheet.index].sheet;
+    if (!(def->radius >= 0 && def->radius <= 1e6f))
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "radius must be 0 or more");
+    if (def->point_count == 0 && def->vertex_count == 0)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "neither points nor vertices are given");
+    if (def->point_count && !def->points) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "points is NULL");
+    if (def->vertex_count && !def->vertices) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "vertices is NULL");
+    for (size_t k = 0; k < 3 * (size_t)def->point_count; k++)
+        if (!(fabsf(def->points[k]) <= pin_position_max))
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", (int64_t)(k / 3),
+                             "point %u is not finite or beyond 1e9 m", (uint32_t)(k / 3));
+    for (uint32_t k = 0; k < def->vertex_count; k++)
+        if (def->vertices[k] >= sheet->vertex_count)
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "pin", k,
+                             "vertex %u is out of range: sheet \"%s\" has %u", def->vertices[k], sheet->name,
+                             sheet->vertex_count);
+    return SINGE_OK;
+}
+
+/// Lists the particles of a checked pin, in order, and their anchors.
+static bool pin_gather(SingeSim *sim, const SingePinDef *def, Pin *pin) {
+    const Shell *shell = &sim->shell;
+    const Sheet *sheet = &shell->sheets[def->sheet.index];
+    Memory *memory = &sim->memory;
+    uint32_t *nearest = NULL;
+    uint8_t *listed = NULL;
+    bool ok = NEW(memory, nearest, def->point_count) && NEW(memory, listed, shell->particle_count);
+    if (ok) {
+        for (uint32_t k = 0; k < def->point_count; k++)
+            nearest[k] = pin_nearest(shell, sheet, def->points + 3 * (size_t)k);
+        for (uint32_t k = 0; k < def->vertex_count; k++) listed[sheet->vertex_first + def->vertices[k]] = 1;
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < shell->particle_count; i++) {
+            listed[i] = shell->matter.sheet[i] == def->sheet.index && pin_takes(shell, def, nearest, listed, i);
+            count += listed[i];
+        }
+        ok = NEW(memory, pin->particles, count) && NEW(memory, pin->anchors, count);
+        pin->count = count;
+    }
+    if (ok) {
+        Pose pose = path_pose(&pin->path, sim->state.time);
+        uint32_t k = 0;
+        for (uint32_t i = 0; i < shell->particle_count; i++) {
+            if (!listed[i]) continue;
+            pin->particles[k] = i;
+            float3_store(pin->anchors[k++], pose_unapply(&pose, float3_load(sim->state.dynamics.position[i])));
+        }
+    }
+    FREE(memory, nearest, def->point_count);
+    FREE(memory, listed, shell->particle_count);
+    return ok;
+}
+
+/// Makes a pin hold what its Def says.
+static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
+    if (!pin_gather(sim, def, pin)) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    for (uint32_t k = 0; k < pin->count; k++) {
+        uint32_t particle = pin->particles[k];
+        if (sim->state.dynamics.pinned[particle] == UINT8_MAX)
+            return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle,
+                             "particle %u is held by 255 pins already", particle);
+    }
+    pin_count(sim, pin, 1);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinId *id) {
+    *id = (SingePinId){0, 0};
+    SingePinDef def;
+    OBJECT_DEF(sim, "pin", def, given, singe_default_pin);
+    TRY(pin_check(sim, &def));
+    uint32_t index;
+    Pin *pin = sim_slot(sim, &sim->pins.items, &sim->pins.count, &sim->pins.capacity, sizeof *pin, &index);
+    if (!pin) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    TRY(path_set(&pin->path, &sim->memory, def.path_count, def.path, "pin", &sim->error));
+    pin->user_data = def.user_data;
+    SingeResult result = SINGE_OK;
+    if (sim->committed)
+        result = pin_hold(sim, &def, pin);
+    else if (!pin_wait(sim, &def, pin))
+        result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    if (result) {
+        sim_free_pin(sim, pin);
+        return result;
+    }
+    if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
+    pin->generation = sim->next_generation++;
+    *id = (SingePinId){index, pin->generation};
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_remove_pin(SingeSim *sim, SingePinId id) {
+    Pin *pin = OBJECT_FIND(sim->pins, id);
+    if (!pin) return object_stale(sim, "pin", id.index);
+    pin_count(sim, pin, -1);
+    if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
+    sim_free_pin(sim, pin);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t count, const SingePoseKey *path) {
+    Pin *pin = OBJECT_FIND(sim->pins, id);
+    if (!pin) return object_stale(sim, "pin", id.index);
+    // anchors are relative to the pose at which the pin was added: carry them over to the new path's frame
+    Pose before = path_pose(&pin->path, sim->state.time);
+    TRY(path_set(&pin->path, &sim->memory, count, path, "pin", &sim->error));
+    Pose after = path_pose(&pin->path, sim->state.time);
+    for (uint32_t k = 0; k < pin->count; k++)
+        float3_store(pin->anchors[k], pose_unapply(&after, pose_apply(&before, float3_load(pin->anchors[k]))));
+    return SINGE_OK;
+}
+
+// ---- the commit
+
+/// All objects wait again; the State is about to go.
+static void sim_unsettle_objects(SingeSim *sim) {
+    for (uint32_t i = 0; i < sim->sources.count; i++)
+        source_unsettle(&sim->memory, &sim->shell, &sim->sources.items[i]);
+    for (uint32_t i = 0; i < sim->pins.count; i++) {
+        Pin *pin = &sim->pins.items[i];
+        FREE(&sim->memory, pin->particles, pin->count);
+        FREE(&sim->memory, pin->anchors, pin->count);
+        pin->count = 0;
+    }
+}
+
+SingeResult sim_settle_objects(SingeSim *sim) {
+    SingeResult result = SINGE_OK;
+    for (uint32_t i = 0; i < sim->sources.count && !result; i++)
+        result = source_settle(&sim->memory, &sim->shell, &sim->sources.items[i], &sim->error);
+    for (uint32_t i = 0; i < sim->pins.count && !result; i++)
+        if (sim->pins.items[i].generation) result = pin_hold(sim, &sim->pins.items[i].waiting, &sim->pins.items[i]);
+    if (result) {
+        sim_unsettle_objects(sim);
+        return result;
+    }
+    for (uint32_t i = 0; i < sim->sources.count; i++) source_settled(&sim->memory, &sim->sources.items[i]);
+    for (uint32_t i = 0; i < sim->pins.count; i++) pin_stop_waiting(sim, &sim->pins.items[i]);
+    if (sim->pins.count) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
+    return SINGE_OK;
+}

@@ -1,0 +1,217 @@
+// What a caller changes while the simulation runs: gravity, pace, ambient temperature, velocities, materials.
+//
+// Gravity, pace and velocities are read anew in every step. What plans were built from (the ambient temperature and the
+// materials: the operator of heat, the front's thickening, springs' weights) is changed in the description, and the
+// simulation is built again from it as a load would do it: so it is at once what a load of its snapshot gives.
+#include "sim/objects.h"
+
+#include "shell/sheet.h"
+
+#include <string.h>
+
+static bool in_range(float value, float low, float high) { return value >= low && value <= high; }
+
+static SingeResult setter_bad(SingeSim *sim, const char *stage, const char *what) {
+    return sim_fail(sim, SINGE_ERROR_ARGUMENT, stage, -1, what);
+}
+
+// ---- what plans read anew
+
+/// The axis along which gravity is largest, 1 to 3, with the sign that it has: the gas has room at one end of it.
+static int gravity_axis(const float gravity[3]) {
+    int up = 2;
+    for (int d = 0; d < 3; d++)
+        if (fabsf(gravity[d]) > fabsf(gravity[up])) up = d;
+    return gravity[up] > 0 ? -(up + 1) : up + 1;
+}
+
+SingeResult singe_sim_set_gravity(SingeSim *sim, const float gravity[3]) {
+    for (int d = 0; d < 3; d++)
+        if (!in_range(gravity[d], -1e4f, 1e4f))
+            return setter_bad(sim, "gravity", "gravity must be between -10000 and 10000 m/s2");
+    if (sim->gas && gravity_axis(gravity) != gravity_axis(sim->def.gravity))
+        return sim_fail(sim, SINGE_ERROR_STATE, "gravity", -1,
+                        "the gas has its room above the sheets: gravity must keep the axis along which it is largest");
+    memcpy(sim->def.gravity, gravity, sizeof sim->def.gravity);
+    if (sim->dynamics) dynamics_plan_set_gravity(sim->dynamics, gravity);
+    if (sim->gas) gas_plan_set_gravity(sim->gas, gravity);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_set_pace(SingeSim *sim, float pace) {
+    if (!in_range(pace, 1e-6f, 1e6f)) return setter_bad(sim, "pace", "pace must be between 1e-6 and 1e6");
+    sim->def.pace = pace;
+    if (sim->heat) heat_plan_set_pace(sim->heat, pace);
+    if (sim->gas) gas_plan_set_pace(sim->gas, pace);
+    return SINGE_OK;
+}
+
+static SingeResult velocity_check(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
+                                  const float *velocity) {
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "velocity", -1,
+                        "singe_sim_commit comes first; a sheet's Def has the velocity at the start");
+    if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "velocity", id.index);
+    const Sheet *sheet = &sim->shell.sheets[id.index];
+    if (count > sheet->vertex_count || first > sheet->vertex_count - count)
+        return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", first,
+                         "sheet '%s' has %u vertices with those in reserve", sheet->name, sheet->vertex_count);
+    if (count && !velocity) return setter_bad(sim, "velocity", "velocity is NULL");
+    for (size_t k = 0; k < 3 * (size_t)count; k++)
+        if (!in_range(velocity[k], -1e4f, 1e4f))
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "velocity", (int64_t)(first + k / 3),
+                             "the velocity of vertex %zu must be between -10000 and 10000 m/s", first + k / 3);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t first, uint32_t count,
+                                   const float *velocity) {
+    TRY(velocity_check(sim, id, first, count, velocity));
+    const Sheet *sheet = &sim->shell.sheets[id.index];
+    float(*now)[4] = sim->state.dynamics.velocity;
+    const uint32_t begin = sheet->vertex_first + first;
+
+    // a cell's centre changes by the mean of its corners' changes
+    for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++)
+        for (int i = 0; i < 4; i++) {
+            const uint32_t v = sim->shell.cells[c][i];
+            if (v < begin || v - begin >= count) continue;
+            float *centre = now[shell_centre(&sim->shell, c)];
+            for (int k = 0; k < 3; k++) centre[k] += 0.25f * (velocity[3 * (size_t)(v - begin) + (size_t)k] - now[v][k]);
+        }
+
+    for (uint32_t v = 0; v < count; v++) memcpy(now[begin + v], velocity + 3 * (size_t)v, 3 * sizeof *velocity);
+    dynamics_plan_pushed(sim->dynamics);
+    return SINGE_OK;
+}
+
+// ---- what plans are built from
+
+/// Builds the simulation again from its description, with its State and objects. On failure nothing has changed.
+static SingeResult sim_rebuild(SingeSim *sim) {
+    SingeSim *fresh;
+    if (!sim->committed) return SINGE_OK;
+    TRY(singe_sim_clone(sim, &fresh));
+    fresh->timers = sim->timers;
+    fresh->intersecting_warned = sim->intersecting_warned, fresh->crossing_warned = sim->crossing_warned;
+    fresh->crowd_warned = sim->crowd_warned, fresh->heat_warned = sim->heat_warned;
+    fresh->tear_warned = sim->tear_warned;
+    const SingeSim swap = *sim;
+    *sim = *fresh;
+    *fresh = swap;
+    singe_sim_destroy(fresh);
+    return SINGE_OK;
+}
+
+SingeResult singe_sim_set_ambient_temperature(SingeSim *sim, float temperature) {
+    if (!in_range(temperature, 1, 1e4f))
+        return setter_bad(sim, "ambient", "ambient_temperature must be between 1 and 10000 K");
+    const float before = sim->def.ambient_temperature;
+    const double start = sim->heat_start, stored = sim->committed ? sim_enthalpy(sim) : 0;
+    sim->def.ambient_temperature = temperature;
+    if (sim->committed) sim->heat_start += sim_enthalpy(sim) - stored; // what is stored is counted from elsewhere now
+    SingeResult result = sim_rebuild(sim);
+    if (result) sim->def.ambient_temperature = before, sim->heat_start = start;
+    return result;
+}
+
+/// Parameters that the sheet's mass, shape or start were made of: these stay.
+static bool material_stays(int param) {
+    return param == PARAM_GRAMMAGE || param == PARAM_SPECIFIC_HEAT || param == PARAM_THICKNESS ||
+           param == PARAM_TEMPERATURE;
+}
+
+/// A sheet's share of a new material at one of its particles.
+static float material_share(const SheetSource *source, const float *share, uint32_t i) {
+    const uint32_t vertices = source->sheet.vertex_count;
+    if (!share) return 1;
+    if (i < vertices) return share[i];
+    float sum = 0;
+    for (int k = 0; k < 4; k++) sum += share[source->cells[i - vertices][k]];
+    return 0.25f * sum;
+}
+
+/// A sheet's parameters, as SheetSource has them.
+typedef struct MaterialValues {
+    float value[PARAM_COUNT];
+    float *values[PARAM_COUNT];
+} MaterialValues;
+
+/// Keeps one value where all are the same to the bit.
+static void material_keep(SingeSim *sim, MaterialValues *mixed, int p, uint32_t total) {
+    float *values = mixed->values[p];
+    mixed->value[p] = values[0];
+    if (memcmp(values, values + 1, (total - 1) * sizeof *values) == 0) FREE(&sim->memory, mixed->values[p], total);
+}
+
+/// What lies between two sheets' parameters; false when out of memory.
+static bool material_mix(SingeSim *sim, const SheetSource *old, const SheetSource *other, const float *share,
+                         MaterialValues *mixed) {
+    const uint32_t total = old->sheet.vertex_count + old->sheet.cell_count;
+    for (int p = 0; p < PARAM_COUNT; p++) {
+        if (material_stays(p)) continue;
+        float *values = NEW(&sim->memory, mixed->values[p], total);
+        if (!values) return false;
+        for (uint32_t i = 0; i < total; i++) {
+            const float from = sheet_param(old, p, i), to = sheet_param(other, p, i);
+            const float s = material_share(old, share, i);
+            values[i] = s <= 0 ? from : s >= 1 || from == to ? to : from + s * (to - from);
+        }
+        material_keep(sim, mixed, p, total);
+    }
+    return true;
+}
+
+/// A Def of the sheet as it is, for the evaluation of another material.
+static SingeSheetDef material_sheet(const SheetSource *source, const SingeMaterialDef *material) {
+    SingeSheetDef def = singe_default_sheet();
+    def.name = source->sheet.name;
+    def.vertex_count = source->sheet.vertex_count, def.positions = (const float *)source->position;
+    def.cell_count = source->sheet.cell_count, def.cells = (const uint32_t *)source->cells;
+    def.uv = (const float *)source->uv, def.corner_uv = (const float *)source->corner_uv;
+    def.material = *material;
+    return def;
+}
+
+static void material_swap(SheetSource *source, MaterialValues *with) {
+    for (int p = 0; p < PARAM_COUNT; p++) {
+        if (material_stays(p)) continue;
+        const float value = source->value[p];
+        float *values = source->values[p];
+        source->value[p] = with->value[p], source->values[p] = with->values[p];
+        with->value[p] = value, with->values[p] = values;
+    }
+}
+
+/// Builds the simulation with other parameters of a sheet; *values becomes those that are to be freed.
+static SingeResult material_take(SingeSim *sim, SheetSource *source, MaterialValues *values) {
+    material_swap(source, values);
+    SingeResult result = sheet_source_check(source, &sim->error);
+    if (!result) result = sim_rebuild(sim);
+    if (result) material_swap(source, values);
+    return result;
+}
+
+SingeResult singe_sim_set_material(SingeSim *sim, SingeSheetId id, const SingeMaterialDef *given, const float *share) {
+    if (id.generation != 1 || id.index >= sim->sheet_count) return object_stale(sim, "material", id.index);
+    SingeMaterialDef material;
+    OBJECT_DEF(sim, "material", material, given, singe_default_material);
+    SheetSource *source = &sim->sheets[id.index], other;
+    const uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
+    for (uint32_t v = 0; share && v < source->sheet.vertex_count; v++)
+        if (!in_range(share[v], 0, 1))
+            return error_set(&sim->error, SINGE_ERROR_ARGUMENT, "material", v,
+                             "the share of vertex %u must be between 0 and 1", v);
+    const SingeSheetDef def = material_sheet(source, &material);
+    TRY(sheet_source_create(&sim->memory, &def, &other, &sim->error));
+    MaterialValues values = {0};
+    Memory before = sim->memory; // a simulation that was built again counts its own
+    SingeResult result = SINGE_OK;
+    if (!material_mix(sim, source, &other, share, &values))
+        result = sim_fail(sim, SINGE_ERROR_MEMORY, "material", -1, "out of memory");
+    sheet_source_free(&sim->memory, &other);
+    if (!result) result = material_take(sim, source, &values);
+    Memory *memory = !result && sim->committed ? &before : &sim->memory;
+    for (int p = 0; p < PARAM_COUNT; p++) FREE(memory, values.values[p], total);
+    return result;
+}
