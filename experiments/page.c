@@ -1,5 +1,6 @@
 #include "experiments/page.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,15 +57,89 @@ static SingeResult write_scenes(const Lab *lab, SingeError *error) {
     return result;
 }
 
-static SingeResult run_item(Lab *lab, const PageItem *item, SingeError *error) {
-    double begun = console_clock();
-    report_item(lab->report, item->name, item->heading, item->shows);
-    SingeResult result = item->run(lab, error);
-    if (result && error->code != result) *error = (SingeError){.code = result, .element = -1};
+/// The items of a page that are run, by several threads.
+typedef struct Queue {
+    const Page *page;
+    const Request *request;
+    const Lab *lab;       ///< what all have in common
+    ReportPage *report;
+    pthread_mutex_t lock; ///< of all below
+    int next, added;      ///< items: the next to take; those before it are in the report
+    Report **done;        ///< [items] run, and not yet in the report
+    SingeResult result;   ///< the first failure; no further items are taken
+    SingeError error;
+} Queue;
+
+static bool is_wanted(const Queue *queue, int item) {
+    return !queue->request->name || strcmp(queue->request->name, queue->page->items[item].name) == 0;
+}
+
+static bool is_alone(const Queue *queue, int item) {
+    for (const char *const *name = queue->page->alone; *name; name++)
+        if (strcmp(*name, queue->page->items[item].name) == 0) return true;
+    return false;
+}
+
+/// Adds to the report what has been run, up to the first item that has not.
+static void add_done(Queue *queue) {
+    for (; queue->added < queue->page->count; queue->added++) {
+        Report *report = queue->done[queue->added];
+        if (report) report_end(queue->report, report), queue->done[queue->added] = NULL;
+        else if (is_wanted(queue, queue->added)) return;
+    }
+}
+
+static void run_item(Queue *queue, int index, int threads, bool echo) {
+    const PageItem *item = &queue->page->items[index];
+    const double begun = console_clock();
+    SingeError error = {0};
+    SingeResult result = SINGE_ERROR_MEMORY;
+    Lab lab = *queue->lab;
+    lab.threads = threads;
+    lab.report = report_begin(queue->report, item->name, item->heading, item->shows, echo);
+    if (lab.report) result = item->run(&lab, &error);
     char time[32];
     console_duration(console_clock() - begun, time);
-    console_note(&lab->console, "%s: %s", item->name, time);
-    return result;
+    pthread_mutex_lock(&queue->lock);
+    console_note(&lab.console, "%s: %s", item->name, time);
+    if (result && !queue->result) {
+        queue->result = result, queue->error = error;
+        if (error.code != result) queue->error = (SingeError){.code = result, .element = -1};
+    }
+    queue->done[index] = lab.report;
+    add_done(queue);
+    pthread_mutex_unlock(&queue->lock);
+}
+
+/// The next item that need not run alone, or -1.
+static int take_next(Queue *queue) {
+    int index = -1;
+    pthread_mutex_lock(&queue->lock);
+    for (; index < 0 && queue->next < queue->page->count && !queue->result; queue->next++)
+        if (is_wanted(queue, queue->next) && !is_alone(queue, queue->next)) index = queue->next;
+    pthread_mutex_unlock(&queue->lock);
+    return index;
+}
+
+static void *run_together(void *context) {
+    Queue *queue = context;
+    for (int index; (index = take_next(queue)) >= 0;) run_item(queue, index, 1, false);
+    return NULL;
+}
+
+/// Runs a page's items, each with one thread, and then those that run alone with all threads.
+static void run_items(Queue *queue) {
+    const int threads = queue->request->threads;
+    pthread_t others[JOB_THREADS_MAX];
+    int started = 0;
+    if (!queue->request->name) {
+        while (started < threads - 1 && !pthread_create(&others[started], NULL, run_together, queue)) started++;
+        run_together(queue);
+        for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
+    }
+    for (int i = 0; i < queue->page->count && !queue->result; i++)
+        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i)))
+            run_item(queue, i, threads, true);
 }
 
 /// Prints the error.
@@ -74,23 +149,40 @@ static ExitCode fail(const SingeError *error) {
     return EXIT_FAILED;
 }
 
+/// Runs the items into the report, and closes it.
+static ExitCode fill(Queue *queue) {
+    ExitCode code = EXIT_GOOD;
+    pthread_mutex_init(&queue->lock, NULL);
+    run_items(queue);
+    pthread_mutex_destroy(&queue->lock);
+    if (queue->result) code = fail(&queue->error);
+    for (int i = 0; i < queue->page->count; i++)
+        if (queue->done[i]) report_end(queue->report, queue->done[i]);
+    int failed = 0;
+    SingeError error;
+    if (report_page_close(queue->report, &failed, &error)) code = fail(&error);
+    printf("\n%s/index.html: %s\n", queue->request->folder, failed ? "measures fail" : "all measures hold");
+    return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
+}
+
 static ExitCode run(const Page *page, const Request *request) {
     SingeError error = {0};
-    Lab lab = {.quick = request->quick, .threads = request->threads, .console = console_make(false)};
-    lab.report = report_open(request->folder, page->title, page->lead, &error);
-    if (!lab.report) return fail(&error);
-    lab.scenes = text_format("%s/scenes", request->folder);
-    SingeResult result = write_scenes(&lab, &error);
-    ExitCode code = EXIT_GOOD;
-    for (int i = 0; i < page->count && !result; i++)
-        if (!request->name || strcmp(request->name, page->items[i].name) == 0)
-            result = run_item(&lab, &page->items[i], &error);
-    if (result) code = fail(&error);
-    int failed = 0;
-    if (report_close(lab.report, &failed, &error)) code = fail(&error);
-    printf("\n%s/index.html: %s\n", request->folder, failed ? "measures fail" : "all measures hold");
-    free(lab.scenes);
-    return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
+    Lab lab = {.quick = request->quick, .console = console_make(false)};
+    Queue queue = {.page = page, .request = request, .lab = &lab,
+                   .done = calloc((size_t)page->count, sizeof *queue.done)};
+    if (queue.done) queue.report = report_page_open(request->folder, page->title, page->lead, &error);
+    else error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
+    ExitCode code = EXIT_FAILED;
+    if (queue.report) {
+        lab.scenes = text_format("%s/scenes", request->folder);
+        queue.result = write_scenes(&lab, &queue.error);
+        code = fill(&queue);
+        free(lab.scenes);
+    } else {
+        fail(&error);
+    }
+    free(queue.done);
+    return code;
 }
 
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv) {

@@ -29,15 +29,23 @@ typedef struct Taken {
     bool holds;
 } Taken;
 
-struct Report {
+struct ReportPage {
     char *folder;
-    Draft page, index, csv, json, body; ///< `body` is of the item in hand
-    Block block;
-    char *name, *heading; ///< of the item in hand, NULL before the first
-    int pictures;         ///< of the item
-    int items, measures, failed, item_measures, item_failed;
+    Draft text, index, csv, json;
+    int measures, failed;
     Taken *taken;         ///< [measures]
-    SingeResult result;   ///< of the first picture that could not be written
+    SingeResult result;   ///< the first failure
+    SingeError error;
+};
+
+struct Report {
+    const ReportPage *page;
+    Draft body, csv, json, echo; ///< `echo` has no file where lines are printed at once
+    Block block;
+    char *name, *heading;
+    int pictures, measures, failed;
+    Taken *taken;         ///< [measures]
+    SingeResult result;   ///< the first failure
     SingeError error;
 };
 
@@ -63,65 +71,60 @@ static void draft_free(Draft *draft) {
     *draft = (Draft){0};
 }
 
-Report *report_open(const char *folder, const char *title, const char *lead, SingeError *error) {
+ReportPage *report_page_open(const char *folder, const char *title, const char *lead, SingeError *error) {
     if (folder_make(folder, error)) return NULL;
-    Report *report = calloc(1, sizeof *report);
-    if (!report || !draft_open(&report->page) || !draft_open(&report->index) || !draft_open(&report->csv) ||
-        !draft_open(&report->json)) {
+    ReportPage *page = calloc(1, sizeof *page);
+    if (!page || !draft_open(&page->text) || !draft_open(&page->index) || !draft_open(&page->csv) ||
+        !draft_open(&page->json)) {
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
-        if (report) draft_free(&report->page), draft_free(&report->index), draft_free(&report->csv);
-        free(report);
+        if (page) draft_free(&page->text), draft_free(&page->index), draft_free(&page->csv);
+        free(page);
         return NULL;
     }
-    report->folder = text_format("%s", folder);
-    fprintf(report->index.file,
+    page->folder = text_format("%s", folder);
+    fprintf(page->index.file,
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>%s</title>\n"
             "<meta name=\"viewport\" content=\"width=device-width\">\n<style>%s</style></head>\n<body>\n<h1>%s</h1>\n"
             "<p>%s</p>\n<div class=\"wide\"><table><tr><th>item</th><th>measures</th><th>verdict</th></tr>\n",
             title, style, title, lead);
-    fprintf(report->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what\n");
-    fprintf(report->json.file, "{\"title\": ");
-    text_json_string(report->json.file, title);
-    fprintf(report->json.file, ",\n \"measures\": [");
-    return report;
+    fprintf(page->csv.file, "item,measure,value,low,high,verdict,what,bad,bad_what\n");
+    fprintf(page->json.file, "{\"title\": ");
+    text_json_string(page->json.file, title);
+    fprintf(page->json.file, ",\n \"measures\": [");
+    return page;
 }
 
-const char *report_folder(const Report *report) { return report->folder; }
+const char *report_folder(const Report *report) { return report->page->folder; }
+
+static FILE *echo_file(const Report *report) { return report->echo.file ? report->echo.file : stdout; }
+
+static void report_free(Report *report) {
+    draft_free(&report->body), draft_free(&report->csv), draft_free(&report->json), draft_free(&report->echo);
+    free(report->taken);
+    free(report->name), free(report->heading);
+    free(report);
+}
+
+Report *report_begin(const ReportPage *page, const char *name, const char *heading, const char *shows, bool echo) {
+    Report *report = calloc(1, sizeof *report);
+    if (!report) return NULL;
+    if (!draft_open(&report->body) || !draft_open(&report->csv) || !draft_open(&report->json) ||
+        (!echo && !draft_open(&report->echo))) {
+        report_free(report);
+        return NULL;
+    }
+    report->page = page;
+    report->name = text_format("%s", name), report->heading = text_format("%s", heading);
+    fprintf(echo_file(report), "\n%s: %s\n", name, heading);
+    fprintf(report->body.file, "<p class=\"shows\"><b>The source:</b> %s</p>\n", shows);
+    return report;
+}
 
 /// Goes on with blocks of one kind, or ends them.
 static FILE *body(Report *report, Block block) {
     if (report->block != block) fputs(block_ends[report->block], report->body.file);
     report->block = block;
     return report->body.file;
-}
-
-static void finish_item(Report *report) {
-    if (!report->name) return;
-    body(report, BLOCK_NONE);
-    const char *class = report->item_failed ? "bad" : "good", *verdict = report->item_failed ? "fails" : "holds";
-    if (text_stream_end(report->body.file, &report->body.text)) {
-        fprintf(report->page.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
-                report->heading, class, verdict, report->body.text);
-        fprintf(report->index.file,
-                "<tr><td><a href=\"#%s\">%s</a></td><td>%d of %d</td><td class=\"%s\">%s</td></tr>\n", report->name,
-                report->heading, report->item_measures - report->item_failed, report->item_measures, class, verdict);
-    } else {
-        report->result = SINGE_ERROR_MEMORY;
-    }
-    report->body.file = NULL;
-    draft_free(&report->body);
-    free(report->name), free(report->heading);
-    report->name = report->heading = NULL;
-}
-
-void report_item(Report *report, const char *name, const char *heading, const char *shows) {
-    finish_item(report);
-    report->name = text_format("%s", name), report->heading = text_format("%s", heading);
-    report->pictures = report->item_measures = report->item_failed = 0;
-    report->items++;
-    if (!draft_open(&report->body)) report->body.file = fopen("/dev/null", "w"), report->result = SINGE_ERROR_MEMORY;
-    printf("\n%s: %s\n", name, heading);
-    fprintf(report->body.file, "<p class=\"shows\"><b>The source:</b> %s</p>\n", shows);
 }
 
 void report_text(Report *report, const char *format, ...) {
@@ -134,16 +137,16 @@ void report_text(Report *report, const char *format, ...) {
     va_end(list);
 }
 
-/// The same row on standard output, in columns.
-static void echo(const char *text) {
-    printf(" ");
+/// The same row as it is printed, in columns.
+static void echo(FILE *file, const char *text) {
+    fprintf(file, " ");
     while (*text) {
         int length = (int)strcspn(text, "|");
-        printf(" %*.*s", length > 11 ? length : 11, length, text);
+        fprintf(file, " %*.*s", length > 11 ? length : 11, length, text);
         text += length + (text[length] == '|');
     }
-    printf("\n");
-    fflush(stdout);
+    fprintf(file, "\n");
+    fflush(file);
 }
 
 /// Whether a cell of a table has no number, or a range of none: "nan", "+nan", "nan to nan".
@@ -152,8 +155,9 @@ static bool is_nothing(const char *text, int length) {
     return length >= 3 && strncmp(text, "nan", 3) == 0;
 }
 
-static void row(FILE *file, const char *text, const char *tag) {
-    echo(text);
+static void row(Report *report, const char *text, const char *tag) {
+    FILE *file = body(report, BLOCK_TABLE);
+    echo(echo_file(report), text);
     fputs("<tr>", file);
     for (;; text++) {
         int length = (int)strcspn(text, "|");
@@ -168,7 +172,7 @@ static void row(FILE *file, const char *text, const char *tag) {
 void report_heads(Report *report, const char *heads) {
     body(report, BLOCK_NONE);
     fputs("<div class=\"wide\"><table>\n", report->body.file);
-    row(body(report, BLOCK_TABLE), heads, "th");
+    row(report, heads, "th");
 }
 
 void report_row(Report *report, const char *format, ...) {
@@ -177,7 +181,7 @@ void report_row(Report *report, const char *format, ...) {
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    row(body(report, BLOCK_TABLE), text, "td");
+    row(report, text, "td");
 }
 
 void report_pictures(Report *report, int columns) {
@@ -189,7 +193,7 @@ void report_pictures(Report *report, int columns) {
 void report_picture(Report *report, const char *caption, int width, int height, const uint8_t *rgb) {
     if (report->block != BLOCK_PICTURES) report_pictures(report, 4);
     char *name = text_format("%s-%02d.png", report->name, ++report->pictures);
-    char *path = text_format("%s/%s", report->folder, name);
+    char *path = text_format("%s/%s", report_folder(report), name);
     SingeError error;
     SingeResult result = png_write(path, width, height, rgb, &error);
     if (result && !report->result) report->result = result, report->error = error;
@@ -247,8 +251,7 @@ static void keep(Report *report, const ReportBar *bar, bool holds) {
     } else {
         report->result = SINGE_ERROR_MEMORY;
     }
-    report->item_measures++;
-    if (!holds) report->failed++, report->item_failed++;
+    if (!holds) report->failed++;
 }
 
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
@@ -267,12 +270,13 @@ void report_bar(Report *report, const ReportBar *bar) {
     fprintf(file, "</td><td class=\"%s\">%s</td><td>", holds ? "good" : "bad", holds ? "holds" : "fails");
     if (bar->bad_what) fprintf(file, "%.4g: %s", bar->bad, bar->bad_what);
     fprintf(file, "</td></tr>\n");
-    printf("  %-26s %11.4g  ", bar->name, bar->value);
-    print_bar(stdout, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
-    printf("  %s", verdict);
-    if (bar->bad_what) printf("; not %.4g (%s)", bar->bad, bar->bad_what);
-    printf("\n");
-    fflush(stdout);
+    FILE *echo = echo_file(report);
+    fprintf(echo, "  %-26s %11.4g  ", bar->name, bar->value);
+    print_bar(echo, bar->low, bar->high, "at least %.4g", "at most %.4g", "%.4g to %.4g");
+    fprintf(echo, "  %s", verdict);
+    if (bar->bad_what) fprintf(echo, "; not %.4g (%s)", bar->bad, bar->bad_what);
+    fprintf(echo, "\n");
+    fflush(echo);
     measure_csv(report, bar, holds);
     measure_json(report, bar, holds);
     keep(report, bar, holds);
@@ -283,8 +287,8 @@ void report_measure(Report *report, const char *name, const char *what, double v
 }
 
 ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value) {
-    for (int i = 0; i < report->measures; i++) {
-        const Taken *taken = &report->taken[i];
+    for (int i = 0; i < report->page->measures; i++) {
+        const Taken *taken = &report->page->taken[i];
         if (strcmp(taken->item, item) || strcmp(taken->name, name)) continue;
         *value = taken->value;
         return taken->holds ? REPORT_HOLDS : REPORT_FAILS;
@@ -292,9 +296,48 @@ ReportVerdict report_find(const Report *report, const char *item, const char *na
     return REPORT_UNKNOWN;
 }
 
-static SingeResult write_draft(const Report *report, const char *name, Draft *draft, const Draft *more,
+/// Moves a report's measures to the page's.
+static void take_measures(ReportPage *page, Report *report) {
+    const size_t count = (size_t)page->measures + (size_t)report->measures;
+    Taken *larger = realloc(page->taken, (count + 1) * sizeof *larger);
+    if (larger) page->taken = larger;
+    else page->result = SINGE_ERROR_MEMORY;
+    for (int i = 0; i < report->measures; i++) {
+        if (larger) larger[page->measures++] = report->taken[i];
+        else free(report->taken[i].item), free(report->taken[i].name);
+    }
+    page->failed += report->failed;
+    if (report->result && !page->result) page->result = report->result, page->error = report->error;
+}
+
+void report_end(ReportPage *page, Report *report) {
+    const char *class = report->failed ? "bad" : "good", *verdict = report->failed ? "fails" : "holds";
+    Draft *drafts[] = {&report->body, &report->csv, &report->json, &report->echo};
+    bool good = true;
+    body(report, BLOCK_NONE);
+    for (int i = 0; i < 4; i++) {
+        if (!drafts[i]->file) continue;
+        good = text_stream_end(drafts[i]->file, &drafts[i]->text) && good;
+        drafts[i]->file = NULL;
+    }
+    if (good) {
+        if (report->echo.text) printf("%s", report->echo.text), fflush(stdout);
+        fprintf(page->text.file, "<h2 id=\"%s\">%s<span class=\"tag %s\">%s</span></h2>\n%s", report->name,
+                report->heading, class, verdict, report->body.text);
+        fprintf(page->index.file, "<tr><td><a href=\"#%s\">%s</a></td><td>%d of %d</td><td class=\"%s\">%s</td></tr>\n",
+                report->name, report->heading, report->measures - report->failed, report->measures, class, verdict);
+        fputs(report->csv.text, page->csv.file);
+        fprintf(page->json.file, "%s%s", page->measures && report->measures ? "," : "", report->json.text);
+    } else {
+        page->result = SINGE_ERROR_MEMORY;
+    }
+    take_measures(page, report);
+    report_free(report);
+}
+
+static SingeResult write_draft(const ReportPage *page, const char *name, Draft *draft, const Draft *more,
                                SingeError *error) {
-    char *path = text_format("%s/%s", report->folder, name);
+    char *path = text_format("%s/%s", page->folder, name);
     if (more) fwrite(more->text, 1, more->size, draft->file);
     const bool good = text_stream_end(draft->file, &draft->text);
     draft->file = NULL;
@@ -304,25 +347,23 @@ static SingeResult write_draft(const Report *report, const char *name, Draft *dr
     return result;
 }
 
-SingeResult report_close(Report *report, int *failed, SingeError *error) {
-    finish_item(report);
-    *failed = report->failed;
-    fprintf(report->page.file, "</body></html>\n");
-    fflush(report->page.file);
-    fprintf(report->index.file, "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
+SingeResult report_page_close(ReportPage *page, int *failed, SingeError *error) {
+    *failed = page->failed;
+    fprintf(page->text.file, "</body></html>\n");
+    fflush(page->text.file);
+    fprintf(page->index.file, "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
             "measures.csv</a>, <a href=\"measures.json\">measures.json</a>.</p>\n",
-            report->measures - report->failed, report->measures);
-    fprintf(report->json.file, "\n ],\n \"failed\": %d}\n", report->failed);
-    SingeResult result = report->result;
-    if (result) *error = report->error, error->code = result;
-    if (!result) result = write_draft(report, "index.html", &report->index, &report->page, error);
-    if (!result) result = write_draft(report, "measures.csv", &report->csv, NULL, error);
-    if (!result) result = write_draft(report, "measures.json", &report->json, NULL, error);
-    draft_free(&report->page), draft_free(&report->index), draft_free(&report->csv), draft_free(&report->json);
-    draft_free(&report->body);
-    for (int i = 0; i < report->measures; i++) free(report->taken[i].item), free(report->taken[i].name);
-    free(report->taken);
-    free(report->folder), free(report->name), free(report->heading);
-    free(report);
+            page->measures - page->failed, page->measures);
+    fprintf(page->json.file, "\n ],\n \"failed\": %d}\n", page->failed);
+    SingeResult result = page->result;
+    if (result) *error = page->error, error->code = result;
+    if (!result) result = write_draft(page, "index.html", &page->index, &page->text, error);
+    if (!result) result = write_draft(page, "measures.csv", &page->csv, NULL, error);
+    if (!result) result = write_draft(page, "measures.json", &page->json, NULL, error);
+    draft_free(&page->text), draft_free(&page->index), draft_free(&page->csv), draft_free(&page->json);
+    for (int i = 0; i < page->measures; i++) free(page->taken[i].item), free(page->taken[i].name);
+    free(page->taken);
+    free(page->folder);
+    free(page);
     return result;
 }

@@ -1,8 +1,9 @@
 // A page of experiments, as `singe paper` and `singe validate` write it: FOLDER/index.html, which needs nothing but the
 // pictures beside it, and its numbers as measures.csv and measures.json.
 //
-// A report is a list of items; an item is what a source shows, then tables, plots and pictures as they are added, and
-// measures. A measure is a number with the bar it is held against. Texts are HTML; captions and names plain.
+// A page is a list of reports, one an item: what a source shows, then tables, plots and pictures as they are added, and
+// measures. A measure is a number with the bar it is held against. Texts are HTML; captions and names plain. Several
+// reports of a page may be filled at once, each by one thread.
 #ifndef EXPERIMENTS_REPORT_H
 #define EXPERIMENTS_REPORT_H
 
@@ -12,13 +13,18 @@
 #include "experiments/plot.h"
 #include "singe/base.h"
 
+typedef struct ReportPage ReportPage;
 typedef struct Report Report;
 
 /// Makes the folder. NULL on failure, with *error filled.
-Report *report_open(const char *folder, const char *title, const char *lead, SingeError *error);
+ReportPage *report_page_open(const char *folder, const char *title, const char *lead, SingeError *error);
 
-/// Begins an item. `name` is that of its pictures and measures.
-void report_item(Report *report, const char *name, const char *heading, const char *shows);
+/// Begins an item. `name` is that of its pictures and measures. Tables and measures are also printed: at once if `echo`
+/// is set, else by report_end. NULL without memory. May be called by any thread.
+Report *report_begin(const ReportPage *page, const char *name, const char *heading, const char *shows, bool echo);
+
+/// Adds an item to the page, after those added before, and frees it.
+void report_end(ReportPage *page, Report *report);
 
 /// A paragraph.
 void report_text(Report *report, const char *format, ...) SINGE_PRINTF(2, 3);
@@ -50,13 +56,13 @@ void report_bar(Report *report, const ReportBar *bar);
 
 typedef enum ReportVerdict { REPORT_UNKNOWN, REPORT_HOLDS, REPORT_FAILS } ReportVerdict;
 
-/// Whether a measure of an item holds, and its value; REPORT_UNKNOWN where it has not been taken.
+/// Whether a measure of an item that has been added holds, and its value; REPORT_UNKNOWN where it has not been taken.
 ReportVerdict report_find(const Report *report, const char *item, const char *name, double *value);
 
 /// Where the report is.
 const char *report_folder(const Report *report);
 
-/// Writes the files and frees the report. *failed is the number of measures that do not hold.
-SINGE_NODISCARD SingeResult report_close(Report *report, int *failed, SingeError *error);
+/// Writes the files and frees the page. *failed is the number of measures that do not hold.
+SINGE_NODISCARD SingeResult report_page_close(ReportPage *page, int *failed, SingeError *error);
 
 #endif

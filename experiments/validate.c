@@ -39,6 +39,7 @@ static const ArgCommand validate_command = {
 static const Page page = {
     items, sizeof items / sizeof *items, "out/validate", "The physics against outside truth",
     "What this program computes beside solutions, formulas and measurements that come from elsewhere. Each item says "
-    "what the source has, what came out here, and whether stated measures hold."};
+    "what the source has, what came out here, and whether stated measures hold.",
+    (const char *const[]){NULL}};
 
 int command_validate(int argc, char **argv) { return page_run(&page, &validate_command, argc, argv); }

@@ -280,9 +280,9 @@ static void is_fast_and_small(void **state) {
     SingeError error;
     Bytes ply;
     make_sheet(&s, 158, 1);
-    enum { FRAMES = 20, TIMES = 4 };
+    enum { FRAMES = 20, TIMES = 20 };
     double system[2], ply_system[2], mean = 1;
-    for (int times = 0; times < TIMES; times++) { // the least of some: others use the machine, too
+    for (int times = 0; times < TIMES && mean > 4e-3; times++) { // the least of some: others use the machine, too
         const double own = time_used(&system[0]);
         for (int i = 0; i < FRAMES; i++) assert_int_equal(write_sheet(&s, 1, NULL, &error), SINGE_OK);
         mean = fmin(mean, (time_used(&system[1]) - own) / FRAMES);

@@ -153,7 +153,11 @@ class MeshZoo(Case):
     def test_meshes(self):
         self.assertEqual(set(BROKEN), {n for n, row in make_meshes.MESHES.items() if row[1] == "broken"})
         lines = []
+        good = [name for name in make_meshes.MESHES if name not in BROKEN]
+        skipped = set(good) - set(good[::4]) if SANITIZED else set()  # there each takes ten times as long
         for name in make_meshes.MESHES:
+            if name in skipped:
+                continue
             with self.subTest(name):
                 code, err, faults = self.run_mesh(name)
                 wrong = self.judge(name, code, err, faults)
