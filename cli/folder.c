@@ -17,6 +17,8 @@ Folder folder_name(const char *path, const char *name) {
     folder.path = path ? text_format("%s", *path ? path : ".") : text_format("out/%s", name);
     for (size_t n = strlen(folder.path); n > 1 && folder.path[n - 1] == '/'; n--) folder.path[n - 1] = 0;
     folder.stats = text_format("%s/stats.csv", folder.path);
+    folder.events = text_format("%s/events.csv", folder.path);
+    folder.probes = text_format("%s/probes.csv", folder.path);
     folder.record = text_format("%s/run.json", folder.path);
     folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
     folder.video = text_format("%s/preview.mp4", folder.path);
@@ -31,6 +33,8 @@ void folder_free(Folder *folder) {
     free(folder->path);
     free(folder->name);
     free(folder->stats);
+    free(folder->events);
+    free(folder->probes);
     free(folder->record);
     free(folder->checkpoint);
     free(folder->video);
@@ -244,6 +248,8 @@ SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error)
 SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {
     SingeResult result = remove_file(folder->video, removed, error);
     if (!result) result = remove_file(folder->gif, removed, error);
+    if (!result && !parts.events) result = remove_file(folder->events, removed, error);
+    if (!result && !parts.probes) result = remove_file(folder->probes, removed, error);
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (!output_formats[i].root_ending) continue;
         char *root = folder_root(folder, i);

@@ -15,6 +15,7 @@ typedef struct Folder {
     char *path;       ///< DIR, without a slash at its end
     char *name;       ///< NAME
     char *stats;      ///< DIR/stats.csv
+    char *events, *probes; ///< DIR/events.csv, DIR/probes.csv
     char *record;     ///< DIR/run.json
     char *checkpoint; ///< DIR/checkpoint.singe
     char *video;      ///< DIR/preview.mp4
@@ -30,9 +31,9 @@ void folder_free(Folder *folder);
 /// Makes a folder and those above it. `path` is not empty.
 SINGE_NODISCARD SingeResult folder_make(const char *path, SingeError *error);
 
-/// What a run writes besides the cache: a folder of its own each.
+/// What a run writes besides the cache: a folder of its own each, or a table.
 typedef struct FolderParts {
-    bool pictures, gas, exr;
+    bool pictures, gas, exr, events, probes;
     OutputSet outputs;
 } FolderParts;
 
@@ -52,7 +53,7 @@ char *folder_root(const Folder *folder, int format);
 /// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
-/// Removes what else an earlier run of the same name left (its frames, video, GIF), and nothing that is not named as
+/// Removes what else an earlier run of the same name left (its frames, video, GIF, and tables that are not asked for), and nothing that is not named as
 /// such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
 /// empty.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);

@@ -63,7 +63,9 @@ static ExitCode parse_options(int argc, char **argv, RunOptions *options, bool *
 static SingeResult stop(Run *run, Progress progress, SingeError *error) {
     run->record.result = "interrupted";
     // before the first frame stands there is nothing to go on from
-    return progress.frame > 0 ? run_write_checkpoint(run, progress, error) : SINGE_OK;
+    if (progress.frame <= 0) return SINGE_OK;
+    SingeResult result = tables_write_steps(&run->tables, progress.frame + 1, error);
+    return result ? result : run_write_checkpoint(run, progress, error);
 }
 
 static void show_progress(Run *run, int frame, const SingeStats *stats, double seconds) {
@@ -145,7 +147,8 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         record->error.code = result;
         console_result(run->console, error);
     }
-    stats_close(&run->stats);
+    lines_close(&run->stats);
+    tables_close(&run->tables);
     console_clear(run->console);
     VideoResult video = VIDEO_NO_PROGRAM;
     if (run->pictures && record->frames_done > 0)
@@ -215,7 +218,7 @@ int command_run(int argc, char **argv) {
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);
-        Run run = {.console = &console, .stats = {.fd = -1}, .cache_lock = LOCK_NONE, .pictures_lock = LOCK_NONE,
+        Run run = {.console = &console, .stats = LINE_FILE_CLOSED, .tables = TABLES_CLOSED, .cache_lock = LOCK_NONE, .pictures_lock = LOCK_NONE,
                    .started = console_clock()};
         run.checkpoint_time = run.started;
         run.record = record_make(options.scene);
@@ -224,7 +227,8 @@ int command_run(int argc, char **argv) {
         const bool drawn = !options.no_preview && pictures_available();
         if (!code) code = job_load(&run.job, &console, drawn ? scene_picture_memory(run.job.scene) : 0);
         if (!code) code = run_scene(&run, &options);
-        stats_close(&run.stats);
+        lines_close(&run.stats);
+        tables_close(&run.tables);
         frame_free(&run.frame);
         outputs_close(&run.outputs);
         pictures_close(run.pictures);

@@ -14,6 +14,7 @@
 #include "cli/pictures.h"
 #include "cli/record.h"
 #include "cli/stats_file.h"
+#include "cli/tables.h"
 
 typedef struct RunOptions {
     const char *scene, *output;
@@ -60,7 +61,8 @@ typedef struct Run {
     FrameFile files[FRAME_FILES_MAX];
     int file_count;
     FrameWriting writing;
-    StatsFile stats;
+    LineFile stats;
+    Tables tables;
     Record record;
     Totals *totals;             ///< the record's
     SingeTimers timers;         ///< as last read

@@ -17,6 +17,7 @@ static ExitCode run_begin_fail(Run *run, const SingeError *error, ExitCode code)
 FolderParts run_parts(const Run *run) {
     bool gas = singe_sim_gas(run->sim).size[0] > 0;
     return (FolderParts){.pictures = run->pictures != NULL, .gas = gas, .exr = run->layers,
+                         .events = run->job.scene->output.events, .probes = run->job.scene->probe_count > 0,
                          .outputs = run->job.scene->output.formats};
 }
 
@@ -58,6 +59,11 @@ static ExitCode expect_frames(Run *run, int last) {
     return EXIT_GOOD;
 }
 
+static SingeResult open_tables(Run *run, SingeError *error) {
+    SingeResult result = lines_open(&run->stats, run->folder.stats, error);
+    return result ? result : tables_open(&run->tables, &run->folder, run->job.scene, &run->job.assets, error);
+}
+
 /// Goes on from a checkpoint. run->sim stays NULL when there is none.
 static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
@@ -74,8 +80,9 @@ static ExitCode resume(Run *run) {
     }
     ExitCode code = expect_frames(run, frame);
     if (code) return code;
-    result = stats_open(&run->stats, &run->folder, &error);
+    result = open_tables(run, &error);
     if (!result) result = stats_cut(&run->stats, frame, &error);
+    if (!result) result = tables_cut(&run->tables, frame, &checkpoint.totals, &error);
     if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED);
     *run->totals = checkpoint.totals;
     run->wall_before = checkpoint.totals.wall_seconds;
@@ -165,7 +172,8 @@ SingeResult run_take_over(Run *run, SingeError *error) {
         result = file_publish(run->files[i].draft, run->files[i].path, error);
         run->files[i].draft = NULL;
     }
-    return result ? result : stats_begin(&run->stats, error);
+    if (!result) result = stats_begin(&run->stats, error);
+    return result ? result : tables_begin(&run->tables, error);
 }
 
 // ---- both
@@ -185,7 +193,7 @@ static ExitCode open_outputs(Run *run) {
     SingeError error = {0};
     SingeResult result = folder_create(&run->folder, run_parts(run), &error);
     if (!result) result = folder_sweep(&run->folder, &error);
-    if (!result && !run->begun) result = stats_open(&run->stats, &run->folder, &error);
+    if (!result && !run->begun) result = open_tables(run, &error);
     return result ? run_begin_fail(run, &error, EXIT_FAILED) : EXIT_GOOD;
 }
 

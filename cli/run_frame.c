@@ -1,4 +1,4 @@
-// A frame of a run. Its order is PLY, other formats, VDB, PNG, line of stats.csv, roots and checkpoint: whatever a
+// A frame of a run. Its order is PLY, other formats, VDB, PNG, lines of the tables, roots and checkpoint: whatever a
 // checkpoint stands for is on the disk. The first one of a run from the start is written under temporary names, so that
 // an earlier run stays until it is whole.
 //
@@ -53,6 +53,7 @@ SingeResult run_advance(Run *run, SingeError *error) {
             return result;
         }
         count_events(run);
+        if ((result = tables_take_step(&run->tables, run->sim, error))) return result;
         run->step++;
         if (interrupt_asked()) break;
     }
@@ -182,7 +183,8 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     double clock = console_clock();
     totals->wall_seconds = run->wall_before + clock - run->started;
     memcpy(totals->output_seconds, run->totals->output_seconds, sizeof totals->output_seconds);
-    SingeResult result = stats_sync(&run->stats, error);
+    SingeResult result = lines_sync(&run->stats, error);
+    if (!result) result = tables_sync(&run->tables, error);
     if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
         result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash, totals,
@@ -220,6 +222,7 @@ SingeResult run_begin_frame(Run *run, int frame, bool last, SingeError *error) {
     SingeResult result = take_frame(run, error);
     writing->stats = singe_sim_stats(run->sim);
     run->totals->hottest = fmax(run->totals->hottest, (double)writing->stats.temperature_max);
+    if (!result) result = tables_take_frame(&run->tables, run->sim, frame, error);
     if (!result && frame == 1) result = tell_of_crossings(run, error);
     if (!result && (last || checkpoint_due(run))) result = take_checkpoint(run, &writing->checkpoint, error);
     writing->totals = *run->totals;
@@ -246,6 +249,7 @@ SingeResult run_end_frame(Run *run, SingeStats *stats, SingeError *error) {
     SingeResult result = join_files(run, error);
     writing->frame = 0;
     *stats = writing->stats;
+    if (!result) result = tables_write_frame(&run->tables, frame, error);
     if (!result) result = stats_write(&run->stats, frame, stats, &writing->totals, &writing->cost, error);
     if (!result) run->record.frames_done = frame;
     if (!result && writing->checkpoint.bytes)

@@ -155,23 +155,49 @@ static bool sheet_number(const char *text, uint32_t *number) {
     return *text != 0;
 }
 
-static void resolve_pin(Reader *reader, const Node *node, Scene *scene, ScenePin *pin) {
-    Nearest nearest = {.word = pin->sheet};
+/// Finds the sheet that a pin or a probe names.
+static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, const char *word, uint32_t *index) {
+    Nearest nearest = {.word = word};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         const char *name = scene->sheets[i].name;
-        if (name && strcmp(name, pin->sheet) == 0) {
-            pin->sheet_index = i;
+        if (name && strcmp(name, word) == 0) {
+            *index = i;
             return;
         }
         if (name)
             nearest_offer(&nearest, name);
     }
-    if (sheet_number(pin->sheet, &pin->sheet_index) && pin->sheet_index < scene->sheet_count)
+    if (sheet_number(word, index) && *index < scene->sheet_count)
         return;
     const Node *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
-                shown(pin->sheet).text, nearest_hint(&nearest, hint, sizeof hint));
+                shown(word).text, nearest_hint(&nearest, hint, sizeof hint));
+}
+
+/// Probes without a name are numbered; two must not share one.
+static void check_probes(Reader *reader, const Node *list, Scene *scene) {
+    if (list->count > 1000) {
+        complain(reader, list->location, "a scene has at most 1000 probes");
+        return;
+    }
+    const Node *node = list->first;
+    for (uint32_t i = 0; node && i < scene->probe_count; i++, node = node->next) {
+        SceneProbe *probe = &scene->probes[i];
+        char name[24];
+        const int length = snprintf(name, sizeof name, "probe%u", (unsigned)i + 1);
+        if (!probe->name)
+            probe->name = arena_text(reader->arena, name, (size_t)length);
+        if (probe->sheet && scene->sheet_count)
+            resolve_sheet(reader, node, scene, probe->sheet, &probe->sheet_index);
+        for (uint32_t j = 0; j < i && probe->name; j++)
+            if (scene->probes[j].name && strcmp(scene->probes[j].name, probe->name) == 0) {
+                const Node *given = node_find(node, "name");
+                message_add(reader->messages, reader->text, given ? given->location : node->location,
+                            "two probes are called '%s'; give each its own name", shown(probe->name).text);
+                break;
+            }
+    }
 }
 
 // The step of the simulation is 1/(fps * steps) seconds; the library takes 1e-9 to 10.
@@ -201,5 +227,8 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
     const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
         if (scene->pins[i].sheet && scene->sheet_count && sheets && sheets->count <= 1000)
-            resolve_pin(reader, node, scene, &scene->pins[i]);
+            resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
+    const Node *probes = node_find(map, "probes");
+    if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000))
+        check_probes(reader, probes, scene);
 }

@@ -1,6 +1,7 @@
 // The files of a scene: meshes, transformed, and pictures.
 #include "formats/printable.h"
 #include "scene/faults.h"
+#include "scene/probes.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
 #include "scene/solid.h"
@@ -207,6 +208,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
     assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
+    assets->probes = many(&loader, scene->probe_count, sizeof *assets->probes);
     if (loader.no_memory)
         message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
@@ -218,6 +220,8 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
         load_solid(&loader, i);
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
+    if (message_total(messages) == before && !loader.no_memory)
+        probes_find(scene, assets, messages);
     if (message_total(messages) == before && !loader.no_memory)
         return SINGE_OK;
     if (!loader.no_memory)
@@ -247,6 +251,7 @@ void scene_assets_free(SceneAssets *assets) {
         solid_free(&assets->solids[i]);
     image_free(&assets->sky);
     free(assets->solids);
+    free(assets->probes);
     free(assets->meshes);
     free(assets->reports);
     free(assets->images);

@@ -156,6 +156,20 @@ typedef struct ScenePin {
     SceneKey *keys;
 } ScenePin;
 
+/// How a probe's place is given.
+typedef enum SceneProbeKind { SCENE_PROBE_UV, SCENE_PROBE_POINT } SceneProbeKind;
+
+/// A point of a sheet that is followed through the run.
+typedef struct SceneProbe {
+    SceneLocation location;
+    char *name;
+    char *sheet;          ///< as a pin's
+    uint32_t sheet_index;
+    int kind;             ///< SceneProbeKind
+    float uv[2];
+    float point[3];       ///< m, in the world at the start
+} SceneProbe;
+
 typedef struct ScenePreview {
     int size[2]; ///< pixels
     int samples;
@@ -177,6 +191,7 @@ typedef struct ScenePreview {
 /// What a run writes for other programs.
 typedef struct SceneOutput {
     OutputSet formats;
+    bool events; ///< events.csv
 } SceneOutput;
 
 /// A key or a word that the scene still calls by the name it had before this release.
@@ -195,11 +210,12 @@ typedef struct Scene {
     int steps;    ///< steps a frame
     bool tearing; ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
     SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
-    uint32_t sheet_count, source_count, collider_count, pin_count;
+    uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     SceneSheet *sheets;
     SceneSource *sources;
     SceneCollider *colliders;
     ScenePin *pins;
+    SceneProbe *probes;
     ScenePreview preview;
     SceneOutput output;
     struct SceneText *text;   ///< the source, for messages after parsing
@@ -243,6 +259,13 @@ typedef struct SceneSolid {
     float *heights;         ///< as SingeColliderDef has them
 } SceneSolid;
 
+/// Where a probe is in its sheet's mesh: values there are the weighted sum of those at a cell's corners.
+typedef struct SceneProbePlace {
+    uint32_t cell;    ///< numbered over all sheets
+    double weight[4]; ///< of the cell's corners; they add up to 1
+    double distance;  ///< from what the scene asks for: m, or of uv
+} SceneProbePlace;
+
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count;
@@ -256,6 +279,7 @@ typedef struct SceneAssets {
     SingeTexture *source_textures; ///< [source_count]
     SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives
     Image sky;                    ///< zeroed where there is none
+    SceneProbePlace *probes;      ///< [Scene.probe_count]
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at

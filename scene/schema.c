@@ -99,10 +99,12 @@ static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
      .doc = "of the frames, each in a folder of its own ([formats.md](formats.md)); `ply` is the cache, which is always "
             "written"},
+    {"events", ROW_BOOL, DIM_NONE, AT(SceneOutput, events),
+     .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
 };
 static const Schema schema_output = {
     .title = "the output", .size = sizeof(SceneOutput), ROWS(output_rows),
-    .doc = "What a run writes for other programs. `singe convert` makes the same from a cache."};
+    .doc = "What a run writes for other programs. `singe convert` makes the same formats from a cache."};
 
 static const SchemaRow scene_rows[] = {
     {"name", ROW_NAME, DIM_NONE, AT(Scene, name),
@@ -135,6 +137,8 @@ static const SchemaRow scene_rows[] = {
     {"colliders", ROW_LIST, DIM_NONE, AT(Scene, colliders), EXTRA(Scene, collider_count), .sub = &schema_collider,
      .doc = "solids that sheets collide with"},
     {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin, .doc = "constraints that hold parts of a sheet"},
+    {"probes", ROW_LIST, DIM_NONE, AT(Scene, probes), EXTRA(Scene, probe_count), .sub = &schema_probe,
+     .doc = "points of sheets that `probes.csv` follows, at most 1000"},
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
     {"solver", ROW_MAP, DIM_NONE, AT(Scene, sim.solver), .sub = &schema_solver,
      .doc = "how springs are kept at their lengths"},

@@ -1,4 +1,4 @@
-// What a scene has lists of: sheets, sources, colliders and pins.
+// What a scene has lists of: sheets, sources, colliders, pins and probes.
 #include "scene/schema_rows.h"
 
 static const char *const source_names[] = {
@@ -212,3 +212,20 @@ static const SchemaRow pin_rows[] = {
 const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
     .location = pin_location, .doc = "Holds part of a sheet."};
+
+static const char *const probe_names[] = {[SCENE_PROBE_UV] = "uv", [SCENE_PROBE_POINT] = "point", NULL};
+static SceneLocation *probe_location(void *object) { return &((SceneProbe *)object)->location; }
+static const SchemaRow probe_rows[] = {
+    {"kind", ROW_ENUM, DIM_NONE, AT(SceneProbe, kind), .names = probe_names, .flags = ROW_REQUIRED,
+     .doc = "how its place is given: `uv`, the sheet's texture coordinates, or `point`, the world at the start"},
+    {"name", ROW_NAME, DIM_NONE, AT(SceneProbe, name), .doc = "in `probes.csv`; `probe1`, `probe2`, ... by default"},
+    {"sheet", ROW_TEXT, DIM_NONE, AT(SceneProbe, sheet),
+     .doc = "name of the sheet, or its number from 0; the first by default"},
+    {"at", ROW_VECTOR, DIM_NONE, AT(SceneProbe, uv), .length = 2, .kinds = 1u << SCENE_PROBE_UV, .flags = ROW_REQUIRED,
+     ANY, .doc = "[u, v]; the nearest place of the sheet, with a warning where that is not there"},
+    {"at", ROW_VECTOR, DIM_LENGTH, AT(SceneProbe, point), .length = 3, .kinds = 1u << SCENE_PROBE_POINT,
+     .flags = ROW_REQUIRED, ANY, .doc = "[x, y, z]; the nearest place of the sheet, with a warning where it is far off"},
+};
+const Schema schema_probe = {
+    .title = "a probe", .size = sizeof(SceneProbe), ROWS(probe_rows), .kind_offset = offsetof(SceneProbe, kind),
+    .location = probe_location, .doc = "A point of a sheet, whose temperature, mass and position are written every frame."};

@@ -23,6 +23,6 @@
 #define BELOW(low, high) .flags = ROW_OPEN_MAX, .min = (low), .max = (high)
 
 // the maps that the scene has, besides those that schema.c is about
-extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_preview;
+extern const Schema schema_sheet, schema_source, schema_collider, schema_pin, schema_probe, schema_preview;
 
 #endif

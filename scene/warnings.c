@@ -48,6 +48,20 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
     }
 }
 
+/// A probe whose place the sheet does not have: uv by more than rounding, points as those of pins.
+static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_t index, const SingeLog *log) {
+    const SceneProbe *probe = &scene->probes[index];
+    const double gap = assets->probes[index].distance;
+    if (probe->kind == SCENE_PROBE_UV && gap > 1e-4)
+        message_warn(log, scene->text, probe->location,
+                     "the sheet has no uv [%.6g, %.6g]: the probe takes the nearest, %.3g away", (double)probe->uv[0],
+                     (double)probe->uv[1], gap);
+    else if (probe->kind == SCENE_PROBE_POINT && gap > 0.1 * diagonal(&assets->meshes[probe->sheet_index]))
+        message_warn(log, scene->text, probe->location,
+                     "the probe's point [%.6g, %.6g, %.6g] m misses the sheet: it takes the nearest place, %.3g m away",
+                     (double)probe->point[0], (double)probe->point[1], (double)probe->point[2], gap);
+}
+
 static bool is_weak(const SceneSource *source) {
     bool weak = source->strength_count > 0;
     for (uint32_t i = 0; i < source->strength_count; i++)
@@ -82,4 +96,6 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         warn_of_source(scene, &scene->sources[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
         warn_of_pin(scene, assets, &scene->pins[i], log);
+    for (uint32_t i = 0; i < scene->probe_count && log->write; i++)
+        warn_of_probe(scene, assets, i, log);
 }

@@ -23,6 +23,9 @@ static const char shortest[] =
     "  - {kind: mesh, mesh: cube.obj}\n"
     "pins:\n"
     "  - {points: [[0, 0, 0]]}\n"
+    "probes:\n"
+    "  - {kind: uv, at: [0, 0]}\n"
+    "  - {kind: point, at: [0, 0, 0]}\n"
     "gas: {}\ncontact: {}\nsolver: {}\nwind: {}\n"
     "preview: {camera: {}, light: {}, environment: {}, ground: {}}\n";
 

@@ -183,6 +183,12 @@ static void test_objects(void **state) {
     one("pins: [{vertices: [-1]}]", "bad.yaml:3:20", "whole number");
     one("pins: [{sheet: shet1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet 'shet1'; did you mean 'sheet1'?");
     one("pins: [{sheet: 1, vertices: [1]}]", "bad.yaml:3:16", "there is no sheet '1'");
+    one("probes: [{}]", "bad.yaml:3:10", "needs 'kind'");
+    one("probes: [{kind: uv, at: [0]}]", "bad.yaml:3:25", "a list of 2");
+    one("probes: [{kind: point, at: [0, 0, 0], name: a/b}]", "bad.yaml:3:45", "name");
+    one("probes: [{kind: uv, at: [0, 0], sheet: x}]", "bad.yaml:3:40", "there is no sheet 'x'");
+    one("probes: [{kind: uv, at: [0, 0], name: a}, {kind: uv, at: [0, 0], name: a}]", "bad.yaml:3:72",
+        "two probes are called 'a'");
 }
 
 static void test_sheets(void **state) {

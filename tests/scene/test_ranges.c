@@ -27,7 +27,10 @@ static const char base[] =
     "  - {kind: heightfield, picture: heights.png, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: mesh, mesh: cube.obj, conductance: 10, path: [{time: 0}]}\n"
     "pins:\n"
-    "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n";
+    "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n"
+    "probes:\n"
+    "  - {kind: uv, at: [0, 0]}\n"
+    "  - {kind: point, at: [0, 0, 0]}\n";
 
 /// A cube of half a unit about its middle.
 static const char cube_file[] = "v -.5 -.5 -.5\nv .5 -.5 -.5\nv .5 .5 -.5\nv -.5 .5 -.5\n"

@@ -33,6 +33,10 @@ static const char full[] =
     "pins:\n"
     "  - {sheet: sheet2, points: [[0, 0, 1], [1 cm, 0, 0]], radius: 3 mm}\n"
     "  - {sheet: 0, vertices: [3, 1, 2], path: [{time: 0}, {time: 1, position: [0, 0, 1]}]}\n"
+    "probes:\n"
+    "  - {kind: uv, at: [0.25, 0.5], sheet: sheet2, name: \"a, b\"}\n"
+    "  - {kind: point, at: [1 cm, 0, 1], sheet: 0}\n"
+    "output: {formats: [vtp], events: yes}\n"
     "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
     "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
     "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %}\n"
@@ -84,6 +88,13 @@ static void check_objects(const Scene *scene) {
     assert_true(scene->pins[0].sheet_index == 1 && scene->pins[0].point_count == 2 &&
                 scene->pins[0].points[1].position[0] == 0.01f);
     assert_true(scene->pins[1].sheet_index == 0 && scene->pins[1].vertices[0] == 3 && scene->pins[1].key_count == 2);
+    assert_int_equal(scene->probe_count, 2);
+    const SceneProbe *probe = scene->probes;
+    assert_true(probe[0].kind == SCENE_PROBE_UV && probe[0].sheet_index == 1 && probe[0].uv[1] == 0.5f);
+    assert_true(probe[1].kind == SCENE_PROBE_POINT && probe[1].sheet_index == 0 && probe[1].point[0] == 0.01f);
+    assert_string_equal(probe[0].name, "a, b");
+    assert_string_equal(probe[1].name, "probe2");
+    assert_true(scene->output.events && output_has(scene->output.formats, OUTPUT_vtp));
     assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
     assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
