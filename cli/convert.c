@@ -9,10 +9,12 @@
 #include "cli/outputs.h"
 #include "formats/printable.h"
 
-enum { OPT_TO, OPT_QUIET, OPT_COUNT };
+enum { OPT_TO, OPT_SINGLE, OPT_SET, OPT_QUIET, OPT_COUNT };
 
 static const ArgOption convert_options[OPT_COUNT] = {
     [OPT_TO] = {"to", 0, "FORMAT", "format to write (see docs/formats.md); may be repeated"},
+    [OPT_SINGLE] = {"single", 0, NULL, "one file of all frames: `usd`, `glb`"},
+    [OPT_SET] = {"set", 0, "PATH=VALUE", "sets a value of the scene (output.texture_size); may be repeated"},
     [OPT_QUIET] = {"quiet", 'q', NULL, "says nothing but errors"},
 };
 
@@ -22,23 +24,52 @@ static const ArgCommand convert_command = {
 
 typedef struct ConvertOptions {
     const char *folder;
+    const char *names[16]; ///< of --to
+    int name_count;
     OutputSet formats;
-    bool quiet;
+    unsigned singles;      ///< of output_singles, a bit each
+    SetList sets;
+    bool single, quiet;
 } ConvertOptions;
 
-static bool add_format(const ArgReader *reader, const char *name, OutputSet *set) {
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        if (i == OUTPUT_ply || strcmp(output_formats[i].name, name) != 0) continue;
-        *set |= 1u << i;
+static int single_named(const char *name, bool by_option) {
+    for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++)
+        if (output_singles[i].by_option == by_option && strcmp(output_singles[i].name, name) == 0) return i;
+    return -1;
+}
+
+static int format_named(const char *name) {
+    for (int i = 0; i < OUTPUT_COUNT; i++)
+        if (i != OUTPUT_ply && strcmp(output_formats[i].name, name) == 0) return i;
+    return -1;
+}
+
+/// The names of formats of frames, or of those that may be single files, and of what is one anyway.
+static void list_names(bool single, char *known, size_t size) {
+    *known = 0;
+    for (int i = 0; i < OUTPUT_COUNT + OUTPUT_SINGLE_COUNT; i++) {
+        const OutputSingle *other = i < OUTPUT_COUNT ? NULL : &output_singles[i - OUTPUT_COUNT];
+        if (other ? other->by_option && !single : i == OUTPUT_ply || single) continue;
+        const size_t used = strlen(known);
+        snprintf(known + used, size - used, "%s%s", used ? ", " : "", other ? other->name : output_formats[i].name);
+    }
+}
+
+static bool add_format(const ArgReader *reader, const char *name, ConvertOptions *o) {
+    int which = single_named(name, false);
+    if (which < 0 && o->single) which = single_named(name, true);
+    if (which >= 0) {
+        o->singles |= 1u << which;
         return true;
     }
-    char known[80] = "";
-    for (int i = 0; i < OUTPUT_COUNT; i++) {
-        if (i == OUTPUT_ply) continue;
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", output_formats[i].name);
+    which = o->single ? -1 : format_named(name);
+    if (which >= 0) {
+        o->formats |= 1u << which;
+        return true;
     }
-    args_complain(reader, "--to: expected one of %s, got '%s'", known, shown(name).text);
+    char known[120];
+    list_names(o->single, known, sizeof known);
+    args_complain(reader, "--to%s: expected one of %s, got '%s'", o->single ? " with --single" : "", known, shown(name).text);
     return false;
 }
 
@@ -50,7 +81,12 @@ static ExitCode parse_options(int argc, char **argv, ConvertOptions *o, bool *do
     for (int option; (option = args_next(&reader, &value)) != ARG_END;) {
         bool good = true;
         switch (option) {
-        case OPT_TO: good = add_format(&reader, value, &o->formats); break;
+        case OPT_TO:
+            if ((good = o->name_count < (int)(sizeof o->names / sizeof *o->names))) o->names[o->name_count++] = value;
+            else args_complain(&reader, "--to: too many formats");
+            break;
+        case OPT_SINGLE: o->single = true; break;
+        case OPT_SET: set_add(&o->sets, value); break;
         case OPT_QUIET: o->quiet = true; break;
         case ARG_OPERAND: o->folder = value; break;
         case ARG_HELP: *done = true; return EXIT_GOOD;
@@ -58,7 +94,9 @@ static ExitCode parse_options(int argc, char **argv, ConvertOptions *o, bool *do
         }
         if (!good) return EXIT_INPUT;
     }
-    if (o->formats) return EXIT_GOOD;
+    for (int i = 0; i < o->name_count; i++)
+        if (!add_format(&reader, o->names[i], o)) return EXIT_INPUT;
+    if (o->name_count) return EXIT_GOOD;
     args_complain(&reader, "needs --to FORMAT");
     return EXIT_INPUT;
 }
@@ -75,7 +113,38 @@ static SingeResult convert_frames(const Outputs *outputs, Console *console, int 
     return result || *interrupted ? result : outputs_write_roots(outputs, last, error);
 }
 
-static void print_results(const Outputs *outputs) {
+/// How far a single file is.
+typedef struct SingleProgress {
+    Console *console;
+    double begun;
+    int last;
+} SingleProgress;
+
+static bool show_single(void *context, int frame) {
+    const SingleProgress *progress = context;
+    console_picture(progress->console, frame, progress->last, (console_clock() - progress->begun) / frame);
+    return !interrupt_asked();
+}
+
+static SingeResult convert_singles(const Outputs *outputs, unsigned singles, Console *console, int last,
+                                   bool *interrupted, SingeError *error) {
+    SingeResult result = SINGE_OK;
+    for (int i = 0; i < OUTPUT_SINGLE_COUNT && !result; i++) {
+        if (!(singles >> i & 1)) continue;
+        SingleProgress progress = {console, console_clock(), last};
+        result = outputs_write_single(outputs, i, last, show_single, &progress, error);
+    }
+    *interrupted = result && interrupt_asked();
+    return *interrupted ? SINGE_OK : result;
+}
+
+static void print_results(const Outputs *outputs, unsigned singles) {
+    for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) {
+        if (!(singles >> i & 1)) continue;
+        char *path = folder_single(outputs->folder, i);
+        printf("%s%s\n", path, output_singles[i].ending ? "" : ".json");
+        free(path);
+    }
     for (int i = 0; i < OUTPUT_COUNT; i++) {
         if (!output_has(outputs->formats, i)) continue;
         char *path = output_formats[i].write_root ? folder_root(outputs->folder, i)
@@ -104,10 +173,11 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     free(vdb);
     if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats}, &error);
     interrupt_watch();
-    if (!result) result = convert_frames(&outputs, console, last, &interrupted, &error);
+    if (!result && o->formats) result = convert_frames(&outputs, console, last, &interrupted, &error);
+    if (!result && !interrupted) result = convert_singles(&outputs, o->singles, console, last, &interrupted, &error);
     console_clear(console);
     if (result) console_result(console, &error);
-    else if (!interrupted && !o->quiet) print_results(&outputs);
+    else if (!interrupted && !o->quiet) print_results(&outputs, o->singles);
     outputs_close(&outputs);
     if (result) return result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_MESH ? EXIT_INPUT : EXIT_FAILED;
     return interrupted ? EXIT_FAILED : EXIT_GOOD;
@@ -117,14 +187,16 @@ int command_convert(int argc, char **argv) {
     ConvertOptions options;
     bool done;
     ExitCode code = parse_options(argc, argv, &options, &done);
-    if (code || done) return code;
+    if (code || done) {
+        set_free(&options.sets);
+        return code;
+    }
     interrupt_shield();
     Console console = console_make(options.quiet);
     Job job = {0};
     Folder folder = {0};
     Lock lock = LOCK_NONE;
-    SetList sets = {0};
-    code = job_reopen(&job, &console, options.folder, &sets, 1);
+    code = job_reopen(&job, &console, options.folder, &options.sets, 1);
     if (!code) {
         folder = folder_name(options.folder, job.scene->name);
         code = convert(&options, &console, &job, &folder, &lock);
@@ -132,6 +204,6 @@ int command_convert(int argc, char **argv) {
     lock_release(&lock);
     folder_free(&folder);
     job_close(&job);
-    set_free(&sets);
+    set_free(&options.sets);
     return code;
 }

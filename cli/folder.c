@@ -124,6 +124,12 @@ char *folder_root(const Folder *folder, int format) {
     return text_format("%s/%s%s", folder->path, folder->name, output_formats[format].root_ending);
 }
 
+char *folder_single(const Folder *folder, int single) {
+    const OutputSingle *s = &output_singles[single];
+    if (s->ending) return text_format("%s/%s%s", folder->path, folder->name, s->ending);
+    return text_format("%s/%s/%s", folder->path, s->name, folder->name);
+}
+
 /// The frame of a file name NAME.0001ENDING, or 0 when it is not such a name. *rest points behind the ending.
 static int frame_of(const Folder *folder, const char *file, const char *ending, const char **rest) {
     size_t length = strlen(folder->name);

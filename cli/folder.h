@@ -47,6 +47,8 @@ char *folder_png(const Folder *folder, int frame);
 char *folder_vdb(const Folder *folder, int frame);
 char *folder_exr(const Folder *folder, int frame);
 char *folder_output(const Folder *folder, int format, int frame);
+/// Path of what has all frames, from malloc: DIR/NAME.usdc, or DIR/vat/NAME, to which endings are added.
+char *folder_single(const Folder *folder, int single);
 /// Path of a format's root, from malloc.
 char *folder_root(const Folder *folder, int format);
 

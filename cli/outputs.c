@@ -37,12 +37,19 @@ static char *path_from(const char *folder, const char *file) {
     return relative ? relative : text_format("%s", file);
 }
 
+static OutputMesh uncut(const Mesh *mesh) {
+    return (OutputMesh){.vertex_count = mesh->vertex_count, .cell_count = mesh->cell_count, .positions = mesh->positions,
+                        .uv = mesh->uv, .corner_uv = mesh->corner_uv, .cells = mesh->cells, .source = mesh->source,
+                        .became = mesh->became, .source_count = mesh->source_count};
+}
+
 static void fill_sheet(const Outputs *outputs, uint32_t index) {
     const Job *job = outputs->job;
     const SceneSheet *sheet = &job->scene->sheets[index];
     if (sheet->picture.path) outputs->pictures[index] = path_from(outputs->folder->path, sheet->picture.path);
     outputs->sheets[index] = (OutputSheet){.name = sheet->name, .picture = outputs->pictures[index],
-                                           .image = job->assets.pictures[index]};
+                                           .image = job->assets.pictures[index],
+                                           .mesh = uncut(&job->assets.meshes[index])};
     memcpy(outputs->sheets[index].colour, sheet->colour, sizeof sheet->colour);
 }
 
@@ -56,7 +63,8 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     if (!outputs->sheets || !outputs->pictures) return no_memory(error);
     for (uint32_t i = 0; i < scene->sheet_count; i++) fill_sheet(outputs, i);
     OutputScene *s = &outputs->scene;
-    *s = (OutputScene){.name = scene->name, .fps = scene->fps, .gas = gas, .sheet_count = scene->sheet_count,
+    *s = (OutputScene){.name = scene->name, .fps = scene->fps, .gas = gas,
+                       .texture_size = scene->output.texture_size, .sheet_count = scene->sheet_count,
                        .sheets = outputs->sheets, .fov = preview->camera.fov,
                        .aspect = (float)preview->size[0] / (float)preview->size[1],
                        .aperture = preview->camera.aperture, .focus = preview->camera.focus,
@@ -134,22 +142,79 @@ static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, Outp
     return ever;
 }
 
-SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *error) {
+/// The scene with what it has besides sheets, and its way through the frames.
+typedef struct WholeScene {
+    OutputScene scene;
+    OutputPose *poses;
+    OutputShape *shapes;
+} WholeScene;
+
+static SingeResult whole_open(WholeScene *whole, const Outputs *outputs, int frames, SingeError *error) {
     const Scene *scene = outputs->job->scene;
     const uint32_t slots = scene->collider_count + scene->source_count;
-    OutputPose *poses = calloc((size_t)slots * (size_t)frames + 1, sizeof *poses);
-    OutputShape *shapes = calloc(slots + 1, sizeof *shapes);
-    SingeResult result = poses && shapes ? SINGE_OK : no_memory(error);
-    OutputScene all = outputs->scene;
-    all.frames = frames, all.shapes = shapes;
-    for (uint32_t i = 0; i < slots && !result; i++)
-        all.shape_count += follow_shape(outputs, i, frames, poses + (size_t)i * (size_t)frames, &shapes[all.shape_count]);
+    whole->scene = outputs->scene;
+    whole->poses = calloc((size_t)slots * (size_t)frames + 1, sizeof *whole->poses);
+    whole->shapes = calloc(slots + 1, sizeof *whole->shapes);
+    if (!whole->poses || !whole->shapes) return no_memory(error);
+    whole->scene.frames = frames, whole->scene.shapes = whole->shapes;
+    for (uint32_t i = 0; i < slots; i++)
+        whole->scene.shape_count += follow_shape(outputs, i, frames, whole->poses + (size_t)i * (size_t)frames,
+                                                 &whole->shapes[whole->scene.shape_count]);
+    return SINGE_OK;
+}
+
+static void whole_close(WholeScene *whole) { free(whole->poses), free(whole->shapes); }
+
+SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *error) {
+    WholeScene whole;
+    SingeResult result = whole_open(&whole, outputs, frames, error);
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (!output_has(outputs->formats, i) || !output_formats[i].write_root) continue;
         char *path = folder_root(outputs->folder, i);
-        result = output_formats[i].write_root(path, &all, error);
+        result = output_formats[i].write_root(path, &whole.scene, error);
         free(path);
     }
-    free(poses), free(shapes);
+    whole_close(&whole);
+    return result;
+}
+
+// ---- all frames at once
+
+typedef struct CacheReader {
+    const Outputs *outputs;
+    Frame frame;
+    OutputsProgress *progress;
+    void *context;
+} CacheReader;
+
+static SingeResult read_next(void *context, int number, OutputFrame *view, SingeError *error) {
+    CacheReader *reader = context;
+    frame_free(&reader->frame);
+    if (!reader->progress(reader->context, number)) {
+        *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "output", .element = -1, .message = "interrupted"};
+        return SINGE_ERROR_STATE;
+    }
+    SingeResult result = frame_read_surface(reader->outputs->folder, number, &reader->frame, error);
+    *view = (OutputFrame){.surface = &reader->frame.surface, .time = reader->frame.time, .number = number};
+    return result;
+}
+
+SingeResult outputs_write_single(const Outputs *outputs, int single, int frames, OutputsProgress *progress, void *context,
+                                 SingeError *error) {
+    const OutputSingle *format = &output_singles[single];
+    CacheReader reader = {.outputs = outputs, .progress = progress, .context = context};
+    const OutputCache cache = {.frames = frames, .read = read_next, .context = &reader};
+    WholeScene whole;
+    SingeResult result = whole_open(&whole, outputs, frames, error);
+    char *path = folder_single(outputs->folder, single), *slash = strrchr(path, '/');
+    if (!result && !format->ending) {
+        *slash = 0;
+        result = folder_make(path, error);
+        *slash = '/';
+    }
+    if (!result) result = format->write(path, &whole.scene, &cache, error);
+    free(path);
+    frame_free(&reader.frame);
+    whole_close(&whole);
     return result;
 }

@@ -33,4 +33,10 @@ SINGE_NODISCARD SingeResult outputs_convert(const Outputs *outputs, int number, 
 /// Writes the roots of all its formats, for frames from 1.
 SINGE_NODISCARD SingeResult outputs_write_roots(const Outputs *outputs, int frames, SingeError *error);
 
+/// Called before each frame is read; false ends it with an error.
+typedef bool OutputsProgress(void *context, int frame);
+/// Writes one of output_singles from the frames of the cache, from 1.
+SINGE_NODISCARD SingeResult outputs_write_single(const Outputs *outputs, int single, int frames,
+                                                 OutputsProgress *progress, void *context, SingeError *error);
+
 #endif

@@ -61,6 +61,10 @@ void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, fl
     }
 }
 
+float ember_light(float temperature) {
+    return temperature >= 800 ? 2.5f * expf(14388 / 0.61f * (1 / 1200.0f - 1 / temperature)) : 0;
+}
+
 void ember_colour(uint8_t step, float colour[3]) {
     static const float wavelength[3] = {0.61f, 0.55f, 0.465f}; // um
     const float temperature = 800 + 600 * ((float)step - 0.5f) / (EMBER_STEPS - 2);

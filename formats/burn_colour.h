@@ -20,6 +20,8 @@ static inline uint8_t ember_step(float temperature) {
 }
 /// What has burnt less does not glow: it is in a flame.
 #define EMBER_BURNT 0.15f
+/// Its part in red, without steps; 0 below 800 K.
+float ember_light(float temperature);
 /// Linear light that an ember gives off, 2.5 in red at 1200 K, by its black body's colour.
 void ember_colour(uint8_t step, float colour[3]);
 

@@ -13,12 +13,33 @@ typedef struct OutputFrame {
     int number;  ///< from 1
 } OutputFrame;
 
+/// A sheet's uncut mesh at rest, of quads.
+typedef struct OutputMesh {
+    uint32_t vertex_count, cell_count;
+    const float *positions; ///< [3 * vertex_count] m
+    const float *uv;        ///< [2 * vertex_count] or NULL
+    const float *corner_uv; ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
+    const uint32_t *cells;  ///< [4 * cell_count]
+    const int32_t *source;  ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    const uint32_t *became; ///< [source_count] the vertex that the file's vertex is now; NULL with source
+    uint32_t source_count;  ///< vertices of the file
+} OutputMesh;
+
+static inline bool output_mesh_has_uv(const OutputMesh *mesh) { return mesh->uv || mesh->corner_uv; }
+/// The uv of a cell's corner, 0 to 3, of a mesh that has some.
+static inline void output_mesh_uv(const OutputMesh *mesh, uint32_t cell, int corner, float uv[2]) {
+    const size_t at = 4 * (size_t)cell + (size_t)corner;
+    const float *from = mesh->corner_uv ? mesh->corner_uv + 2 * at : mesh->uv + 2 * (size_t)mesh->cells[at];
+    uv[0] = from[0], uv[1] = from[1];
+}
+
 /// What is drawn of a sheet besides its surface.
 typedef struct OutputSheet {
     const char *name;    ///< as in the scene
     const char *picture; ///< path of its picture, from the root file if it is relative; NULL: none
     const Image *image;  ///< the picture; NULL: none
     float colour[3];     ///< linear, multiplies the picture
+    OutputMesh mesh;     ///< textures and VAT need it
 } OutputSheet;
 
 /// Where a shape is in a frame.
@@ -39,11 +60,13 @@ typedef struct OutputShape {
     const OutputPose *poses; ///< [OutputScene.frames]
 } OutputShape;
 
-/// What does not change from frame to frame. A writer of frames looks at `name`, `fps` and the sheets only.
+/// What does not change from frame to frame. A writer of frames looks at `name`, `fps`, `texture_size` and the
+/// sheets only.
 typedef struct OutputScene {
     const char *name;   ///< of the files
     float fps;
     int frames;         ///< that are written, from 1
+    int texture_size;   ///< pixels a side of textures
     bool gas;           ///< gas/NAME.0001.vdb are there
     uint32_t sheet_count, shape_count;
     const OutputSheet *sheets;
@@ -69,6 +92,26 @@ SINGE_NODISCARD SingeResult usd_write_root(const char *path, const OutputScene *
 SINGE_NODISCARD SingeResult glb_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                             SingeError *error);
 
+SINGE_NODISCARD SingeResult textures_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                                 SingeError *error);
+
+/// The frames of a finished cache, from 1. What `read` gives lasts until the next is read.
+typedef struct OutputCache {
+    int frames;
+    SingeResult (*read)(void *context, int number, OutputFrame *frame, SingeError *error);
+    void *context;
+} OutputCache;
+
+// Writers of all frames at once, for delivery.
+SINGE_NODISCARD SingeResult glb_write_single(const char *path, const OutputScene *scene, const OutputCache *cache,
+                                             SingeError *error);
+SINGE_NODISCARD SingeResult usd_write_single(const char *path, const OutputScene *scene, const OutputCache *cache,
+                                             SingeError *error);
+SINGE_NODISCARD SingeResult usdz_write(const char *path, const OutputScene *scene, const OutputCache *cache,
+                                       SingeError *error);
+SINGE_NODISCARD SingeResult vat_write(const char *path, const OutputScene *scene, const OutputCache *cache,
+                                      SingeError *error);
+
 typedef SingeResult OutputWriteFrame(const char *path, const OutputScene *scene, const OutputFrame *frame,
                                      SingeError *error);
 typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, SingeError *error);
@@ -79,7 +122,8 @@ typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, 
     ROW(ply, ".ply", ply_write_frame, NULL, NULL)             \
     ROW(usd, ".usdc", usd_write_frame, ".usda", usd_write_root) \
     ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root) \
-    ROW(glb, ".glb", glb_write_frame, NULL, NULL)
+    ROW(glb, ".glb", glb_write_frame, NULL, NULL)             \
+    ROW(textures, ".exr", textures_write_frame, NULL, NULL)
 
 #define OUTPUT_ENUMERATOR(name, ...) OUTPUT_##name,
 enum { OUTPUT_FORMATS(OUTPUT_ENUMERATOR) OUTPUT_COUNT };
@@ -92,6 +136,19 @@ typedef struct OutputFormat {
 } OutputFormat;
 
 extern const OutputFormat output_formats[OUTPUT_COUNT];
+
+typedef SingeResult OutputWriteSingle(const char *path, const OutputScene *scene, const OutputCache *cache,
+                                      SingeError *error);
+
+/// A form of delivery: all frames at once, made from a finished cache.
+typedef struct OutputSingle {
+    const char *name;
+    bool by_option;     ///< `--single` asks for it: frames have the same name
+    const char *ending; ///< of the file beside the folders; where it is NULL, several lie in a folder of that name
+    OutputWriteSingle *write;
+} OutputSingle;
+enum { OUTPUT_SINGLE_COUNT = 4 };
+extern const OutputSingle output_singles[OUTPUT_SINGLE_COUNT];
 
 /// A set of formats, a bit each.
 typedef uint32_t OutputSet;

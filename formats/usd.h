@@ -7,6 +7,7 @@
 #define FORMATS_USD_H
 
 #include "formats/output.h"
+#include "formats/sink.h"
 
 enum { USD_NAME = 160 };
 
@@ -14,6 +15,12 @@ enum { USD_NAME = 160 };
 void usd_name(const char *name, char prim[USD_NAME]);
 /// That of a sheet, which no sheet before it has.
 void usd_sheet_name(const OutputScene *scene, uint32_t sheet, char prim[USD_NAME]);
+
+/// A frame as usd_write_frame writes it, in memory; free the bytes, after failure too. `path` is for messages.
+SINGE_NODISCARD SingeResult usd_frame_bytes(const char *path, const OutputScene *scene, const OutputFrame *frame,
+                                            Sink *bytes, SingeError *error);
+/// The root's text.
+void usd_put_root(Sink *sink, const OutputScene *scene);
 
 /// An attribute of a sheet's mesh.
 typedef struct UsdAttribute {

@@ -197,21 +197,21 @@ CrateValue crate_floats(Crate *crate, int width, const float *values, size_t cou
     return value;
 }
 
-CrateValue crate_time(Crate *crate, double time) {
+CrateValue crate_times(Crate *crate, double first, size_t count) {
     const CrateValue value = lies_here(crate, CRATE_DOUBLES);
-    sink_u64(&crate->sink, 1);
-    sink_double(&crate->sink, time);
+    sink_u64(&crate->sink, count);
+    for (size_t i = 0; i < count; i++) sink_double(&crate->sink, first + (double)i);
     return value;
 }
 
-CrateValue crate_sample(Crate *crate, CrateValue time, CrateValue value) {
-    const CrateValue samples = lies_here(crate, CRATE_SAMPLES);
+CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values, size_t count) {
+    const CrateValue series = lies_here(crate, CRATE_SAMPLES);
     sink_u64(&crate->sink, 8); // how far on the times' value is, and behind it the values
-    sink_u64(&crate->sink, time);
+    sink_u64(&crate->sink, times);
     sink_u64(&crate->sink, 8);
-    sink_u64(&crate->sink, 1);
-    sink_u64(&crate->sink, value);
-    return samples;
+    sink_u64(&crate->sink, count);
+    for (size_t i = 0; i < count; i++) sink_u64(&crate->sink, values[i]);
+    return series;
 }
 
 // ---- paths and specs
@@ -341,6 +341,13 @@ static void put_sections(Crate *crate) {
     memcpy(header, "PXR-USDC\0\10\0", 11);
     store_u32_little(header + 16, (uint32_t)places[SECTIONS]);
     store_u32_little(header + 20, (uint32_t)((uint64_t)places[SECTIONS] >> 32));
+}
+
+bool crate_take(Crate *crate, Sink *bytes) {
+    put_sections(crate);
+    *bytes = crate->sink;
+    crate->sink = (Sink){.allocator = bytes->allocator};
+    return !bytes->failed;
 }
 
 SingeResult crate_write(Crate *crate, const char *path, SingeError *error) {

@@ -67,15 +67,17 @@ CrateValue crate_token_list(Crate *crate, const char *const *texts, size_t count
 CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count);
 /// Arrays of one, two or three floats an entry.
 CrateValue crate_floats(Crate *crate, int width, const float *values, size_t count);
-/// A list of times of one entry, for crate_sample.
-CrateValue crate_time(Crate *crate, double time);
-/// A value at that time.
-CrateValue crate_sample(Crate *crate, CrateValue time, CrateValue value);
+/// Times from `first` on, one apart.
+CrateValue crate_times(Crate *crate, double first, size_t count);
+/// The values at those times.
+CrateValue crate_series(Crate *crate, CrateValue times, const CrateValue *values, size_t count);
 
 /// A path below `parent`. Paths come depth first: all of a path's children before its next sibling.
 uint32_t crate_path(Crate *crate, const char *name, bool property, uint32_t parent);
 void crate_spec(Crate *crate, uint32_t path, CrateSpec kind, const CrateField *fields, size_t count);
 
+/// Ends the file and gives its bytes away, to be freed. False where there was no memory.
+bool crate_take(Crate *crate, Sink *bytes);
 /// Ends the file, writes it whole or not at all, and frees the crate.
 SINGE_NODISCARD SingeResult crate_write(Crate *crate, const char *path, SingeError *error);
 

@@ -13,11 +13,17 @@
 
 enum { ATTRIBUTES_MOST = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
 
+/// What a sheet has at a time: own attributes, fields, and the faces of its subsets, burnt and fresh.
+enum { SLOT_FIELDS = USD_OWN, SLOT_SUBSETS = SLOT_FIELDS + SURFACE_FIELDS, SLOTS = SLOT_SUBSETS + 2 };
+
 typedef struct UsdWriter {
     Crate crate;
     const OutputScene *scene;
     const SingeSurface *surface;
-    CrateValue time;
+    CrateValue time;   ///< of all samples
+    CrateValue *kept;  ///< [frames][sheets][SLOTS] values of many frames; NULL where there is one, in the surface
+    CrateValue *column; ///< [frames]
+    size_t frames;
     SheetParts parts;
     float *gathered;   ///< [3 * vertex_count]
     int32_t *numbers;  ///< [3 * triangle_count and vertex_count at least]
@@ -126,9 +132,17 @@ static CrateValue put_extent(UsdWriter *w, const SheetPart *part) {
 
 // ---- prims
 
-static void put_sampled(UsdWriter *w, uint32_t prim, const char *name, const char *type, bool vertex, CrateValue value) {
-    CrateField fields[3] = {{"typeName", crate_token(&w->crate, type)},
-                            {"timeSamples", crate_sample(&w->crate, w->time, value)}};
+/// The samples of a slot of a sheet: `value` where there is one frame, else what was kept.
+static CrateValue put_samples(UsdWriter *w, uint32_t sheet, int slot, CrateValue value) {
+    if (!w->kept) return crate_series(&w->crate, w->time, &value, 1);
+    for (size_t i = 0; i < w->frames; i++)
+        w->column[i] = w->kept[(i * w->scene->sheet_count + sheet) * SLOTS + (size_t)slot];
+    return crate_series(&w->crate, w->time, w->column, w->frames);
+}
+
+static void put_sampled(UsdWriter *w, uint32_t prim, const char *name, const char *type, bool vertex,
+                        CrateValue samples) {
+    CrateField fields[3] = {{"typeName", crate_token(&w->crate, type)}, {"timeSamples", samples}};
     if (vertex) fields[2] = (CrateField){"interpolation", crate_token(&w->crate, "vertex")};
     crate_spec(&w->crate, crate_path(&w->crate, name, true, prim), CRATE_ATTRIBUTE, fields, vertex ? 3 : 2);
 }
@@ -141,7 +155,7 @@ static void put_uniform(UsdWriter *w, uint32_t prim, const char *name, const cha
 }
 
 /// Faces whose corners all look as at the start, or the others.
-static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const char *name, bool fresh) {
+static CrateValue put_subset_faces(UsdWriter *w, const SheetPart *part, bool fresh) {
     const SingeSurface *s = w->surface;
     size_t count = 0;
     for (uint32_t i = 0; i < part->triangle_count; i++) {
@@ -152,6 +166,10 @@ static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const
         }
         if (untouched == fresh) w->numbers[count++] = (int32_t)i;
     }
+    return crate_ints(&w->crate, w->numbers, count);
+}
+
+static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const char *name, bool fresh) {
     static const char *const names[] = {"elementType", "familyName", "indices"};
     const uint32_t prim = crate_path(&w->crate, name, false, mesh);
     CrateField fields[] = {{"specifier", crate_inline(CRATE_SPECIFIER, 0)},
@@ -160,14 +178,32 @@ static void put_subset(UsdWriter *w, const SheetPart *part, uint32_t mesh, const
     crate_spec(&w->crate, prim, CRATE_PRIM, fields, 3);
     put_uniform(w, prim, names[0], "token", crate_token(&w->crate, "face"));
     put_uniform(w, prim, names[1], "token", crate_token(&w->crate, "materialBind"));
-    put_sampled(w, prim, names[2], "int[]", false, crate_ints(&w->crate, w->numbers, count));
+    const CrateValue faces = w->kept ? 0 : put_subset_faces(w, part, fresh);
+    put_sampled(w, prim, names[2], "int[]", false, put_samples(w, part->sheet, SLOT_SUBSETS + fresh, faces));
+}
+
+static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_OWN]) {
+    const SingeSurface *s = w->surface;
+    values[USD_POINTS] = put_vectors(w, part, s->position, 3);
+    values[USD_VELOCITIES] = put_vectors(w, part, s->velocity, 3);
+    values[USD_NORMALS] = put_vectors(w, part, s->normal, 3);
+    values[USD_ST] = put_vectors(w, part, s->uv, 2);
+    values[USD_REST] = put_vectors(w, part, s->rest_position, 3);
+    values[USD_EXTENT] = put_extent(w, part);
+    put_colours(w, part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
+    put_embers(w, part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
+    put_faces(w, part, &values[USD_COUNTS], &values[USD_INDICES]);
+}
+
+static CrateValue put_field(UsdWriter *w, const SheetPart *part, const SurfaceField *field) {
+    const void *values = gather(w, part, surface_field(w->surface, field), 1);
+    return field->integer ? crate_ints(&w->crate, values, part->count) : crate_floats(&w->crate, 1, values, part->count);
 }
 
 static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     static const char *const uniforms[][2] = {
         {"subdivisionScheme", "none"}, {"orientation", "rightHanded"}, {"doubleSided", NULL}};
-    const SingeSurface *s = w->surface;
-    const SheetPart part = sheet_part(&w->parts, sheet);
+    const SheetPart part = w->kept ? (SheetPart){.sheet = sheet} : sheet_part(&w->parts, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
     const char *names[ATTRIBUTES_MOST + 4];
     // the first is that of all faces where a program binds no subsets, such as Blender from the second frame on
@@ -191,23 +227,15 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
     for (int i = 0; i < 2; i++)
         put_uniform(w, mesh, uniforms[i][0], "token", crate_token(&w->crate, uniforms[i][1]));
     put_uniform(w, mesh, uniforms[2][0], "bool", crate_inline(CRATE_BOOL, 1));
-    CrateValue values[USD_OWN];
-    values[USD_POINTS] = put_vectors(w, &part, s->position, 3);
-    values[USD_VELOCITIES] = put_vectors(w, &part, s->velocity, 3);
-    values[USD_NORMALS] = put_vectors(w, &part, s->normal, 3);
-    values[USD_ST] = put_vectors(w, &part, s->uv, 2);
-    values[USD_REST] = put_vectors(w, &part, s->rest_position, 3);
-    values[USD_EXTENT] = put_extent(w, &part);
-    put_colours(w, &part, &values[USD_COLOUR], &values[USD_COLOUR_INDICES]);
-    put_embers(w, &part, &values[USD_EMBER], &values[USD_EMBER_INDICES]);
-    put_faces(w, &part, &values[USD_COUNTS], &values[USD_INDICES]);
+    CrateValue values[USD_OWN] = {0};
+    if (!w->kept) put_own(w, &part, values);
     for (int i = 0; i < USD_OWN; i++)
-        put_sampled(w, mesh, usd_attributes[i].name, usd_attributes[i].type, usd_attributes[i].vertex, values[i]);
+        put_sampled(w, mesh, usd_attributes[i].name, usd_attributes[i].type, usd_attributes[i].vertex,
+                    put_samples(w, sheet, i, values[i]));
     for (int i = 0; i < SURFACE_FIELDS; i++) {
-        const void *field = gather(w, &part, surface_field(s, &surface_fields[i]), 1);
-        const bool integer = surface_fields[i].integer;
-        put_sampled(w, mesh, primvars[i], integer ? "int[]" : "float[]", true,
-                    integer ? crate_ints(&w->crate, field, part.count) : crate_floats(&w->crate, 1, field, part.count));
+        const CrateValue value = w->kept ? 0 : put_field(w, &part, &surface_fields[i]);
+        put_sampled(w, mesh, primvars[i], surface_fields[i].integer ? "int[]" : "float[]", true,
+                    put_samples(w, sheet, SLOT_FIELDS + i, value));
     }
     if (!pictured) return;
     put_uniform(w, mesh, "subsetFamily:materialBind:familyType", "token", crate_token(&w->crate, "nonOverlapping"));
@@ -224,47 +252,108 @@ static uint32_t put_group(UsdWriter *w, const char *name, uint32_t parent, const
     return prim;
 }
 
-static SingeResult put_stage(UsdWriter *w, int number, const char *path, SingeError *error) {
+static void put_stage(UsdWriter *w, int first, int last) {
     Crate *crate = &w->crate;
     const uint32_t count = w->scene->sheet_count;
     char name[USD_NAME];
     const char *only[1] = {name};
     usd_name(w->scene->name, name);
     const uint32_t root = crate_path(crate, "", false, CRATE_NO_PARENT);
-    const float frame = (float)number;
     CrateField fields[] = {{"defaultPrim", crate_token(crate, name)}, {"metersPerUnit", crate_double(1)},
-                           {"upAxis", crate_token(crate, "Z")}, {"startTimeCode", crate_double(frame)},
-                           {"endTimeCode", crate_double(frame)}, {"timeCodesPerSecond", crate_double(w->scene->fps)},
+                           {"upAxis", crate_token(crate, "Z")}, {"startTimeCode", crate_double((float)first)},
+                           {"endTimeCode", crate_double((float)last)}, {"timeCodesPerSecond", crate_double(w->scene->fps)},
                            {"framesPerSecond", crate_double(w->scene->fps)},
                            {"primChildren", crate_token_list(crate, only, 1)}};
     crate_spec(crate, root, CRATE_ROOT, fields, sizeof fields / sizeof *fields);
     static const char *const sheets[] = {"sheets"};
     const uint32_t top = put_group(w, name, root, sheets, 1);
-    char(*names)[USD_NAME] = store_new(w->surface->allocator, count, USD_NAME);
-    const char **list = store_new(w->surface->allocator, count, sizeof *list);
+    char(*names)[USD_NAME] = store_new(w->crate.sink.allocator, count, USD_NAME);
+    const char **list = store_new(w->crate.sink.allocator, count, sizeof *list);
     if (names && list) {
         for (uint32_t i = 0; i < count; i++) {
             usd_sheet_name(w->scene, i, names[i]);
             list[i] = names[i];
         }
         const uint32_t group = put_group(w, sheets[0], top, list, count);
-        w->time = crate_time(crate, number);
+        w->time = crate_times(crate, first, (size_t)(last - first) + 1);
         for (uint32_t i = 0; i < count; i++) put_mesh(w, group, i);
     } else {
         crate->sink.failed = true;
     }
-    store_free(w->surface->allocator, names, count, USD_NAME);
-    store_free(w->surface->allocator, list, count, sizeof *list);
-    return crate_write(crate, path, error);
+    store_free(w->crate.sink.allocator, names, count, USD_NAME);
+    store_free(w->crate.sink.allocator, list, count, sizeof *list);
+}
+
+/// A frame in the crate of a writer, which is to be freed, after failure too.
+static SingeResult put_one(UsdWriter *w, const OutputScene *scene, const OutputFrame *frame, const char *path,
+                           SingeError *error) {
+    *w = (UsdWriter){.scene = scene, .surface = frame->surface};
+    crate_begin(&w->crate, frame->surface->allocator);
+    sink_reserve(&w->crate.sink, 4096 + 96 * (size_t)frame->surface->vertex_count); // mostly enough
+    SingeResult result = sheet_parts_make(&w->parts, frame->surface, scene->sheet_count, path, error);
+    if (!result && !writer_make(w)) result = refuse_memory(error, "usd", path);
+    if (!result) put_stage(w, frame->number, frame->number);
+    return result;
 }
 
 SingeResult usd_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
-    UsdWriter writer = {.scene = scene, .surface = frame->surface};
-    crate_begin(&writer.crate, frame->surface->allocator);
-    sink_reserve(&writer.crate.sink, 4096 + 96 * (size_t)frame->surface->vertex_count); // mostly enough
-    SingeResult result = sheet_parts_make(&writer.parts, frame->surface, scene->sheet_count, path, error);
-    if (!result && !writer_make(&writer)) result = refuse_memory(error, "usd", path);
-    if (!result) result = put_stage(&writer, frame->number, path, error);
+    UsdWriter writer;
+    SingeResult result = put_one(&writer, scene, frame, path, error);
+    if (!result) result = crate_write(&writer.crate, path, error);
     writer_free(&writer);
+    return result;
+}
+
+SingeResult usd_frame_bytes(const char *path, const OutputScene *scene, const OutputFrame *frame, Sink *bytes,
+                            SingeError *error) {
+    UsdWriter writer;
+    SingeResult result = put_one(&writer, scene, frame, path, error);
+    if (!result && !crate_take(&writer.crate, bytes)) result = refuse_memory(error, "usd", path);
+    writer_free(&writer);
+    return result;
+}
+
+// ---- all frames in one
+
+/// The values of a frame.
+static SingeResult keep_frame(UsdWriter *w, const OutputFrame *frame, CrateValue *kept, const char *path,
+                              SingeError *error) {
+    UsdWriter one = {.crate = w->crate, .scene = w->scene, .surface = frame->surface};
+    SingeResult result = sheet_parts_make(&one.parts, frame->surface, w->scene->sheet_count, path, error);
+    if (!result && !writer_make(&one)) result = refuse_memory(error, "usd", path);
+    for (uint32_t i = 0; i < w->scene->sheet_count && !result; i++, kept += SLOTS) {
+        const SheetPart part = sheet_part(&one.parts, i);
+        put_own(&one, &part, kept);
+        for (int k = 0; k < SURFACE_FIELDS; k++) kept[SLOT_FIELDS + k] = put_field(&one, &part, &surface_fields[k]);
+        for (int k = 0; k < 2; k++) kept[SLOT_SUBSETS + k] = put_subset_faces(&one, &part, k);
+    }
+    w->crate = one.crate; // all that has come into it stays
+    one.crate = (Crate){.sink = {.allocator = frame->surface->allocator}};
+    writer_free(&one);
+    return result;
+}
+
+SingeResult usd_write_single(const char *path, const OutputScene *scene, const OutputCache *cache, SingeError *error) {
+    const size_t frames = (size_t)cache->frames, each = (size_t)scene->sheet_count * SLOTS;
+    const SingeAllocator a = {0};
+    UsdWriter writer = {.scene = scene, .frames = frames};
+    SingeResult result = SINGE_OK;
+    crate_begin(&writer.crate, a);
+    CrateValue *kept = store_new(a, frames * each, sizeof *kept);
+    writer.column = store_new(a, frames, sizeof *writer.column);
+    if (!kept || !writer.column) result = refuse_memory(error, "usd", path);
+    for (int i = 1; i <= cache->frames && !result; i++) {
+        OutputFrame frame;
+        result = cache->read(cache->context, i, &frame, error);
+        if (!result) result = keep_frame(&writer, &frame, kept + (size_t)(i - 1) * each, path, error);
+    }
+    writer.kept = kept;
+    if (!result) {
+        put_stage(&writer, 1, cache->frames);
+        result = crate_write(&writer.crate, path, error);
+    }
+    crate_free(&writer.crate);
+    store_free(a, kept, frames * each, sizeof *kept);
+    store_free(a, writer.column, frames, sizeof *writer.column);
     return result;
 }

@@ -396,8 +396,8 @@ static void put_materials(Root *r) {
     put(r, "    }\n");
 }
 
-SingeResult usd_write_root(const char *path, const OutputScene *scene, SingeError *error) {
-    Root root = {.scene = scene};
+void usd_put_root(Sink *sink, const OutputScene *scene) {
+    Root root = {.sink = *sink, .scene = scene};
     Root *r = &root;
     usd_name(scene->name, r->name);
     sink_text(&r->sink, "#usda 1.0\n(\n    defaultPrim = \"%s\"\n    doc = \"Singe %s\"\n", r->name, SINGE_VERSION);
@@ -416,5 +416,11 @@ SingeResult usd_write_root(const char *path, const OutputScene *scene, SingeErro
     put(r, "    }\n");
     put_materials(r);
     put(r, "}\n");
-    return sink_write(&r->sink, path, error);
+    *sink = r->sink;
+}
+
+SingeResult usd_write_root(const char *path, const OutputScene *scene, SingeError *error) {
+    Sink sink = {0};
+    usd_put_root(&sink, scene);
+    return sink_write(&sink, path, error);
 }

@@ -43,6 +43,7 @@ bool default_scene(SceneArena *arena, void *object) {
     scene->tearing = true;
     default_preview(&scene->preview);
     scene->output.formats = 1u << OUTPUT_ply;
+    scene->output.texture_size = 1024;
     return true;
 }
 

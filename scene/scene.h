@@ -191,7 +191,8 @@ typedef struct ScenePreview {
 /// What a run writes for other programs.
 typedef struct SceneOutput {
     OutputSet formats;
-    bool events; ///< events.csv
+    bool events;      ///< events.csv
+    int texture_size; ///< pixels
 } SceneOutput;
 
 /// A key or a word that the scene still calls by the name it had before this release.

@@ -101,6 +101,8 @@ static const SchemaRow output_rows[] = {
             "written"},
     {"events", ROW_BOOL, DIM_NONE, AT(SceneOutput, events),
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
+    {"texture_size", ROW_INT, DIM_NONE, AT(SceneOutput, texture_size), WITHIN(16, 8192),
+     .doc = "pixels a side of `textures`"},
 };
 static const Schema schema_output = {
     .title = "the output", .size = sizeof(SceneOutput), ROWS(output_rows),

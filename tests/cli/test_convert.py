@@ -7,9 +7,11 @@ import struct
 import unittest
 import xml.etree.ElementTree as xml
 
-from support import Case
+from support import Case, HAS_EXR
 
 FORMATS = {"usd": ".usda", "vtp": ".pvd", "glb": None}  # and the ending of their roots; None: no root
+if HAS_EXR:
+    FORMATS["textures"] = None
 
 
 class Convert(Case):
@@ -26,11 +28,12 @@ class Convert(Case):
         return found
 
     def run_formats(self, out, *args, **options):
-        self.run_scene(out, "--quiet", "--set", "output.formats=[%s]" % ", ".join(FORMATS), *args, **options)
+        self.run_scene(out, "--quiet", "--set", "output.formats=[%s]" % ", ".join(FORMATS),
+                       "--set", "output.texture_size=64", *args, **options)
 
     def test_same_bytes(self):
         self.run_formats("o", "--frames", "5")
-        self.run_scene("c", "--quiet", "--frames", "5")
+        self.run_scene("c", "--quiet", "--frames", "5", "--set", "output.texture_size=64")
         for name, root in FORMATS.items():
             self.assertFalse(os.path.exists(self.path("c", name)))
             out, _ = self.singe("convert", self.path("c"), "--to", name)

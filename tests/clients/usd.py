@@ -120,6 +120,23 @@ def check_interrupted(singe, folder):
     print("killed after frame 6: its root names %d frames; gone on with, all files are the same" % frames)
 
 
+def check_single(singe, out):
+    """One file of all frames, and an archive: every value again, and the validators."""
+    subprocess.run([singe, "convert", out, "--to", "usdz", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([singe, "convert", out, "--to", "usd", "--single", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    for name in ("burn.usdc", "burn.usdz"):
+        path = os.path.join(out, name)
+        stage = Usd.Stage.Open(path)
+        assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (1, FRAMES, 24)
+        check_values(stage, out, FRAMES)
+        validate(path)
+    picture = stage.GetPrimAtPath("/burn/materials/print0/picture").GetAttribute("inputs:file").Get()
+    assert picture.resolvedPath.endswith("burn.usdz[pictures/0.png]"), picture
+    assert not stage.GetPrimAtPath("/burn/gas")
+    print("burn.usdc, %d bytes, and burn.usdz, %d bytes" % tuple(
+        os.path.getsize(os.path.join(out, name)) for name in ("burn.usdc", "burn.usdz")))
+
+
 def check_gone(singe, folder):
     """A sheet that is burnt at the end: the last frames have no vertices, and hold nothing of those before."""
     scene = os.path.join(folder, "gone.yaml")
@@ -164,6 +181,7 @@ def main():
             count = validate(root)
             for frame in CHECKED:
                 validate(os.path.join(out, "usd", "burn.%04d.usdc" % frame))
+            check_single(singe, out)
             check_gone(singe, folder)
             check_interrupted(singe, folder)
         finally:

@@ -52,9 +52,13 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
 
 static SingeResult write_as(int format, const SingeSurface *s, uint32_t sheets, const char *picture, SingeError *error) {
     static const OutputSheet pair[2] = {{.name = "a b", .colour = {1, 1, 1}}, {.name = "a/b", .colour = {1, 0, 0}}};
+    static const float uv[8] = {0, 0, 1, 0, 1, 1, 0, 1}, corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    static const uint32_t cell[4] = {0, 1, 2, 3};
     OutputSheet list[2] = {pair[0], pair[1]};
     list[0].picture = picture;
-    const OutputScene scene = {.name = "7 up", .fps = 24, .sheet_count = sheets, .sheets = list};
+    for (int i = 0; i < 2; i++)
+        list[i].mesh = (OutputMesh){.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell};
+    const OutputScene scene = {.name = "7 up", .fps = 24, .texture_size = 32, .sheet_count = sheets, .sheets = list};
     const OutputFrame frame = {.surface = s, .time = 1.5, .number = 37};
     return output_formats[format].write_frame(path, &scene, &frame, error);
 }
@@ -250,7 +254,8 @@ static void check_memory(int format) {
 
 static void without_memory_there_is_no_file(void **state) {
     (void)state;
-    for (int format = 0; format < OUTPUT_COUNT; format++) check_memory(format);
+    for (int format = 0; format < OUTPUT_COUNT; format++)
+        if (format != OUTPUT_textures || exr_available()) check_memory(format);
 }
 
 /// Sheets of which nothing is left are a file in every format.
@@ -259,6 +264,7 @@ static void every_format_has_empty_frames(void **state) {
     const SingeSurface none = {0};
     SingeError error;
     for (int format = 0; format < OUTPUT_COUNT; format++) {
+        if (format == OUTPUT_textures && !exr_available()) continue;
         assert_int_equal(write_as(format, &none, 2, "a.png", &error), SINGE_OK);
         assert_int_equal(access(path, F_OK), 0);
         unlink(path);

@@ -36,7 +36,7 @@ static const char full[] =
     "probes:\n"
     "  - {kind: uv, at: [0.25, 0.5], sheet: sheet2, name: \"a, b\"}\n"
     "  - {kind: point, at: [1 cm, 0, 1], sheet: 0}\n"
-    "output: {formats: [vtp], events: yes}\n"
+    "output: {formats: [vtp], events: yes, texture_size: 64}\n"
     "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
     "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
     "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %}\n"
@@ -94,7 +94,7 @@ static void check_objects(const Scene *scene) {
     assert_true(probe[1].kind == SCENE_PROBE_POINT && probe[1].sheet_index == 0 && probe[1].point[0] == 0.01f);
     assert_string_equal(probe[0].name, "a, b");
     assert_string_equal(probe[1].name, "probe2");
-    assert_true(scene->output.events && output_has(scene->output.formats, OUTPUT_vtp));
+    assert_true(scene->output.events && scene->output.texture_size == 64 && output_has(scene->output.formats, OUTPUT_vtp));
     assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
     assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);

@@ -41,6 +41,7 @@ static const Limit limits[] = {
     {"the preview", "size", 16, 32},    {"the preview", "samples", 1, 2},    {"a sheet", "translate", -0.02, 0.02},
     {"a sheet", "scale", 0.5, 2},       {"a source", "position", -0.1, 0.1}, {"a key", "position", -0.1, 0.1},
     {"a collider", "position", -0.1, 0.05}, {"a material", "thickening", 1, 20}, {"the scene", "fps", 1, 1000},
+    {"the output", "texture_size", 16, 256},
 };
 
 /// Of numbers that any range holds, what may become of one: near what it is, far from it, or at an end of its range.
