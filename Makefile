@@ -22,17 +22,13 @@ MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 PRESET ?= release
 
-.PHONY: all configure demo test check check-examples check-clients gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all demo test check check-examples check-clients check-platforms gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
 build:
 	cmake --preset release
 	cmake --build --preset release
-
-# all of them at once: each takes one core
-configure:
-	printf '%s\n' release asan fuzz shared tsan | xargs -P $$(nproc) -n 1 cmake --preset
 
 build-asan:
 	cmake --preset asan
@@ -67,7 +63,6 @@ test:
 check:
 	scripts/setup.sh --check
 	scripts/check_arrows.sh
-	$(MAKE) configure
 	$(MAKE) build build-asan build-fuzz build-shared build-tsan
 	build-shared/cli/singe --version
 	ctest --preset tsan -j2 -L '^threads$$'
@@ -86,6 +81,10 @@ gate: build
 # other programs, which are installed into build/clients, on what a burn leaves: docs/usd.md and others have the table
 check-clients: build
 	tests/clients/check.sh build/cli/singe build/clients
+
+# the core on Windows, 64-bit Arm Linux and macOS: compilers and emulators are installed, and what runs has the same bytes
+check-platforms:
+	tests/platforms/check.py --source . --build build/platforms --install
 
 # every allocation, write, open, ... of whole commands fails once: hours; Ctrl-C ends it with its table
 torture:

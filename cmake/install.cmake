@@ -27,6 +27,9 @@ install(FILES ${PROJECT_BINARY_DIR}/singeConfig.cmake ${PROJECT_BINARY_DIR}/sing
 
 # a static library needs its own libraries named at every link
 set(singe_pc_private "-lm -pthread")
+if(WIN32)
+  set(singe_pc_private "-lm")
+endif()
 set(singe_pc_public "")
 if(NOT BUILD_SHARED_LIBS)
   set(singe_pc_public " ${singe_pc_private}")

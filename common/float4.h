@@ -3,11 +3,14 @@
 #define COMMON_FLOAT4_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
-#ifdef __SSE2__
+#if defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 typedef float Float4 __attribute__((vector_size(16)));
@@ -29,7 +32,13 @@ static inline unsigned float4_bits(Float4Mask mask) { return (unsigned)_mm_movem
 #else
 static inline Float4 float4_min(Float4 a, Float4 b) { return float4_select(a < b, a, b); }
 static inline Float4 float4_max(Float4 a, Float4 b) { return float4_select(a > b, a, b); }
+#ifdef __aarch64__
+static inline Float4 float4_sqrt(Float4 a) { return (Float4)vsqrtq_f32((float32x4_t)a); }
+static inline bool float4_any(Float4Mask mask) { return vmaxvq_u32((uint32x4_t)mask) != 0; }
+#else
 static inline Float4 float4_sqrt(Float4 a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
+static inline bool float4_any(Float4Mask mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+#endif
 static inline unsigned float4_bits(Float4Mask mask) {
     return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
 }

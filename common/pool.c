@@ -10,20 +10,18 @@
 #include "common/pool.h"
 
 #include "common/error.h"
+#include "common/thread.h"
 
-#include <pthread.h>
-#include <sched.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 enum { POOL_PAUSES = 1000, POOL_YIELDS = 50, POOL_THREADS_MAX = 64 };
 
 struct Pool {
     SingeTasks tasks; ///< the host's scheduler, when set
     int thread_count, processors;
-    pthread_t threads[POOL_THREADS_MAX];
-    pthread_mutex_t mutex;
-    pthread_cond_t wake, over;
+    Thread threads[POOL_THREADS_MAX];
+    Mutex mutex;
+    Condition wake, over;
     // the job: written while no range is left, published by `left`
     SingeTaskFn *run;
     void *context;
@@ -39,6 +37,8 @@ struct Pool {
 static inline void pool_pause(void) {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
 #endif
 }
 
@@ -62,9 +62,9 @@ static void pool_run_ranges(Pool *pool, bool back) {
         pool->run(pool->context, begin, end);
         // the job may change from here on
         if (atomic_fetch_add(&pool->done, 1) + 1 == ranges && atomic_load(&pool->caller_asleep)) {
-            pthread_mutex_lock(&pool->mutex);
-            pthread_cond_signal(&pool->over);
-            pthread_mutex_unlock(&pool->mutex);
+            mutex_lock(&pool->mutex);
+            condition_signal(&pool->over);
+            mutex_unlock(&pool->mutex);
         }
     }
 }
@@ -75,28 +75,27 @@ static bool pool_watch(Pool *pool, unsigned seen) {
     if (atomic_fetch_add(&pool->watching, 1) + 1 < pool->processors)
         for (int i = 0; i < POOL_PAUSES + POOL_YIELDS && !found; i++) {
             if (i < POOL_PAUSES) pool_pause();
-            else sched_yield();
+            else thread_yield();
             found = atomic_load_explicit(&pool->generation, memory_order_relaxed) != seen;
         }
     atomic_fetch_sub(&pool->watching, 1);
     return found;
 }
 
-static void *pool_worker(void *argument) {
+static void pool_worker(void *argument) {
     Pool *pool = argument;
     unsigned seen = 0;
     while (!atomic_load(&pool->quit)) {
         if (!pool_watch(pool, seen)) {
-            pthread_mutex_lock(&pool->mutex);
+            mutex_lock(&pool->mutex);
             atomic_fetch_add(&pool->asleep, 1); // before the look at the generation: see pool_wake
-            while (atomic_load(&pool->generation) == seen) pthread_cond_wait(&pool->wake, &pool->mutex);
+            while (atomic_load(&pool->generation) == seen) condition_wait(&pool->wake, &pool->mutex);
             atomic_fetch_sub(&pool->asleep, 1);
-            pthread_mutex_unlock(&pool->mutex);
+            mutex_unlock(&pool->mutex);
         }
         seen = atomic_load(&pool->generation);
         pool_run_ranges(pool, true);
     }
-    return NULL;
 }
 
 /// Wakes as many sleepers as there are ranges and processors for, less those awake. The generation is raised before the
@@ -106,9 +105,9 @@ static void pool_wake(Pool *pool, int ranges) {
     int asleep = atomic_load(&pool->asleep), awake = pool->thread_count - asleep;
     int useful = ranges < pool->processors ? ranges : pool->processors;
     if (asleep == 0 || awake >= useful) return;
-    pthread_mutex_lock(&pool->mutex);
-    for (; awake < useful && asleep > 0; awake++, asleep--) pthread_cond_signal(&pool->wake);
-    pthread_mutex_unlock(&pool->mutex);
+    mutex_lock(&pool->mutex);
+    for (; awake < useful && asleep > 0; awake++, asleep--) condition_signal(&pool->wake);
+    mutex_unlock(&pool->mutex);
 }
 
 /// Waits until the ranges that others took are done.
@@ -116,13 +115,13 @@ static void pool_join(Pool *pool, int ranges) {
     for (int i = 0; i < POOL_PAUSES + POOL_YIELDS; i++) {
         if (atomic_load(&pool->done) == ranges) return;
         if (i < POOL_PAUSES) pool_pause();
-        else sched_yield();
+        else thread_yield();
     }
-    pthread_mutex_lock(&pool->mutex);
+    mutex_lock(&pool->mutex);
     atomic_store(&pool->caller_asleep, true);
-    while (atomic_load(&pool->done) != ranges) pthread_cond_wait(&pool->over, &pool->mutex);
+    while (atomic_load(&pool->done) != ranges) condition_wait(&pool->over, &pool->mutex);
     atomic_store(&pool->caller_asleep, false);
-    pthread_mutex_unlock(&pool->mutex);
+    mutex_unlock(&pool->mutex);
 }
 
 SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool **out) {
@@ -130,16 +129,16 @@ SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool
     Pool *pool = memory_new(memory, 1, sizeof *pool);
     if (!pool) return SINGE_ERROR_MEMORY;
     pool->tasks = tasks;
-    long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    pool->processors = processors < 1 ? 1 : processors > POOL_THREADS_MAX ? POOL_THREADS_MAX : (int)processors;
-    pthread_mutex_init(&pool->mutex, NULL);
-    pthread_cond_init(&pool->wake, NULL);
-    pthread_cond_init(&pool->over, NULL);
+    int processors = thread_processors();
+    pool->processors = processors > POOL_THREADS_MAX ? POOL_THREADS_MAX : processors;
+    mutex_open(&pool->mutex);
+    condition_open(&pool->wake);
+    condition_open(&pool->over);
     if (thread_count > POOL_THREADS_MAX) thread_count = POOL_THREADS_MAX;
     // a thread that cannot be had is done without: results are the same
     int count = 1;
     if (!tasks.enqueue)
-        while (count < thread_count && pthread_create(&pool->threads[count], NULL, pool_worker, pool) == 0) count++;
+        while (count < thread_count && thread_start(&pool->threads[count], pool_worker, pool)) count++;
     pool->thread_count = count;
     *out = pool;
     return SINGE_OK;
@@ -148,14 +147,14 @@ SingeResult pool_create(Memory *memory, SingeTasks tasks, int thread_count, Pool
 void pool_destroy(Memory *memory, Pool *pool) {
     if (!pool) return;
     atomic_store(&pool->quit, true);
-    pthread_mutex_lock(&pool->mutex);
+    mutex_lock(&pool->mutex);
     atomic_fetch_add(&pool->generation, 1);
-    pthread_cond_broadcast(&pool->wake);
-    pthread_mutex_unlock(&pool->mutex);
-    for (int i = 1; i < pool->thread_count; i++) pthread_join(pool->threads[i], NULL);
-    pthread_mutex_destroy(&pool->mutex);
-    pthread_cond_destroy(&pool->wake);
-    pthread_cond_destroy(&pool->over);
+    condition_broadcast(&pool->wake);
+    mutex_unlock(&pool->mutex);
+    for (int i = 1; i < pool->thread_count; i++) thread_join(&pool->threads[i]);
+    mutex_close(&pool->mutex);
+    condition_close(&pool->wake);
+    condition_close(&pool->over);
     memory_free(memory, (void *)&pool, 1, sizeof *pool);
 }
 

@@ -26,7 +26,7 @@
 #else
 #define SINGE_API __declspec(dllimport)
 #endif
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define SINGE_API __attribute__((visibility("default")))
 #else
 #define SINGE_API
@@ -34,7 +34,11 @@
 
 #if defined(__GNUC__)
 #define SINGE_NODISCARD __attribute__((warn_unused_result))
+#if defined(__MINGW32__) && !defined(__clang__) // formats of C, not of Microsoft's library
+#define SINGE_PRINTF(string_index, first) __attribute__((format(gnu_printf, string_index, first)))
+#else
 #define SINGE_PRINTF(string_index, first) __attribute__((format(printf, string_index, first)))
+#endif
 #else
 #define SINGE_NODISCARD
 #define SINGE_PRINTF(string_index, first)

@@ -252,6 +252,7 @@ typedef enum SingeInstructions {
     SINGE_INSTRUCTIONS_X86_V2 = 2, ///< x86-64-v2: SSE 4.2, 4 lanes
     SINGE_INSTRUCTIONS_X86_V3 = 3, ///< x86-64-v3: AVX2, 8 lanes
     SINGE_INSTRUCTIONS_X86_V4 = 4, ///< x86-64-v4: AVX-512, 16 lanes
+    SINGE_INSTRUCTIONS_ARM_NEON = 5, ///< 64-bit Arm: NEON, 4 lanes
 } SingeInstructions;
 
 /// The gas about what burns: hot air, flames and smoke on a grid, which rises, heats and lifts (docs/equations.md).

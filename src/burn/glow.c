@@ -30,6 +30,7 @@
 // in place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2
 // of
 // 32.8 MJ/kg of carbon. So the hotter an ember is the less it gives, and more air makes it faster rather than hotter.
+#include "common/real.h"
 #include "burn/burn_job.h"
 
 #include <math.h>
@@ -123,14 +124,14 @@ void burn_air(BurnJob *job, Pool *pool) {
 }
 
 float burn_glow_heat(const BurnJob *job, uint32_t i) {
-    float monoxide = GLOW_CO * expf(-GLOW_CO_TEMPERATURE / job->state->heat->temperature[i]);
+    float monoxide = GLOW_CO * real_expf(-GLOW_CO_TEMPERATURE / job->state->heat->temperature[i]);
     return field_at(job->shell->matter.char_heating, i) * (GLOW_CO_HEAT + (1 - GLOW_CO_HEAT) / (1 + monoxide));
 }
 
 float burn_glow(const BurnJob *job, uint32_t i, float fuel, float share, float air, float dt) {
     if (!(share > 0)) return share;
     float supply = field_at(job->shell->matter.char_rate, i) * air;
-    float kinetics = GLOW_PRE_EXPONENTIAL * expf(-GLOW_TEMPERATURE / job->state->heat->temperature[i]);
+    float kinetics = GLOW_PRE_EXPONENTIAL * real_expf(-GLOW_TEMPERATURE / job->state->heat->temperature[i]);
     float rate = supply > 0 && kinetics > 0 ? supply * (kinetics / (kinetics + supply)) : 0;
     float half = 0.5f * dt * rate / shell_glow_slowing(&job->shell->matter, i, fuel), root = sqrtf(share);
     return half > root ? 0 : (root - half) * (root - half);

@@ -25,6 +25,7 @@
 //   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
 //
 // What pyrolysis warms the sheet by is eta (1 - nu) df, eq 1.
+#include "common/real.h"
 #include "burn/burn_job.h"
 
 #include <math.h>
@@ -35,14 +36,14 @@ static const float STRENGTH_MAX = 1e30f;
 /// How much x falls in a step of strength k; x > 0, k > 0. NaN comes through.
 static float fall(float x, float k, float p) {
     if (p == 0.0f) return k > x ? x : k;
-    if (p == 1.0f) return -x * expm1f(-k);
+    if (p == 1.0f) return -x * real_expm1f(-k);
     if (p == 2.0f) return x / (1 + 1 / (k * x));
     if (p == 0.5f) {
         float root = sqrtf(x), half = 0.5f * k;
         return half > root ? x : half * (2 * root - half);
     }
-    float r = (1 - p) * k * powf(x, p - 1);
-    return r >= 1 ? x : -x * expm1f(log1pf(-r) / (1 - p));
+    float r = (1 - p) * k * real_powf(x, p - 1);
+    return r >= 1 ? x : -x * real_expm1f(real_log1pf(-r) / (1 - p));
 }
 
 /// A exp(-E/(R T_e)), 1/s; NaN comes through.
@@ -50,7 +51,7 @@ static float arrhenius_rate(const Matter *matter, uint32_t i, float excess) {
     const float gas_constant = 8.314462618f; // J/(mol K)
     float temperature = field_at(matter->ignition_temperature, i) + excess;
     float exponent = field_at(matter->activation_energy, i) / (gas_constant * temperature);
-    return field_at(matter->pre_exponential, i) * expf(-exponent);
+    return field_at(matter->pre_exponential, i) * real_expf(-exponent);
 }
 
 /// One particle's new fuel; NaN comes through.

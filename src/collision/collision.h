@@ -63,6 +63,9 @@ typedef struct CollisionCounters {
 
 CollisionCounters collision_counters(const CollisionPlan *plan);
 
+/// NULL, or which invariant of the plan is broken between two steps (collision_validate.c).
+const char *collision_validate(const CollisionPlan *plan);
+
 /// Lowers room[vertices], m, at vertices whose cells have another cell near in the present state, to its distance: the
 /// drawn surface deviates from its flat triangles by less than half of that. Searches up to a quarter of a cell.
 void collision_clearance(const CollisionPlan *plan, const Shell *shell, const StateInput *state, float *room);

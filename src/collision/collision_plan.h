@@ -14,6 +14,8 @@ enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or
 /// to COLLISION_LIST_MIN items where that is more.
 enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
+_Static_assert(COLLISION_ENTRIES >= 8, "a box overlaps eight cubes of the grid at least");
+_Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside is a block of pairs at most");
 
 /// Kinds of features that collide.
 enum { COLLISION_NODE_OF_A, COLLISION_NODE_OF_B, COLLISION_EDGES };
@@ -51,6 +53,8 @@ typedef struct CollisionPair {
     uint8_t first[2]; ///< what meets first: node of the one and triangle of the other, or edges
     uint8_t kind;     ///< COLLISION_NODE_OF_A, COLLISION_NODE_OF_B or COLLISION_EDGES
 } CollisionPair;
+
+_Static_assert(sizeof(CollisionPair) == 24, "five words and three bytes a pair: 40 pairs a cell");
 
 /// Two points that are near as a step opens, before they are a Repulsion.
 typedef struct FoundPoints {

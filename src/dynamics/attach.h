@@ -9,6 +9,8 @@
 /// Sources of a sheet at most; steps between two measurements while it burns: a search costs as much as several steps;
 /// and while it tears.
 enum { ATTACH_SOURCES = 4, ATTACH_PERIOD = 96, ATTACH_TORN_PERIOD = 8 };
+_Static_assert(ATTACH_SOURCES == 4, "kernels load the lengths of a vertex as one quadruple");
+_Static_assert(ATTACH_PERIOD % ATTACH_TORN_PERIOD == 0, "a measurement of a fire is one of a tear");
 
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
@@ -38,7 +40,7 @@ typedef struct Attachments {
 /// Puts back what is too far from the sources: of `count` vertices beside each other, as many whole blocks of lanes
 /// as there are (attach_kernel.h). `length` as in Attachments, `position` with the inverse mass as fourth.
 typedef void AttachHold(const AttachSpread *spread, const float *length, float *position, int count);
-AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4;
+AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, attach_hold_neon;
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments);
 void attach_free(Memory *memory, const Shell *shell, Attachments *attachments);

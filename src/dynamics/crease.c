@@ -52,6 +52,7 @@
 //
 // Char breaks, it does not fold: by the burn progress B of the two cells a crease fades, k_p (1 - B) counts of it,
 // and no more than that share of a bend comes to stay.
+#include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -107,7 +108,7 @@ static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
     float along = float3_dot(a, b), length = float3_length(edge);
     if (!(length > 0 && float3_dot(a, a) > 0.5f && float3_dot(b, b) > 0.5f)) return NAN;
     float across = float3_dot(float3_cross(a, b), edge) / length;
-    if (along < 0.9f) return atan2f(across, along);
+    if (along < 0.9f) return real_atan2f(across, along);
     float square = across * across; // asin, to 1e-4 of itself
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
 }
@@ -123,7 +124,7 @@ static float hinge_twist(Float3 a, Float3 b, Float3 edge) {
     const Float3 turn = float3_cross(a, b), across = float3_cross(float3_add(a, b), edge);
     const float sine = float3_length(turn), length = float3_length(across);
     if (!(sine > 0 && length > 0)) return 0;
-    return atan2f(sine, float3_dot(a, b)) / sine * float3_dot(turn, across) / length;
+    return real_atan2f(sine, float3_dot(a, b)) / sine * float3_dot(turn, across) / length;
 }
 
 static Hinge hinge_measure(const Shell *shell, uint32_t green) {
@@ -142,7 +143,7 @@ static Hinge hinge_measure(const Shell *shell, uint32_t green) {
     float angle = hinge_angle(normal, beyond, edge);
     hinge.angle = isnan(angle) ? 0 : angle;
     hinge.twist = hinge_twist(normal, beyond, edge);
-    hinge.max = atan2f(2 * thickness, hinge.arc);
+    hinge.max = real_atan2f(2 * thickness, hinge.arc);
     hinge.limit = hinge_limit(shell, first, second, hinge.max / hinge.arc);
     // of what is folded into a point at rest no length is made
     hinge.lean = fmaxf(-1.5f, fminf(0.5f * hinge.angle - hinge.max, 1.5f));
@@ -164,9 +165,9 @@ static float crease_lean(const Hinge *hinge, float angle) {
 }
 
 float crease_ratio(const Hinge *hinge, float stays, float now) {
-    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = sinf(hinge->max);
-    float moment = flat * flat * (lean - kept) / fminf(sinf(lean), -CREASE_LEVER * flat);
-    return fmaxf(cosf(lean) + moment, 0.05f) / cosf(hinge->lean);
+    float kept = crease_lean(hinge, stays), lean = crease_lean(hinge, now), flat = real_sinf(hinge->max);
+    float moment = flat * flat * (lean - kept) / fminf(real_sinf(lean), -CREASE_LEVER * flat);
+    return fmaxf(real_cosf(lean) + moment, 0.05f) / real_cosf(hinge->lean);
 }
 
 float crease_kept(const Shell *shell, const StateInput *state, uint32_t green) {
@@ -196,8 +197,8 @@ static float crease_blue_ratio(const Crease *job, const uint32_t *ends, const Hi
 /// The angle by which layers that have shrunk differently curl of themselves.
 static float crease_curl(const Crease *job, uint32_t k, const uint32_t *ends, const Hinge *hinge) {
     float green = job->state->burn->spring_length[SINGE_GREEN][k] / job->shell->springs[SINGE_GREEN].rest[k];
-    float ratio = green / crease_blue_ratio(job, ends, hinge) * cosf(hinge->lean);
-    float lean = acosf(ratio < 1 ? ratio : 1);
+    float ratio = green / crease_blue_ratio(job, ends, hinge) * real_cosf(hinge->lean);
+    float lean = real_acosf(ratio < 1 ? ratio : 1);
     return 2 * ((hinge->lean > 0 ? lean : -lean) - hinge->lean);
 }
 
@@ -309,7 +310,7 @@ static void crease_normals(void *task, int begin, int end) {
 void dynamics_crease(DynamicsPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                      DynamicsState *dynamics) {
     if (!plan->hinges) return;
-    Crease job = {plan, shell, state, dynamics, 1 - expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
+    Crease job = {plan, shell, state, dynamics, 1 - real_expf(-h / CREASE_TIME), state->burn->mass_burnt > 0};
     pool_for(pool, (int)shell->cell_count, POOL_BLOCK, crease_normals, &job);
     pool_for(pool, (int)shell->springs[SINGE_GREEN].count, POOL_BLOCK, crease_bends, &job);
     double creased = pool_sum(pool, (int)shell->springs[SINGE_GREEN].count, crease_springs, &job, plan->partial);

@@ -15,6 +15,7 @@
 //   m = gain (|r| - B)/|r| r/(w_a + 4 w_b + w_c),   x_a -= w_a m,   x_b += 2 w_b m,   x_c -= w_c m
 //
 // Families of strands follow each other; strands of a family share no particle.
+#include "common/real.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <math.h>
@@ -45,7 +46,7 @@ static float bend_limit(const Shell *shell, uint32_t a, uint32_t b, uint32_t c, 
     float thickness = field_at(shell->matter.thickness, b);
     if (!(curvature > 0) || side > BEND_COARSE * thickness) return INFINITY;
     Float3 rest = float3_sub(float3_sub(float3_load(x[c]), float3_load(x[b])), float3_sub(float3_load(x[b]), float3_load(x[a])));
-    float turned = 2 * length * sinf(0.5f * fminf(curvature * length, 2.8f));
+    float turned = 2 * length * real_sinf(0.5f * fminf(curvature * length, 2.8f));
     float cosine = side / sqrtf(side * side + 4 * thickness * thickness); // of beta
     turned = fminf(turned, 2 * length * length / side * sqrtf(0.5f * (1 - cosine)));
     return sqrtf(float3_dot(rest, rest) + turned * turned);

@@ -119,6 +119,11 @@ CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan) {
     return plan->collision ? collision_counters(plan->collision) : (CollisionCounters){0};
 }
 
+const char *dynamics_plan_validate(const DynamicsPlan *plan) {
+    if (atomic_load(&plan->strands.taken) != 0) return "no thread has scratch of the strands between steps";
+    return plan->collision ? collision_validate(plan->collision) : NULL;
+}
+
 void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room) {
     for (uint32_t v = 0; v < shell->vertex_count; v++) room[v] = INFINITY;
     if (plan->collision) collision_clearance(plan->collision, shell, STATE_INPUT(state), room);

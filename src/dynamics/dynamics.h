@@ -60,6 +60,9 @@ bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider
 /// Counts of contact of sheets so far; zero without.
 CollisionCounters dynamics_plan_contacts(const DynamicsPlan *plan);
 
+/// NULL, or which invariant of the plan is broken between two steps.
+const char *dynamics_plan_validate(const DynamicsPlan *plan);
+
 /// How far another part of a sheet is from the cells at each vertex ([vertices], m), where that is near, else INFINITY.
 void dynamics_plan_clearance(const DynamicsPlan *plan, const Shell *shell, const State *state, float *room);
 

@@ -68,7 +68,9 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
     float sx = (dv * dv - dw * dw + c * c) / (2 * c), sy = -sqrtf(fmaxf(0, dv * dv - sx * sx));
     if (uy - sy <= 0) return INFINITY;
     float cross = sx - (ux - sx) * sy / (uy - sy);
-    return cross >= 0 && cross <= c ? hypotf(ux - sx, uy - sy) : INFINITY;
+    if (!(cross >= 0 && cross <= c)) return INFINITY;
+    double x = (double)(ux - sx), y = (double)(uy - sy); // exact squares: what hypotf gives, everywhere
+    return (float)sqrt(x * x + y * y);
 }
 
 /// Length of the side or diagonal between corners i and j of a cell. What is held cannot shrink to its target.

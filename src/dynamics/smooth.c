@@ -12,6 +12,7 @@
 // it takes from a wave falls with the fourth power of its length over smoothing_length, whatever the mesh. The
 // second takes what the first cannot see. A rigid motion of a flat sheet has r = 0 and is not touched. Where the nodes
 // are not in line or not equally far apart, r sees a rotation too: a curved sheet that spins loses angular momentum.
+#include "common/real.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -85,7 +86,7 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
                       dynamics->velocity,
                       (const float(*)[4])dynamics->position,
                       0,
-                      1 - expf(-plan->settings.solver.smoothing * h)};
+                      1 - real_expf(-plan->settings.solver.smoothing * h)};
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
             uint32_t strands = set->family_first[f + 1] - job.first_strand;

@@ -20,6 +20,7 @@
 //
 // The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
 // whole sheet the gas flows along it, and only flakes and edges are in its way.
+#include "common/real.h"
 #include "gas/gas_plan.h"
 
 static const float SHEET_REACH = 1.25f;     ///< cells
@@ -135,7 +136,7 @@ void gas_feed(GasPass *pass) {
 }
 
 /// B/(e^B - 1).
-static float sheets_blown(float b) { return b > 1e-3f ? b < 30 ? b / expm1f(b) : 0 : 1; }
+static float sheets_blown(float b) { return b > 1e-3f ? b < 30 ? b / real_expm1f(b) : 0 : 1; }
 
 /// Where the gas comes from that meets a particle.
 static Float3 sheets_upstream(const GasPass *pass, Float3 x) {

@@ -2,17 +2,14 @@
 #define SWEEP_ROWS sweep_plain
 #include "gas/sweep_kernel.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "common/cpu.h"
+
 SweepFn *sweep_choose(SingeInstructions instructions) {
-    bool asked = instructions == SINGE_INSTRUCTIONS_BEST || instructions >= SINGE_INSTRUCTIONS_X86_V3;
-    __builtin_cpu_init();
-    return asked && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")
-               ? sweep_v3
-               : sweep_plain;
-}
-#else
-SweepFn *sweep_choose(SingeInstructions instructions) {
+#ifdef SINGE_X86_LEVELS
+    bool asked = instructions == SINGE_INSTRUCTIONS_BEST || instructions == SINGE_INSTRUCTIONS_X86_V3 ||
+                 instructions == SINGE_INSTRUCTIONS_X86_V4;
+    if (asked && cpu_has(SINGE_INSTRUCTIONS_X86_V3)) return sweep_v3;
+#endif
     (void)instructions;
     return sweep_plain;
 }
-#endif

@@ -9,6 +9,7 @@
 
 /// Consecutive particles that rest together (rest.c). Divides POOL_BLOCK.
 enum { HEAT_GROUP = 64 };
+_Static_assert(POOL_BLOCK % HEAT_GROUP == 0, "a block of a sum is whole groups");
 /// Groups near one that can be listed.
 enum { HEAT_NEAR = 48 };
 
@@ -20,6 +21,7 @@ typedef struct HeatTwin {
 
 /// Interleaved rows of the matrix.
 enum { HEAT_ROWS = 4 };
+_Static_assert(HEAT_GROUP % HEAT_ROWS == 0, "a group is whole slices");
 
 /// The heat equation's matrix in rows: an entry is a spring's conductance to particle `column`. `value` is 0 where the
 /// spring conducts no more; conductances are without the time step. HEAT_ROWS rows lie interleaved, so that a processor

@@ -20,6 +20,7 @@
 // One F holds for a whole sheet; parameters that vary over it come in by their means.
 #include <math.h>
 
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 static const float THICKEN_CELLS = 0.75f;
@@ -29,7 +30,7 @@ static float front_rate(const FrontMatter *front, float rise) {
     const float gas_constant = 8.314462618f; // J/(mol K)
     if (!(front->pre_exponential > 0)) return front->mass_rate * rise;
     float temperature = front->ignition_temperature + rise;
-    return front->pre_exponential * expf(-front->activation_energy / (gas_constant * temperature));
+    return front->pre_exponential * real_expf(-front->activation_energy / (gas_constant * temperature));
 }
 
 float heat_thickening_for(float thickening, const FrontMatter *front, float ambient_temperature, float cell_size) {

@@ -34,6 +34,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "common/real.h"
 #include "heat/heat_plan.h"
 
 enum { SIDES = 4, SPRINGS = 6, ITERATIONS = 50, STEEPEST = 5 };
@@ -125,7 +126,7 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
     double total = 0;
     mean[0] = mean[1] = slope[0] = slope[1] = slope[2] = 0;
     for (int e = 0; e < SPRINGS; e++) {
-        k[e] = s[e].square > 0 ? exp(lambda[0] * s[e].z[0] + lambda[1] * s[e].z[1]) : 0;
+        k[e] = s[e].square > 0 ? real_exp(lambda[0] * s[e].z[0] + lambda[1] * s[e].z[1]) : 0;
         total += k[e];
     }
     for (int e = 0; e < SPRINGS; e++) {
@@ -137,20 +138,42 @@ static void weights_mean(const WeightSpring s[SPRINGS], const double lambda[2], 
     slope[0] -= mean[0] * mean[0], slope[1] -= mean[0] * mean[1], slope[2] -= mean[1] * mean[1];
 }
 
+/// a in two halves of 26 bits, whose products are exact (Veltkamp).
+static double weights_high(double a) {
+    double b = a * 134217729; // 2^27 + 1
+    return b - (b - a);
+}
+
+/// What a a has beyond `square`, its rounded value (Dekker).
+static double weights_rest(double a, double square) {
+    double high = weights_high(a), low = a - high;
+    return ((high * high - square) + 2 * high * low) + low * low;
+}
+
+/// sqrt(u u + v v), rounded as if exact but for few in a million: the same with every C library, unlike hypot. For
+/// numbers whose squares neither overflow nor vanish.
+static double weights_length(double u, double v) {
+    double uu = u * u, vv = v * v, length = sqrt(uu + vv);
+    if (!(length > 1e-140 && length < 1e140)) return length;
+    double square = length * length, big = fmax(uu, vv), small = fmin(uu, vv);
+    double miss = ((square - big) - small) + (weights_rest(length, square) - (weights_rest(u, uu) + weights_rest(v, vv)));
+    return length - miss / (2 * length);
+}
+
 /// k of most entropy, with a sum of 1. Returns sqrt(1 - r^2).
 static double weights_entropy(const WeightSpring s[SPRINGS], double k[SPRINGS]) {
     double lambda[2] = {0}, mean[2], slope[3], moved = 1;
     weights_mean(s, lambda, k, mean, slope);
-    for (int n = 0; n < ITERATIONS && moved > 1e-9 && hypot(mean[0], mean[1]) > 1e-12; n++) {
+    for (int n = 0; n < ITERATIONS && moved > 1e-9 && weights_length(mean[0], mean[1]) > 1e-12; n++) {
         double before[2] = {lambda[0], lambda[1]};
         // Newton's step, at most 1 long: the mean is the gradient of a convex function of lambda
         double a = slope[0] + 1e-9, b = slope[1], c = slope[2] + 1e-9, determinant = a * c - b * b;
         double u = (b * mean[1] - c * mean[0]) / determinant, v = (b * mean[0] - a * mean[1]) / determinant;
-        double shorter = fmax(hypot(u, v), 1);
+        double shorter = fmax(weights_length(u, v), 1);
         lambda[0] += u / shorter, lambda[1] += v / shorter;
-        double steep = fmax(hypot(lambda[0], lambda[1]) / STEEPEST, 1);
+        double steep = fmax(weights_length(lambda[0], lambda[1]) / STEEPEST, 1);
         lambda[0] /= steep, lambda[1] /= steep;
-        moved = hypot(lambda[0] - before[0], lambda[1] - before[1]);
+        moved = weights_length(lambda[0] - before[0], lambda[1] - before[1]);
         weights_mean(s, lambda, k, mean, slope);
     }
     return sqrt(fmax(1 - mean[0] * mean[0] - mean[1] * mean[1], DBL_EPSILON));

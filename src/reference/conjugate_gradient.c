@@ -8,6 +8,8 @@
 // the same for any number of threads and any width of the processor's registers.
 #include "reference/conjugate.h"
 
+#include "common/cpu.h"
+
 #include <math.h>
 
 static void conjugate_begin(void *task, int begin, int end) {
@@ -16,11 +18,10 @@ static void conjugate_begin(void *task, int begin, int end) {
 }
 
 const ConjugateKernel *conjugate_choose(SingeInstructions instructions) {
-#if defined(__x86_64__) && defined(__GNUC__)
-    __builtin_cpu_init();
-    if ((instructions == SINGE_INSTRUCTIONS_BEST || instructions >= SINGE_INSTRUCTIONS_X86_V3) &&
-        __builtin_cpu_supports("avx2"))
-        return &conjugate_v3;
+#ifdef SINGE_X86_LEVELS
+    bool asked = instructions == SINGE_INSTRUCTIONS_BEST || instructions == SINGE_INSTRUCTIONS_X86_V3 ||
+                 instructions == SINGE_INSTRUCTIONS_X86_V4;
+    if (asked && cpu_has(SINGE_INSTRUCTIONS_X86_V3)) return &conjugate_v3;
 #endif
     (void)instructions;
     return &conjugate_plain;

@@ -5,6 +5,7 @@
 //
 // which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring that leaves it. A spring of
 // two cells has the mean of both.
+#include "common/real.h"
 #include "shell/fibre.h"
 
 #include "common/float3.h"
@@ -38,7 +39,7 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
     Float3 along = fibre_along_u(shell, cell, a, b);
     Float3 e1 = float3_unit(float3_mad(along, normal, -float3_dot(along, normal)));
     float angle = field_at(shell->matter.fibre_angle, shell_centre(shell, cell));
-    return (FibreFrame){e1, float3_cross(normal, e1), cosf(2 * angle), sinf(2 * angle)};
+    return (FibreFrame){e1, float3_cross(normal, e1), real_cosf(2 * angle), real_sinf(2 * angle)};
 }
 
 /// Adds `share` of a cell's view of a spring.

@@ -211,6 +211,8 @@ typedef struct ShellSplit {
     uint32_t spare; ///< the vertex they went to
 } ShellSplit;
 
+_Static_assert(sizeof(ShellSplit) == 12, "snapshots hold splits as they are");
+
 /// Empty where sheets cannot tear.
 typedef struct TearState {
     float (*line_force)[6]; ///< [cells] N/m in rest coordinates, filtered: xx, yy, zz, yz, zx, xy

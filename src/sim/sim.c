@@ -1,4 +1,6 @@
 // A simulation's life: create, add sheets, commit, destroy.
+#include "common/check.h"
+#include "shell/validate.h"
 #include "sim/sim_internal.h"
 
 #include <stddef.h>
@@ -39,7 +41,7 @@ static const char *sim_check_solver(const SingeSolverDef *solver) {
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error) {
     const char *what = sim_check_solver(&def->solver);
     if (!(def->thread_count >= 1 && def->thread_count <= 64)) what = "thread_count must be between 1 and 64";
-    if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_X86_V4)
+    if ((int)def->instructions < SINGE_INSTRUCTIONS_BEST || def->instructions > SINGE_INSTRUCTIONS_ARM_NEON)
         what = "instructions is none of the choices";
     if (!in_range(def->time_step, 1e-9f, 10)) what = "time_step must be between 1e-9 and 10 s";
     if (!in_range(def->pace, 1e-6f, 1e6f)) what = "pace must be between 1e-6 and 1e6";
@@ -266,6 +268,8 @@ SingeResult singe_sim_commit(SingeSim *sim) {
     }
     sim->heat_start = sim_enthalpy(sim);
     sim->committed = true;
+    SINGE_ASSERT(shell_validate(&sim->shell) == NULL);
+    SINGE_ASSERT(state_validate(&sim->shell, &sim->state) == NULL);
     sim_log_commit(sim);
     return SINGE_OK;
 }

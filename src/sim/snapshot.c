@@ -20,6 +20,8 @@ typedef struct SnapshotHeader {
     uint32_t sizes[4];  ///< of what the body is made of: another build's layout is refused
     uint32_t reserved[2]; ///< 0
 } SnapshotHeader;
+_Static_assert(sizeof(SnapshotHeader) == 56, "a snapshot begins with these bytes, without padding");
+_Static_assert(sizeof(SingePoseKey) == 32 && sizeof(SingeValueKey) == 8, "snapshots hold keys as they are");
 
 static SnapshotHeader snapshot_header(const uint8_t *body, size_t size) {
     SnapshotHeader header = {.version = SNAPSHOT_VERSION, .order = 0x01020304u, .size = size,

@@ -1,5 +1,7 @@
 // The step, in the order of the paper's section 4, and after it the gas.
+#include "common/check.h"
 #include "common/clock.h"
+#include "shell/validate.h"
 #include "sim/sim_internal.h"
 
 #include <string.h>
@@ -130,6 +132,14 @@ static SingeResult step_stages(SingeSim *sim) {
     return SINGE_OK;
 }
 
+/// With assertions: everything that a step may have changed.
+static void step_validate(const SingeSim *sim) {
+    SINGE_ASSERT(shell_validate(&sim->shell) == NULL);
+    SINGE_ASSERT(state_validate(&sim->shell, &sim->state) == NULL);
+    SINGE_ASSERT(dynamics_plan_validate(sim->dynamics) == NULL);
+    (void)sim;
+}
+
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
@@ -149,6 +159,7 @@ SingeResult sim_step(SingeSim *sim) {
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;
+    step_validate(sim);
     return SINGE_OK;
 }
 

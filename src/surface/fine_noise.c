@@ -12,6 +12,7 @@
 //
 // r is a sum of octaves, each half the size of the one before down to the fine triangles; its lattice lies askew to the
 // sheet and its grid.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
@@ -84,7 +85,7 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     if (fine->sheets[sheet].reach > 0) {
         float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
         x = half_at_most(depth, fine->axes[location.cell][0]), y = half_at_most(depth, fine->axes[location.cell][1]);
-        float c = cosf(angle), s = sinf(angle);
+        float c = real_cosf(angle), s = real_sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
         const float direction[3][2] = {{c, s}, {-0.5f * c - across * s, across * c - 0.5f * s},
                                        {-0.5f * c + across * s, -across * c - 0.5f * s}};

@@ -13,6 +13,7 @@
 // is torn off all around is drawn, too.
 //
 // Nothing is drawn outside the cells, so tear edges cross nothing that the cells do not.
+#include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
@@ -29,7 +30,7 @@ static float angle_at(const Shell *shell, uint32_t cell, int corner) {
     Float3 p = float3_load(shell->rest_position[at[corner]]);
     Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 1) & 3]]), p));
     Float3 b = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 3) & 3]]), p));
-    return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
+    return real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
 }
 
 /// b of a vertex at a tear; marks its cells.

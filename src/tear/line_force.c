@@ -17,6 +17,7 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
 // averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by
 // s^2/4 (variance, an axis) at a time, and so does the mean over the cells at a vertex.
+#include "common/real.h"
 #include "tear/tear_plan.h"
 
 #include <math.h>
@@ -34,7 +35,7 @@ float tear_strength(const TearPlan *plan, const Shell *shell, const State *state
     float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
     float fuel = state->burn.fuel[vertex], ash = 1 - fuel - shell_char(state->burn.mass[vertex], fuel, min, yield);
     if (fuel >= 1 || isinf(fresh)) return fresh * weakened;
-    float burnt = powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
+    float burnt = real_powf(field_at(matter->char_strength, vertex) / fresh, 1 - fuel);
     if (yield > min) burnt *= 1 + (LINE_ASH - 1) * ash;
     return fresh * fminf(burnt, weakened);
 }
@@ -131,7 +132,7 @@ static double measure_cells(void *task, int begin, int end) {
 
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h) {
-    Measure job = {.plan = plan, .shell = shell, .state = state, .pull = pull, .keep = expf(-h / LINE_FILTER)};
+    Measure job = {.plan = plan, .shell = shell, .state = state, .pull = pull, .keep = real_expf(-h / LINE_FILTER)};
     return pool_sum(pool, (int)shell->cell_count, measure_cells, &job, plan->partial);
 }
 
@@ -220,8 +221,8 @@ TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state,
     Float3 e1 = float3_unit(float3_cross(normal, side)), e2 = float3_cross(normal, e1);
     float a = tensor_across(pull.force, e1), b = tensor_across(pull.force, e2);
     float c = (tensor_across(pull.force, float3_add(e1, e2)) - a - b) / 2;
-    float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = atan2f(c, (a - b) / 2) / 2;
-    pull.across = float3_add(float3_scale(e1, cosf(angle)), float3_scale(e2, sinf(angle)));
+    float mean = (a + b) / 2, radius = sqrtf((a - b) * (a - b) / 4 + c * c), angle = real_atan2f(c, (a - b) / 2) / 2;
+    pull.across = float3_add(float3_scale(e1, real_cosf(angle)), float3_scale(e2, real_sinf(angle)));
     pull.ratio = fmaxf(0, (mean + radius) / tear_strength(plan, shell, state, vertex));
     float stretch = mean + radius > plan->safe ? fan_stretch(shell, state, &fan) : 0;
     if (stretch > EDGE_STRETCH) pull.ratio = fmaxf(pull.ratio, stretch / EDGE_STRETCH);

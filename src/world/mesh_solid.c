@@ -10,6 +10,7 @@
 //   |d(p)| >= |d(c)| - |p - c|,   and the sign is that at c where this is above 0,
 //
 // and it bounds how far the tree has to look. So the grid's coarseness costs time, never accuracy.
+#include "common/real.h"
 #include "world/mesh_solid.h"
 #include "world/triangle.h"
 
@@ -37,7 +38,7 @@ static bool solid_normals(Memory *memory, MeshSolid *solid) {
         for (uint32_t i = 0; i < 3; i++) {
             Float3 at = solid_corner(solid, t, i), a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
             Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
-            float angle = atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
+            float angle = real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b));
             float *sum = solid->vertex_normals[solid->triangles[t][i]];
             float3_store(sum, float3_mad(float3_load(sum), normal, angle));
         }
@@ -95,7 +96,7 @@ static bool solid_grid(Memory *memory, MeshSolid *solid) {
     // a flat one is taken to be thicker: else all cells would lie in its plane
     double min = (double)fmaxf(size.x, fmaxf(size.y, size.z)) / 256;
     double side[3] = {fmax((double)size.x, min), fmax((double)size.y, min), fmax((double)size.z, min)};
-    solid->cell = (float)cbrt(side[0] * side[1] * side[2] / wanted);
+    solid->cell = (float)real_cbrt(side[0] * side[1] * side[2] / wanted);
     size_t count = 1;
     for (int d = 0; d < 3; d++) { // and one cell about it
         solid->cells[d] = (int32_t)ceil(side[d] / (double)solid->cell) + 2;

@@ -13,6 +13,7 @@
 #include "shell/shell.h"
 
 enum { STRAND_LANES = 16, STRAND_KEEP = 3 };
+_Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 
 /// Share of a bend beyond the limit that a substep removes (curvature.c).
 #define BEND_GAIN 0.5f
@@ -71,10 +72,10 @@ typedef struct StrandJob {
 
 /// Projects the strands of one group; `keep` has room for STRAND_KEEP floats for each row and lane.
 typedef void StrandSolve(const StrandJob *job, uint32_t group, float *keep);
-StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4;
+StrandSolve strand_solve_plain, strand_solve_v2, strand_solve_v3, strand_solve_v4, strand_solve_neon;
 
 /// Limits the curvature along the strands of one group (curvature_kernel.h).
 typedef void StrandBend(const StrandSet *set, float *position, uint32_t group);
-StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4;
+StrandBend strand_bend_plain, strand_bend_v2, strand_bend_v3, strand_bend_v4, strand_bend_neon;
 
 #endif

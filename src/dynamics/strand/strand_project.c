@@ -1,10 +1,10 @@
 // Projection of one colour: the groups of a family side by side, family after family. Families follow each other as
 // in block Gauss-Seidel; groups of a family share no particle, so that their order and the number of threads do not
 // matter.
+#include "common/thread.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"
 
-#include <sched.h>
 #include <stdatomic.h>
 
 /// Floats that one solve needs: STRAND_KEEP for each row and lane.
@@ -60,7 +60,7 @@ typedef struct Project {
 /// A room of the scratch for this thread: a bit of `taken`. A host's scheduler may run more threads than there are
 /// rooms; they wait.
 static int strands_enter(Strands *strands) {
-    for (;; sched_yield())
+    for (;; thread_yield())
         for (int room = 0; room < strands->room_count; room++) {
             uint64_t bit = (uint64_t)1 << room;
             if (!(atomic_fetch_or(&strands->taken, bit) & bit)) return room;

@@ -1,0 +1,12 @@
+# 64-bit Arm Linux by Debian's cross compiler (gcc-aarch64-linux-gnu); what is built runs under qemu-user.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_FIND_ROOT_PATH /usr/aarch64-linux-gnu)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+find_program(SINGE_QEMU_AARCH64 NAMES qemu-aarch64 qemu-aarch64-static)
+if(SINGE_QEMU_AARCH64)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${SINGE_QEMU_AARCH64} -L /usr/aarch64-linux-gnu)
+endif()

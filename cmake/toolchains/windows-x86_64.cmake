@@ -1,0 +1,12 @@
+# 64-bit Windows by Debian's MinGW-w64 (gcc-mingw-w64-x86-64); what is built runs under wine.
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+find_program(CMAKE_C_COMPILER NAMES x86_64-w64-mingw32-gcc-win32 x86_64-w64-mingw32-gcc REQUIRED)
+set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+find_program(SINGE_WINE NAMES wine64 wine PATHS /usr/lib/wine)
+if(SINGE_WINE)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${SINGE_WINE})
+endif()

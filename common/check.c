@@ -1,0 +1,11 @@
+#include "common/check.h"
+
+#ifdef SINGE_ASSERTIONS
+#include <stdio.h>
+#include <stdlib.h>
+
+void check_failed(const char *condition, const char *file, int line) {
+    fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
+    abort();
+}
+#endif

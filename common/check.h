@@ -1,0 +1,14 @@
+// Assertions of invariants: what only a mistake in this program can break. Inputs are checked by code that returns an
+// error instead. On where SINGE_ASSERTIONS is defined (the presets dev, asan, tsan and fuzz); else nothing is computed.
+#ifndef COMMON_CHECK_H
+#define COMMON_CHECK_H
+
+#ifdef SINGE_ASSERTIONS
+/// Prints the condition with its place, and aborts.
+_Noreturn void check_failed(const char *condition, const char *file, int line);
+#define SINGE_ASSERT(condition) ((condition) ? (void)0 : check_failed(#condition, __FILE__, __LINE__))
+#else
+#define SINGE_ASSERT(condition) ((void)sizeof(!(condition)))
+#endif
+
+#endif

@@ -1,0 +1,44 @@
+// Elementary functions of the core. libm's by default; with SINGE_PORTABLE_MATH our own (real.c), which use nothing but
+// IEEE 754's additions, products, quotients and square roots: the same bytes with every C library, compiler and
+// processor. The two differ in the last digit of some results, so a build is of one kind throughout.
+#ifndef COMMON_REAL_H
+#define COMMON_REAL_H
+
+#include <math.h>
+
+/// To a float's last digit, half a unit of which they are off at most and by hardly more.
+float portable_expf(float x);
+float portable_expm1f(float x);
+float portable_log1pf(float x);
+/// x > 0, or x = 0 and y >= 0.
+float portable_powf(float x, float y);
+/// |x| at most 1e6.
+float portable_sinf(float x);
+float portable_cosf(float x);
+float portable_acosf(float x);
+float portable_atan2f(float y, float x);
+/// To 1e-15 of the result.
+double portable_exp(double x);
+/// x >= 0.
+double portable_cbrt(double x);
+
+#ifdef SINGE_PORTABLE_MATH
+#define REAL(name) portable_##name
+#else
+#define REAL(name) name
+#endif
+
+static inline float real_expf(float x) { return REAL(expf)(x); }
+static inline float real_expm1f(float x) { return REAL(expm1f)(x); }
+static inline float real_log1pf(float x) { return REAL(log1pf)(x); }
+static inline float real_powf(float x, float y) { return REAL(powf)(x, y); }
+static inline float real_sinf(float x) { return REAL(sinf)(x); }
+static inline float real_cosf(float x) { return REAL(cosf)(x); }
+static inline float real_acosf(float x) { return REAL(acosf)(x); }
+static inline float real_atan2f(float y, float x) { return REAL(atan2f)(y, x); }
+static inline double real_exp(double x) { return REAL(exp)(x); }
+static inline double real_cbrt(double x) { return REAL(cbrt)(x); }
+
+#undef REAL
+
+#endif

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""The core on other systems: builds it by cross compilers, runs hash_runs there and compares the bytes.
+
+    check.py --source FOLDER --build FOLDER [--install] [SYSTEM...]
+
+All are built with SINGE_PORTABLE_MATH, as C libraries differ in the last digits of exp and others. The measure is what
+hash_runs prints here, built by the preset "portable". Windows runs under wine, 64-bit Arm Linux under qemu; macOS is
+built, not run. A system whose compiler or emulator is missing is skipped, with a message; --install gets them first
+(Debian's packages, and Zig from PyPI into the build folder). The last line counts. Fails if a build fails, a program
+does, a run does too little, or a hash differs.
+"""
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+# preset: what to install, compilers, emulators, whether it runs
+SYSTEMS = {
+    "windows": (["gcc-mingw-w64-x86-64-win32", "wine64"], ["x86_64-w64-mingw32-gcc-win32"],
+                ["wine64", "wine", "/usr/lib/wine/wine64"]),
+    "arm64": (["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross", "qemu-user"], ["aarch64-linux-gnu-gcc"],
+              ["qemu-aarch64", "qemu-aarch64-static"]),
+    "macos": ([], [], None),
+}
+
+
+def fail(message):
+    print(message)
+    sys.exit(1)
+
+
+def output(command, environment=None):
+    """Lines that a program prints; ends the check where it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=3000)
+    if done.returncode != 0:
+        fail(f"{' '.join(map(str, command))} ended with {done.returncode}:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+    return done.stdout.replace("\r", "").splitlines()
+
+
+def zig(build):
+    """How to call Zig: SINGE_ZIG, a module of this Python, or the one that --install put there; None without."""
+    if os.environ.get("SINGE_ZIG"):
+        return os.environ["SINGE_ZIG"]
+    for python in (build / "zig/bin/python3", sys.executable):
+        if subprocess.run([python, "-m", "ziglang", "version"], capture_output=True).returncode == 0:
+            return f"{python} -m ziglang"
+    return None
+
+
+def install(systems, build):
+    root = [] if os.geteuid() == 0 else ["sudo"]
+    packages = [package for system in systems for package in SYSTEMS[system][0]]
+    if packages:
+        environment = ["env", "DEBIAN_FRONTEND=noninteractive"]
+        subprocess.run([*root, "apt-get", "update", "-q"], check=True)
+        subprocess.run([*root, *environment, "apt-get", "install", "-q", "-y", "--no-install-recommends", *packages],
+                       check=True)
+    if "macos" in systems and not zig(build):
+        subprocess.run([sys.executable, "-m", "venv", build / "zig"], check=True)
+        subprocess.run([build / "zig/bin/pip", "install", "-q", "ziglang"], check=True)
+
+
+def missing(system, build):
+    """What keeps a system from being tried; None: nothing."""
+    if system == "macos":
+        return None if zig(build) else "PyPI's ziglang"
+    _, compilers, emulators = SYSTEMS[system]
+    if not any(map(shutil.which, compilers)):
+        return " or ".join(compilers)
+    return None if any(map(shutil.which, emulators)) else " or ".join(emulators)
+
+
+def built(system, source, build):
+    """Configures and builds a system; the program that it leaves."""
+    folder = build / system
+    environment = dict(os.environ)
+    if system == "macos":
+        environment["SINGE_ZIG"] = zig(build)
+        environment.setdefault("ZIG_GLOBAL_CACHE_DIR", str(build / "zig-cache"))
+        environment.setdefault("ZIG_LOCAL_CACHE_DIR", str(build / "zig-cache"))
+    subprocess.run(["cmake", "--preset", system, "-S", source, "-B", folder], check=True, env=environment,
+                   stdout=subprocess.DEVNULL, cwd=source)
+    subprocess.run(["cmake", "--build", folder, "-j2"], check=True, env=environment, stdout=subprocess.DEVNULL)
+    return next(path for path in (folder / "tests/platforms/hash_runs", folder / "tests/platforms/hash_runs.exe")
+                if path.exists())
+
+
+def emulator(system):
+    name = next(filter(None, map(shutil.which, SYSTEMS[system][2])))
+    return [name, "-L", "/usr/aarch64-linux-gnu"] if system == "arm64" else [name]
+
+
+def compare(name, lines, wanted):
+    differ = [(a, b) for a, b in zip(lines, wanted) if a != b]
+    if len(lines) != len(wanted) or differ:
+        first = differ[0] if differ else (f"{len(lines)} lines", f"{len(wanted)} lines")
+        fail(f"{name}: {len(differ)} of {len(wanted)} hashes differ, first \"{first[0]}\", not \"{first[1]}\"")
+    print(f"{name}: {len(lines)} hashes, the same")
+
+
+def enough(lines):
+    """Ends the check if the runs burn, ablate and tear too little to compare anything by."""
+    counts = {words[0]: (int(words[2]), int(words[4]), int(words[6])) for words in map(str.split, lines)
+              if words[1] == "counts"}
+    whole = counts["fall"][0]
+    if not (counts["burn"][0] < whole and counts["burn"][2] > 100 and counts["tear"][1] > 10 and counts["gas"][2] > 50):
+        fail(f"the runs do too little: {counts}")
+    hashes = [line.split()[2] for line in lines if "counts" not in line]
+    if len(set(hashes)) != len(hashes):
+        fail("two hashes are the same: the runs do not differ, or nothing moves")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--source", type=pathlib.Path, required=True)
+    parser.add_argument("--build", type=pathlib.Path, required=True)
+    parser.add_argument("--install", action="store_true")
+    parser.add_argument("systems", nargs="*", metavar="SYSTEM", help="windows, arm64, macos [all]")
+    options = parser.parse_args()
+    systems = options.systems or list(SYSTEMS)
+    build = options.build.resolve()
+    build.mkdir(parents=True, exist_ok=True)
+    if options.install:
+        install(systems, build)
+
+    if not any(missing(system, build) is None for system in systems):
+        for system in systems:
+            print(f"skipped {system}: there is no {missing(system, build)}")
+        sys.exit(77) # for ctest: nothing to try is a skip, not a success
+
+    program = built("portable", options.source, build)
+    wanted = output([program])
+    views = [line for line in wanted if "snapshot" not in line]
+    enough(wanted)
+    compare("here, 3 threads", output([program, "--threads", "3", "--plain"]), views)
+
+    tried = 0
+    for system in systems:
+        lack = missing(system, build)
+        if lack:
+            print(f"skipped {system}: there is no {lack}")
+            continue
+        program = built(system, options.source, build)
+        tried += 1
+        if SYSTEMS[system][2] is None:
+            print(f"{system}: built, not run")
+            continue
+        quiet = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=str(build / "wine"))
+        compare(system, output([*emulator(system), program], quiet), wanted)
+        compare(f"{system}, plain loops", output([*emulator(system), program, "--plain"], quiet), views)
+    print(f"tried {tried} of {len(systems)} systems")
+
+
+if __name__ == "__main__":
+    main()

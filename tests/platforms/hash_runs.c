@@ -1,0 +1,152 @@
+// Short runs by the public interface, each with a hash of its snapshot: the same lines on every system (check.py).
+//
+//   hash_runs [--plain] [--threads N]
+//
+// A line is "NAME STEP HASH". --plain runs the loops without special instructions: its lines are the same too.
+#include <singe/singe.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELLS = 24, CORNERS = CELLS + 1, PARTS = 4 };
+
+static float positions[CORNERS][CORNERS][3], uv[CORNERS][CORNERS][2];
+static uint32_t cells[CELLS][CELLS][4];
+
+/// A level square of `side` m at height z, with its centre over the origin.
+static SingeSheetDef sheet_make(float side, float z) {
+    for (uint32_t y = 0; y < CORNERS; y++)
+        for (uint32_t x = 0; x < CORNERS; x++) {
+            float u = (float)x / CELLS, v = (float)y / CELLS;
+            positions[y][x][0] = side * (u - 0.5f), positions[y][x][1] = side * (v - 0.5f), positions[y][x][2] = z;
+            uv[y][x][0] = u, uv[y][x][1] = v;
+            const uint32_t corner = y * CORNERS + x;
+            const uint32_t cell[4] = {corner, corner + 1, corner + 1 + CORNERS, corner + CORNERS};
+            if (x < CELLS && y < CELLS) memcpy(cells[y][x], cell, sizeof cell);
+        }
+    SingeSheetDef sheet = singe_default_sheet();
+    sheet.vertex_count = CORNERS * CORNERS, sheet.positions = &positions[0][0][0], sheet.uv = &uv[0][0][0];
+    sheet.cell_count = CELLS * CELLS, sheet.cells = &cells[0][0][0];
+    return sheet;
+}
+
+/// What a run puts around its sheet.
+typedef struct Run {
+    const char *name;
+    int steps;
+    bool match, held, ball, gas, tears, windy;
+    float side, strength; ///< m; N/m, of the sheet
+} Run;
+
+static const Run runs[] = {
+    {"fall", 160, .ball = true, .side = 0.3f},
+    {"burn", 480, .match = true, .held = true, .windy = true, .side = 0.15f},
+    {"tear", 320, .match = true, .held = true, .windy = true, .tears = true, .side = 0.15f, .strength = 0.5f},
+    {"gas", 160, .match = true, .held = true, .gas = true, .side = 0.15f},
+};
+
+static SingeResult add_objects(SingeSim *sim, const Run *run, SingeSheetId sheet) {
+    SingeResult result = SINGE_OK;
+    if (run->match) {
+        const SingePoseKey edge = {.position = {run->side / 2, 0, 0}, .rotation = {0, 0, 0, 1}};
+        SingeSourceDef match = singe_default_source();
+        SingeSourceId id;
+        match.kind = SINGE_SOURCE_SPOT, match.path_count = 1, match.path = &edge;
+        match.radius = 0.01f, match.falloff = 0.01f, match.temperature = 1123, match.end = 0.5f;
+        result = singe_sim_add_source(sim, &match, &id);
+    }
+    if (!result && run->held) {
+        const uint32_t corners[2] = {0, CORNERS - 1};
+        SingePinDef pin = singe_default_pin();
+        SingePinId id;
+        pin.sheet = sheet, pin.vertex_count = 2, pin.vertices = corners;
+        result = singe_sim_add_pin(sim, &pin, &id);
+    }
+    if (!result && run->ball) {
+        const SingePoseKey below = {.position = {0.01f, 0.02f, -0.09f}, .rotation = {0, 0, 0, 1}};
+        SingeColliderDef ball = singe_default_collider();
+        SingeColliderId id;
+        ball.kind = SINGE_COLLIDER_SPHERE, ball.radius = 0.06f, ball.path_count = 1, ball.path = &below;
+        result = singe_sim_add_collider(sim, &ball, &id);
+    }
+    return result;
+}
+
+static SingeResult open_run(const Run *run, const SingeSimDef *base, SingeSim **sim, SingeError *error) {
+    SingeSimDef def = *base;
+    def.pace = 30;
+    def.gas.enabled = run->gas, def.solver.tearing = run->tears, def.contact.enabled = true;
+    if (run->windy) def.wind.velocity[1] = 1, def.wind.gust = 0.5f;
+    SingeResult result = singe_sim_create(&def, sim, error);
+    if (result) return result;
+    SingeSheetDef sheet = sheet_make(run->side, 0);
+    SingeSheetId id;
+    if (run->strength > 0) sheet.material.strength = singe_param(run->strength);
+    if ((result = singe_sim_add_sheet(*sim, &sheet, &id)) || (result = singe_sim_commit(*sim)) ||
+        (result = add_objects(*sim, run, id)))
+        *error = *singe_sim_error(*sim);
+    return result;
+}
+
+/// FNV-1a.
+static uint64_t hash_bytes(const uint8_t *bytes, size_t size) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+
+/// Of all that changes: the snapshot of a copy would name the instructions that were asked for.
+static uint64_t hash_view(const SingeSim *sim) {
+    const SingeView view = singe_sim_view(sim);
+    uint64_t hash = hash_bytes((const uint8_t *)view.position, view.particle_count * sizeof *view.position);
+    hash = hash * 31 + hash_bytes((const uint8_t *)view.velocity, view.particle_count * sizeof *view.velocity);
+    hash = hash * 31 + hash_bytes((const uint8_t *)view.temperature, view.particle_count * sizeof *view.temperature);
+    hash = hash * 31 + hash_bytes((const uint8_t *)view.mass, view.particle_count * sizeof *view.mass);
+    return hash * 31 + hash_bytes(view.particle_flags, view.particle_count);
+}
+
+static SingeResult hash_run(const Run *run, const SingeSimDef *base, SingeError *error) {
+    SingeSim *sim = NULL;
+    SingeResult result = open_run(run, base, &sim, error);
+    for (int step = 1; step <= run->steps && !result; step++) {
+        result = singe_sim_step(sim);
+        if (!result && step % (run->steps / PARTS) == 0)
+            printf("%s %d %016" PRIx64 "\n", run->name, step, hash_view(sim));
+        if (result) *error = *singe_sim_error(sim);
+    }
+    if (!result) { // so that a run in which nothing happens is seen
+        SingeStats stats = singe_sim_stats(sim);
+        printf("%s counts %u particles, %u tears, %d permille burnt\n", run->name, stats.particles, stats.tears,
+               (int)(1000 * stats.burnt_fraction));
+    }
+    uint8_t *bytes;
+    size_t size;
+    if (!result && base->instructions == SINGE_INSTRUCTIONS_BEST) {
+        if ((result = singe_sim_save(sim, &bytes, &size))) *error = *singe_sim_error(sim);
+        else {
+            printf("%s snapshot %016" PRIx64 " %zu bytes\n", run->name, hash_bytes(bytes, size), size);
+            singe_sim_free_bytes(sim, bytes, size);
+        }
+    }
+    singe_sim_destroy(sim);
+    return result;
+}
+
+int main(int count, char **arguments) {
+    SingeSimDef def = singe_default_sim();
+    def.thread_count = 1;
+    for (int i = 1; i < count; i++) {
+        if (strcmp(arguments[i], "--plain") == 0) def.instructions = SINGE_INSTRUCTIONS_PLAIN;
+        else if (strcmp(arguments[i], "--threads") == 0 && i + 1 < count) def.thread_count = atoi(arguments[++i]);
+        else return fprintf(stderr, "usage: hash_runs [--plain] [--threads N]\n"), 2;
+    }
+    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+        SingeError error;
+        if (!hash_run(&runs[i], &def, &error)) continue;
+        fprintf(stderr, "%s: %s: %s\n", runs[i].name, error.stage, error.message);
+        return 1;
+    }
+    return 0;
+}
