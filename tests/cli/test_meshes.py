@@ -102,5 +102,90 @@ class Meshes(Case):
         self.assertEqual(code, 0, text)
 
 
+    def numbers(self, name):
+        """What `check` says of one file: its report and its cells and springs."""
+        code, text, _, _ = self.check(name)
+        self.assertEqual(code, 0, text)
+        report = text[text.index(f"{name}: ") + len(name) + 2 :].split("\n", 1)[0]
+        return report, [line.split()[1] for line in text.splitlines() if line.startswith(("particles", "cells", "springs"))]
+
+    def test_what_blender_exports(self):
+        """Blender 4.5 splits a PLY's vertices where uv or normals differ: welded, it is the mesh that it was."""
+        side, corners = 5, []
+        for y in range(side - 1):
+            for x in range(side - 1):
+                corners.append([(y + dy) * side + x + dx for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1))])
+        place = lambda v: (v % side / 40, v // side / 40, abs(v % side - 2) / 80)  # a fold along its middle
+        with open(self.path("whole.obj"), "w") as file:
+            for v in range(side * side):
+                file.write("v %g %g %g\n" % place(v))
+            for face in corners:
+                file.write("f " + " ".join(str(v + 1) for v in face) + "\n")
+        rows, number, faces = [], {}, b""
+        for i, face in enumerate(corners):
+            island = i % (side - 1) // 2  # of uv, and flat shaded: left and right of the fold
+            face = [number.setdefault((v, island), len(number)) for v in face]
+            faces += struct.pack("<B4I", 4, *face)
+        for v, island in number:
+            x, y, z = place(v)
+            rows.append(struct.pack("<8f", x, y, z, 0.4 - 0.8 * island, 0, 0.9, x + island, y))
+        self.assertEqual(len(rows), side * side + side)
+        names = "".join("property float %s\n" % name for name in "x y z nx ny nz s t".split())
+        header = ("ply\nformat binary_little_endian 1.0\ncomment Created in Blender version 4.5.15 LTS\n"
+                  "element vertex %d\n%selement face %d\nproperty list uchar uint vertex_indices\nend_header\n")
+        self.write("split.ply", (header % (len(rows), names, len(corners))).encode() + b"".join(rows) + faces)
+        whole, counts = self.numbers("whole.obj")
+        split, split_counts = self.numbers("split.ply")
+        self.assertEqual(split_counts, counts)
+        self.assertEqual(whole, "25 vertices, 0 triangles, 16 quads, 0 polygons, 1 component")
+        self.assertEqual(split, "30 vertices, 0 triangles, 16 quads, 0 polygons, 1 component, 5 vertices on seams")
+        # parts that lie farther apart than welding reaches stay apart
+        for i, (v, island) in enumerate(number):
+            x, y, z = place(v)
+            rows[i] = struct.pack("<8f", x + 1e-3 * island, y, z, 0, 0, 1, x + island, y)
+        self.write("apart.ply", (header % (len(rows), names, len(corners))).encode() + b"".join(rows) + faces)
+        self.assertIn("2 components", self.numbers("apart.ply")[0])
+
+    def area(self, name):
+        """Of the first frame, as it is drawn."""
+        scene = self.path("area.yaml")
+        with open(scene, "w") as file:
+            file.write(f"sheets: [{{mesh: {name}}}]\ngas: no\nframes: 1\n")
+        self.singe("run", scene, "-o", self.path("area"), "--no-preview", "--quiet")
+        with open(self.path("area", "ply", "area.0001.ply"), "rb") as file:
+            header, body = file.read().split(b"end_header\n", 1)
+        count = int(header.split(b"element vertex ")[1].split()[0])
+        at = [struct.unpack_from("<3f", body, 100 * i) for i in range(count)]
+        total = 0
+        for a, b, c in (struct.unpack_from("<3i", body, i + 1) for i in range(100 * count, len(body), 13)):
+            total += ((at[b][0] - at[a][0]) * (at[c][1] - at[a][1]) - (at[b][1] - at[a][1]) * (at[c][0] - at[a][0])) / 2
+        return total
+
+    def test_polygons_of_an_obj(self):
+        """A square of 6 x 6 parts: an L of 8 corners, a face with a notch, one with 7 corners, and quads."""
+        side, faces, taken = 7, [], set()
+        at = lambda x, y: y * side + x + 1
+
+        def face(cells, *points):
+            taken.update(cells)
+            faces.append([at(x, y) for x, y in points])
+        face([(0, 0), (1, 0), (0, 1)], (0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), (0, 1))
+        face([(3, 3), (4, 3), (5, 3), (3, 4), (5, 4)], (3, 3), (4, 3), (5, 3), (6, 3), (6, 4), (6, 5), (5, 5), (5, 4),
+             (4, 4), (4, 5), (3, 5), (3, 4))
+        face([(3, 0), (4, 0)], (3, 0), (4, 0), (5, 0), (5, 1), (4, 1), (3, 1))
+        for y in range(side - 1):
+            for x in range(side - 1):
+                if (x, y) not in taken:
+                    face([], (x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1))
+        with open(self.path("ngons.obj"), "w") as file:
+            for i in range(side * side):
+                file.write("v %g %g 0\nvt %g %g\n" % (i % side / 50, i // side / 50, i % side / 6, i // side / 6))
+            for corners in faces:
+                file.write("f " + " ".join(f"{v}/{v}" for v in corners) + "\n")
+        report, _ = self.numbers("ngons.obj")
+        self.assertEqual(report, "49 vertices, 0 triangles, 26 quads, 3 polygons, 1 component")
+        self.assertLess(abs(self.area("ngons.obj") / 0.12**2 - 1), 1e-5)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -18,15 +18,16 @@ environment() {
     "$folder/$name/bin/pip" install --quiet --disable-pip-version-check "$@"
 }
 
-# client NAME SCRIPT
+# client NAME SCRIPT [WORK]     WORK: the folder of what it makes, NAME by default
 client() {
-    echo "== $1"
-    if ! PYTHONDONTWRITEBYTECODE=1 "$folder/$1/bin/python" "$here/$2" "$singe" "$folder/work/$1" > "$folder/$1.log" 2>&1; then
+    local work=${3:-$1}
+    echo "== $work"
+    if ! PYTHONDONTWRITEBYTECODE=1 "$folder/$1/bin/python" "$here/$2" "$singe" "$folder/work/$work" > "$folder/$work.log" 2>&1; then
         failed=1
-        tail -30 "$folder/$1.log"
-        echo "$1: failed; all of it is in $folder/$1.log"
+        tail -30 "$folder/$work.log"
+        echo "$work: failed; all of it is in $folder/$work.log"
     else
-        grep -v '^Fra:\|^Saved:\|^Time:\|^$' "$folder/$1.log" || true
+        grep -v '^Fra:\|^Saved:\|^Time:\|^Info:\|INFO\|^$' "$folder/$work.log" || true
     fi
 }
 
@@ -55,6 +56,7 @@ for version in 3.11:4.5 3.13:5.2; do
     if environment "blender-${version#*:}" "bpy==${version#*:}.*" numpy; then
         found=1
         client "blender-${version#*:}" blender.py
+        client "blender-${version#*:}" blender_meshes.py "meshes-${version#*:}"
     else
         echo "== Blender ${version#*:}: not to be had"
     fi
