@@ -22,13 +22,17 @@ MINUTES ?= $(shell echo $(HOURS) | awk '{print 60 * $$1}')
 
 PRESET ?= release
 
-.PHONY: all demo test check check-examples check-clients check-platforms gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
+.PHONY: all configure demo test check check-examples check-clients check-platforms gate torture coverage fuzz-long soak pictures build build-asan build-fuzz build-shared build-tsan clean
 
 all: build
 
 build:
 	cmake --preset release
 	cmake --build --preset release
+
+# all of them at once: each takes one core
+configure:
+	printf '%s\n' release asan fuzz shared tsan | xargs -P $$(nproc) -n 1 cmake --preset
 
 build-asan:
 	cmake --preset asan
@@ -63,6 +67,7 @@ test:
 check:
 	scripts/setup.sh --check
 	scripts/check_arrows.sh
+	$(MAKE) configure
 	$(MAKE) build build-asan build-fuzz build-shared build-tsan
 	build-shared/cli/singe --version
 	ctest --preset tsan -j2 -L '^threads$$'

@@ -80,6 +80,21 @@ SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator
     return result;
 }
 
+size_t file_read_head(const char *path, uint8_t *bytes, size_t max) {
+    struct stat about;
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return 0;
+    size_t done = 0;
+    ssize_t count = fstat(file, &about) || !S_ISREG(about.st_mode) ? 0 : 1;
+    while (count > 0 && done < max) {
+        count = read(file, bytes + done, max - done);
+        if (count > 0) done += (size_t)count;
+        else if (count < 0 && errno == EINTR) count = 1;
+    }
+    close(file);
+    return done;
+}
+
 void bytes_free(Bytes *bytes) {
     store_free(bytes->allocator, bytes->data, bytes->size + 1, 1);
     memset(bytes, 0, sizeof *bytes);

@@ -19,6 +19,8 @@ SINGE_NODISCARD SingeResult file_read(const char *path, SingeAllocator allocator
 /// The same of a file that has at most so many bytes; SINGE_ERROR_LIMIT where it is larger, before it is read.
 SINGE_NODISCARD SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
                                            SingeError *error);
+/// The first bytes of a regular file, `max` at most; returns how many, 0 where it cannot be read.
+size_t file_read_head(const char *path, uint8_t *bytes, size_t max);
 void bytes_free(Bytes *bytes);
 
 /// Writes path whole or leaves it as it was: a temporary name beside it, flushed, renamed. A link is replaced, not
@@ -89,6 +91,8 @@ typedef struct Image {
 /// Reads PNG or JPEG, distinguished by their first bytes; alpha is laid over white. At most 16384 × 16384.
 SINGE_NODISCARD SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                        Image *image, SingeError *error);
+/// Width and height that a PNG or JPEG file states in its first 64 KB; false where it cannot be known without reading it.
+bool image_size(const char *path, int *width, int *height);
 /// Writes an 8-bit RGB PNG file, whole or not at all.
 SINGE_NODISCARD SingeResult png_write(const char *path, int width, int height, const uint8_t *rgb, SingeError *error);
 void image_free(Image *image);

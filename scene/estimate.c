@@ -1,5 +1,6 @@
-// What a scene takes, from its numbers alone: bytes a cell as measured on sheets of 10,000 to 490,000 cells, which
-// differ by 5 % (tests/cli/test_usage.py holds it against a run).
+// What a scene takes, from its numbers and the sizes of its pictures: bytes a cell as measured on sheets of 10,000 to
+// 490,000 cells, which differ by 5 % (tests/cli/test_usage.py holds it against a run).
+#include "formats/formats.h"
 #include "scene/messages.h"
 #include "scene/rotation.h"
 #include "scene/scene.h"
@@ -11,7 +12,9 @@ static const double cell_bytes = 3.6e3, contact_bytes = 6.9e3;
 /// Bytes of a cell of the gas, how many cells it has where the scene leaves them to it, and at most; and how far it
 /// reaches beyond the sheets to the sides and down, m.
 static const double gas_bytes = 160, gas_cells_usual = 200e3, gas_cells_max = 2e6, gas_margin = 0.045;
-static const double pixel_bytes = 80;
+/// Bytes of a pixel that is drawn; of one of a sheet's picture, of a parameter's texture while it is read, and of a
+/// heightfield, simulated and drawn (measured with 1 and 9 million pixels: 42 to 45 and 300 to 330).
+static const double pixel_bytes = 80, picture_bytes = 3, texture_bytes = 7, height_bytes = 45, drawn_height_bytes = 300;
 static const double program_bytes = 40e6;
 
 static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
@@ -67,6 +70,29 @@ static double gas_cells(const Scene *scene, const SceneAssets *assets) {
     return fmin(cells, gas_cells_max);
 }
 
+static double pixels_of(const SceneFile *file) {
+    int width, height;
+    return file->path && image_size(file->path, &width, &height) ? (double)width * (double)height : 0;
+}
+
+/// Pixels of a collider's heights.
+static double height_pixels(const SceneCollider *collider) {
+    return collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD ? pixels_of(&collider->picture) : 0;
+}
+
+/// Bytes of all that is read from pictures.
+static double pictures_memory(const Scene *scene) {
+    double memory = picture_bytes * pixels_of(&scene->preview.environment_picture);
+    for (uint32_t i = 0; i < scene->sheet_count; i++) {
+        memory += picture_bytes * pixels_of(&scene->sheets[i].picture);
+        for (size_t k = 0; k < SCENE_PARAM_SLOTS; k++)
+            memory += texture_bytes * pixels_of(&scene->sheets[i].material.textures[k]);
+    }
+    for (uint32_t i = 0; i < scene->source_count; i++) memory += texture_bytes * pixels_of(&scene->sources[i].texture);
+    for (uint32_t i = 0; i < scene->collider_count; i++) memory += height_bytes * height_pixels(&scene->colliders[i]);
+    return memory;
+}
+
 SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     SceneSize size = {.memory = program_bytes};
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
@@ -74,18 +100,40 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
         size.unread += !assets && scene->sheets[i].mesh.name;
     }
     size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
+    size.memory += pictures_memory(scene);
     if (scene->sim.gas.enabled)
         size.memory += gas_bytes * gas_cells(scene, assets);
     return size;
 }
 
 double scene_picture_memory(const Scene *scene) {
-    return pixel_bytes * (double)scene->preview.size[0] * (double)scene->preview.size[1];
+    double memory = pixel_bytes * (double)scene->preview.size[0] * (double)scene->preview.size[1];
+    for (uint32_t i = 0; i < scene->collider_count; i++)
+        if (scene->colliders[i].visible) memory += drawn_height_bytes * height_pixels(&scene->colliders[i]);
+    return memory;
+}
+
+/// The heightfield with the most pixels, where it takes more than half of what is wanted; NULL otherwise.
+static const SceneCollider *largest_heights(const Scene *scene, double wanted) {
+    const SceneCollider *largest = NULL;
+    double pixels = 0;
+    for (uint32_t i = 0; i < scene->collider_count; i++) {
+        const double count = height_pixels(&scene->colliders[i]);
+        if (count > pixels) largest = &scene->colliders[i], pixels = count;
+    }
+    return pixels * (height_bytes + (largest && largest->visible ? drawn_height_bytes : 0)) > 0.5 * wanted ? largest : NULL;
 }
 
 bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
     if (!(room > 0) || wanted <= room)
         return true;
+    const SceneCollider *heights = largest_heights(scene, wanted);
+    if (heights) {
+        message_add(messages, scene->text, heights->picture.location,
+                    "the scene needs about %.1f GB of memory, and there are %.1f GB: give its heightfield fewer pixels",
+                    1e-9 * wanted, 1e-9 * room);
+        return false;
+    }
     uint32_t largest = 0;
     for (uint32_t i = 1; i < scene->sheet_count; i++)
         if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest))

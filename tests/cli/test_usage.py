@@ -4,6 +4,7 @@ import os
 import re
 import resource
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -149,7 +150,17 @@ class Usage(Case):
         out, _ = self.singe("check", mesh)
         self.assertRegex(out, r"^needs +about \d\.\d\d GB of memory for 0 cells and those of 1 mesh file\n"
                               r"needs +about \d\.\d\d GB of memory for 1 cells\n")
+        with open(self.path("heights.png"), "wb") as file:  # of which only the head is there
+            file.write(b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sIIBBBBBI", 13, b"IHDR", 16000, 16000, 8, 0, 0, 0, 0, 0))
+        heights = self.write_scene("heights.yaml", extra="colliders:\n  - {kind: heightfield, picture: heights.png, "
+                                   "size: [1, 1], heights: [-30 cm, -20 cm]}\n")
+        out, err = self.singe("check", heights, expect=2)  # too much, or else not a whole picture
+        self.assertGreater(float(re.search(r"needs +about ([0-9.]+) GB", out).group(1)), 10)
+        self.assertIn("heights.yaml", err)
         if not SANITIZED:
+            for command in ["check"], ["run", "-o", self.path("large"), "--no-preview"]:
+                _, err = self.singe(*command, heights, expect=2, preexec_fn=limited)
+                self.assertRegex(err, r"heights.yaml:\d+:\d+: error: .* and there are 4.3 GB: give its heightfield")
             for command in ["check"], ["run", "-o", self.path("large")]:
                 _, err = self.singe(*command, self.scene, "--set", cells + "[700, 700]", expect=2, preexec_fn=limited)
                 self.assertIn("and there are 4.3 GB", err)

@@ -277,6 +277,39 @@ static void refuses_what_is_no_picture(void **state) {
     assert_int_equal(read_copy(encoded.bytes, encoded.size, &image, &error), SINGE_ERROR_FORMAT);
 }
 
+static void expect_size(const char *file, const void *bytes, size_t size, bool known, int width, int height) {
+    SingeError error;
+    int w = -1, h = -1;
+    assert_int_equal(file_write(file, bytes, size, &error), SINGE_OK);
+    assert_int_equal(image_size(file, &w, &h), known);
+    if (known) assert_true(w == width && h == height);
+    else assert_true(w >= 0 && h >= 0);
+    unlink(file);
+}
+
+/// From a file's first bytes, without reading it; each of its beginnings is handled.
+static void a_size_is_known_beforehand(void **state) {
+    (void)state;
+    char file[64];
+    static const uint8_t rgb[3 * 48] = {0};
+    static Encoded encoded;
+    int w, h;
+    snprintf(file, sizeof file, "/tmp/singe-image-%d", (int)getpid());
+    assert_false(image_size(file, &w, &h));
+    assert_false(image_size("/", &w, &h));
+    for (int progressive = 0; progressive < 2; progressive++) {
+        encode_jpeg(&encoded, 8, 6, 3, JCS_RGB, rgb, progressive);
+        expect_size(file, encoded.bytes, encoded.size, true, 8, 6);
+        for (size_t cut = 0; cut < 20; cut++) expect_size(file, encoded.bytes, cut, false, 0, 0);
+    }
+    claim_png(&encoded, 16000, 12000);
+    expect_size(file, encoded.bytes, encoded.size, true, 16000, 12000);
+    expect_size(file, encoded.bytes, 23, false, 0, 0);
+    claim_png(&encoded, 1u << 20, 1);
+    expect_size(file, encoded.bytes, encoded.size, false, 0, 0);
+    expect_size(file, "no picture, but some text that goes on", 38, false, 0, 0);
+}
+
 static void luminance_is_exact_at_the_ends(void **state) {
     (void)state;
     uint8_t rgb[] = {0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 51, 51};
@@ -326,7 +359,7 @@ int main(void) {
         cmocka_unit_test(reads_every_kind_of_png),  cmocka_unit_test(png_write_reads_back),
         cmocka_unit_test(reads_jpeg),               cmocka_unit_test(reads_grey_and_ink),
         cmocka_unit_test(refuses_what_is_no_picture), cmocka_unit_test(luminance_is_exact_at_the_ends),
-        cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(allocation_failure_is_clean), cmocka_unit_test(a_size_is_known_beforehand),
     };
     int failures = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(folder);

@@ -1,0 +1,21 @@
+#!/bin/bash
+# Measures again what docs/performance.md says, into bench/results/NAME-*.csv: scripts/measure_performance.sh NAME, after
+# a build in build/, on a machine that does nothing else. Takes ten minutes on two cores.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+name=${1:?usage: measure_performance.sh NAME}
+bench() { # what is measured, and the end of its file's name where it differs
+    local file=bench/results/$name-${2:-$1}.csv begun=$SECONDS
+    build/cli/singe bench "$1" "${@:3}" --csv "$file" > /dev/null
+    echo "$file: $((SECONDS - begun)) s"
+}
+for threads in 1 2; do
+    bench step "step-$threads" --springs 100000,1000000 --threads $threads
+done
+bench dynamics "" --springs 1000,4000,16000,100000,1000000,10000000 --substeps 1 --projections 7
+bench dynamics paper --springs 1000,4000,16000,100000 --solver paper --substeps 1 --projections 7
+bench swing "" --cells 32,50,100,150 --thickness 1,2,5
+bench surface
+bench compare
+bench stability
+build/cli/singe bench plot bench/results/"$name"-{dynamics,paper}.csv -o docs/performance.svg
