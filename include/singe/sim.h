@@ -55,6 +55,22 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, Sin
                                                               const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count,
                                                          const SingePoseKey *path);
+/// Where the vertices of a deforming collider are at `time` (s of the simulation): vertices[3 * vertex_count of its Def],
+/// m in its own frame, each within 1e4. They go there from where they are now in straight lines, with the velocity that
+/// this takes, and stay. A host calls it before the steps of each frame, with the frame's end. A `time` that is not
+/// later than now: they are there at once, without a velocity. The mesh must not pass through itself; a triangle may
+/// lose its area.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id,
+                                                                      const float *vertices, double time);
+/// Where what a pin holds is at `time`, in place of a path: positions[3 * count of singe_sim_pin_particles], m, in that
+/// order. As above; singe_sim_move_pin gives it a path again. The first call for a pin allocates. SINGE_ERROR_STATE
+/// before the commit.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions,
+                                                                  double time);
+/// The particles that a pin holds, increasing, *count of them: vertices, and centres of cells where it was made by points
+/// with a radius. NULL and 0 for a stale handle and before the commit. They stay as long as the pin.
+SINGE_API const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint32_t *count);
+
 /// The handles of all objects there are: writes at most `capacity` of them, in the order of their slots, and returns how
 /// many there are. `ids` may be NULL where `capacity` is 0. After a load they are those of the saved simulation.
 SINGE_API uint32_t singe_sim_sheets(const SingeSim *sim, SingeSheetId *ids, uint32_t capacity);

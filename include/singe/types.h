@@ -118,6 +118,7 @@ typedef enum SingeColliderKind {
     SINGE_COLLIDER_CAPSULE = 3, ///< along local z, `height` between the centres of its caps
     SINGE_COLLIDER_HEIGHTFIELD = 4, ///< solid below heights over a rectangle about the origin, without end down local z
     SINGE_COLLIDER_MESH = 5,    ///< what a closed triangle mesh encloses
+    SINGE_COLLIDER_DEFORMING = 6, ///< the same of a mesh whose vertices move (singe_sim_set_collider_vertices)
 } SingeColliderKind;
 
 /// Which layers of a sheet that touches a collider exchange heat with it.
@@ -141,7 +142,7 @@ typedef struct SingeColliderDef {
     uint32_t path_count;      ///< 0: it stands still at `position` and `rotation`
     const SingePoseKey *path; ///< [path_count] of its own frame
     SingeContactSides sides;  ///< of a sheet in contact that exchange heat
-    /// mesh: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
+    /// mesh and deforming: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
     /// others; vertices at the very same place are one. One that is inside out is turned
     uint32_t vertex_count;
     const float *vertices;     ///< [3 * vertex_count] m, each within 1e4

@@ -36,6 +36,10 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     MovingCollider moving = {.collider = collider, .before = path_pose(&collider->path, before),
                              .after = path_pose(&collider->path, after)};
     Float3 low, high;
+    if (collider->def.kind == SINGE_COLLIDER_DEFORMING) {
+        deform_between(&collider->deform, before, after);
+        moving.drift = collider->deform.pose->farthest;
+    }
     collider_bounds(collider, &low, &high);
     const float ends[3][2] = {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}};
     float size = 0;
@@ -99,16 +103,28 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
     return offset - distance;
 }
 
+/// How far the surface of a deforming mesh has carried what was near it; nothing where it is too far to touch.
+static Float3 contact_drift(const MovingCollider *moving, float offset, Float3 from, Float3 to) {
+    Float3 normal;
+    if (moving->drift == 0) return float3(0, 0, 0);
+    float reach = offset + float3_length(float3_sub(to, from)) + 2 * moving->drift;
+    if (collider_distance(moving->collider, to, reach, &normal) >= reach) return float3(0, 0, 0);
+    return deform_drift(&moving->collider->deform, from);
+}
+
 bool contact_particle(const MovingCollider *moving, float offset, Float3 previous, float *position) {
     const Collider *collider = moving->collider;
     Float3 local = pose_unapply(&moving->after, float3_load(position)), out = local, normal;
-    float depth = contact_out(collider, offset, pose_unapply(&moving->before, previous), &out, &normal);
+    Float3 from = pose_unapply(&moving->before, previous), drift = contact_drift(moving, offset, from, local);
+    if (moving->drift > 0) from = float3_add(from, drift);
+    float depth = contact_out(collider, offset, from, &out, &normal);
     if (depth <= 0) return false;
     normal = quat_rotate(moving->after.rotation, normal);
     Float3 x = float3_add(float3_load(position), quat_rotate(moving->after.rotation, float3_sub(out, local)));
     // slip: the particle's displacement less the collider's at this position
     Float3 displacement = float3_sub(x, previous);
     Float3 carried = float3_sub(pose_apply(&moving->after, local), pose_apply(&moving->before, local));
+    if (moving->drift > 0) carried = float3_add(carried, quat_rotate(moving->after.rotation, drift));
     Float3 slip = float3_sub(displacement, carried);
     slip = float3_mad(slip, normal, -float3_dot(slip, normal));
     float length = float3_length(slip), max = collider->def.friction * depth;

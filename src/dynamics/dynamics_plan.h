@@ -15,6 +15,7 @@ typedef struct MovingCollider {
     Pose before, after;
     Float3 axis[3];           ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
+    float drift;           ///< m, that its own surface moves at most, in its frame: 0 but of a deforming mesh
 } MovingCollider;
 
 /// The loops that have a version for each instruction set.

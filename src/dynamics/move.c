@@ -86,10 +86,11 @@ void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateSta
         const Pin *pin = &pins->items[p];
         if (pin->generation == 0) continue;
         Pose pose = path_pose(&pin->path, time);
+        const float share = motion_share(&pin->motion, time);
         for (uint32_t k = 0; k < pin->count; k++) {
             uint32_t i = pin->particles[k];
             if (!(ablate->particle_flags[i] & SINGE_ALIVE)) continue;
-            Float3 point = pose_apply(&pose, float3_load(pin->anchors[k]));
+            Float3 point = pin_point(pin, &pose, k, share);
             float3_store(dynamics->velocity[i], float3_scale(float3_sub(point, float3_load(dynamics->position[i])), 1 / h));
             float3_store(dynamics->position[i], point);
             float3_store(plan->predicted[i], point);

@@ -1,6 +1,7 @@
 // Sources, colliders and wind: added, moved and removed at any time.
 #include "sim/objects.h"
 
+#include <math.h>
 #include <string.h>
 
 // ---- sources
@@ -19,7 +20,7 @@ SingeResult singe_sim_add_source(SingeSim *sim, const SingeSourceDef *given, Sin
         sim_slot(sim, &sim->sources.items, &sim->sources.count, &sim->sources.capacity, sizeof *source, &index);
     if (!source) return sim_fail(sim, SINGE_ERROR_MEMORY, "source", -1, "out of memory");
     TRY(source_create(&sim->memory, &sim->shell, &def, source, &sim->error));
-    source->generation = sim->next_generation++;
+    source->generation = sim_take_slot(sim, &sim->sources.count, index);
     *id = (SingeSourceId){index, source->generation};
     return SINGE_OK;
 }
@@ -62,11 +63,12 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     Collider *collider =
         sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
     if (!collider ||
-        (sim->dynamics && !dynamics_plan_reserve(&sim->memory, sim->dynamics, sim->colliders.count)))
+        (sim->dynamics && !dynamics_plan_reserve(&sim->memory, sim->dynamics, index + 1)))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "collider", -1, "out of memory");
     TRY(collider_create(&sim->memory, &def, collider, &sim->error));
-    if (collider->mesh.turned) sim_log_turned(sim, index);
-    collider->generation = sim->next_generation++;
+    if (collider->mesh.turned || (collider->deform.pose && deform_solid(&collider->deform)->turned))
+        sim_log_turned(sim, index);
+    collider->generation = sim_take_slot(sim, &sim->colliders.count, index);
     *id = (SingeColliderId){index, collider->generation};
     return SINGE_OK;
 }
@@ -83,6 +85,18 @@ SingeResult singe_sim_move_collider(SingeSim *sim, SingeColliderId id, uint32_t 
     if (!collider) return object_stale(sim, "collider", id.index);
     if (count == 0) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", id.index, "the path needs at least one key");
     return path_set(&collider->path, &sim->memory, count, path, "collider", &sim->error);
+}
+
+SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id, const float *vertices, double time) {
+    Collider *collider = OBJECT_FIND(sim->colliders, id);
+    if (!collider) return object_stale(sim, "collider", id.index);
+    if (collider->def.kind != SINGE_COLLIDER_DEFORMING)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", id.index, "not a deforming collider");
+    if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "collider", -1, "the time is not finite");
+    TRY(motion_check(collider->deform.motion.count, vertices, 1e4f, "collider", &sim->error));
+    motion_set(&collider->deform.motion, vertices, sim->state.time, time);
+    deform_forget(&collider->deform);
+    return SINGE_OK;
 }
 
 // ---- wind

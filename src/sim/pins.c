@@ -2,6 +2,7 @@
 // textures of sources do, and is settled there.
 #include "sim/objects.h"
 
+#include <math.h>
 #include <string.h>
 
 static void pin_stop_waiting(SingeSim *sim, Pin *pin) {
@@ -39,6 +40,7 @@ void sim_free_pin(SingeSim *sim, Pin *pin) {
     FREE(&sim->memory, pin->particles, pin->count);
     FREE(&sim->memory, pin->anchors, pin->count);
     path_free(&pin->path, &sim->memory);
+    motion_free(&sim->memory, &pin->motion);
     pin_stop_waiting(sim, pin);
     memset(pin, 0, sizeof *pin);
 }
@@ -165,7 +167,7 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
         return result;
     }
     if (sim->committed) dynamics_plan_hold(sim->dynamics, &sim->shell, &sim->state);
-    pin->generation = sim->next_generation++;
+    pin->generation = sim_take_slot(sim, &sim->pins.count, index);
     *id = (SingePinId){index, pin->generation};
     return SINGE_OK;
 }
@@ -186,8 +188,42 @@ SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t count, con
     Pose before = path_pose(&pin->path, sim->state.time);
     TRY(path_set(&pin->path, &sim->memory, count, path, "pin", &sim->error));
     Pose after = path_pose(&pin->path, sim->state.time);
+    const float share = motion_share(&pin->motion, sim->state.time);
     for (uint32_t k = 0; k < pin->count; k++)
-        float3_store(pin->anchors[k], pose_unapply(&after, pose_apply(&before, float3_load(pin->anchors[k]))));
+        float3_store(pin->anchors[k], pose_unapply(&after, pin_point(pin, &before, k, share)));
+    motion_free(&sim->memory, &pin->motion);
+    return SINGE_OK;
+}
+
+const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint32_t *count) {
+    const Pin *pin = OBJECT_FIND(sim->pins, id);
+    *count = pin ? pin->count : 0;
+    return pin && pin->count ? pin->particles : NULL;
+}
+
+/// A motion that begins where the path has the particles now.
+static bool pin_set_out(SingeSim *sim, Pin *pin) {
+    if (pin->motion.to) return true;
+    float(*now)[3] = NULL;
+    bool ok = NEW(&sim->memory, now, pin->count) != NULL;
+    const Pose pose = path_pose(&pin->path, sim->state.time);
+    for (uint32_t k = 0; ok && k < pin->count; k++)
+        float3_store(now[k], pose_apply(&pose, float3_load(pin->anchors[k])));
+    ok = ok && motion_create(&sim->memory, pin->count, now[0], &pin->motion);
+    FREE(&sim->memory, now, pin->count);
+    return ok;
+}
+
+SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions, double time) {
+    Pin *pin = OBJECT_FIND(sim->pins, id);
+    if (!pin) return object_stale(sim, "pin", id.index);
+    if (!sim->committed)
+        return sim_fail(sim, SINGE_ERROR_STATE, "pin", -1, "what a pin holds is not known before singe_sim_commit");
+    if (!isfinite(time)) return sim_fail(sim, SINGE_ERROR_ARGUMENT, "pin", -1, "the time is not finite");
+    TRY(motion_check(pin->count, positions, pin_position_max, "pin", &sim->error));
+    if (pin->count == 0) return SINGE_OK;
+    if (!pin_set_out(sim, pin)) return sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    motion_set(&pin->motion, positions, sim->state.time, time);
     return SINGE_OK;
 }
 

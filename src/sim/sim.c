@@ -170,7 +170,6 @@ void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *ca
         *capacity = grown;
         memcpy(&items, items_pointer, sizeof items);
     }
-    if (i == *count) ++*count;
     *index = i;
     return memset(items + i * size, 0, size);
 }

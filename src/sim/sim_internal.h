@@ -102,7 +102,13 @@ void sim_free_source(SingeSim *sim, Source *source);
 void sim_free_pin(SingeSim *sim, Pin *pin);
 
 /// Free slot of a list of `size`-byte items that begin with their generation; the item is zeroed and its
-/// generation left 0. NULL when out of memory.
+/// generation left 0. One at the list's end is part of it once the count is (sim_take_slot). NULL when out of memory.
 void *sim_slot(SingeSim *sim, void *items_pointer, uint32_t *count, uint32_t *capacity, size_t size, uint32_t *index);
+
+/// Gives a slot's object a generation; returns it.
+static inline uint32_t sim_take_slot(SingeSim *sim, uint32_t *count, uint32_t index) {
+    if (*count == index) ++*count;
+    return sim->next_generation++;
+}
 
 #endif

@@ -150,6 +150,41 @@ static bool snapshot_mesh(Stream *stream, Memory *memory, MeshSolid *mesh) {
     return ok && result == SINGE_OK;
 }
 
+static bool snapshot_motion(Stream *stream, Memory *memory, uint32_t count, Motion *motion) {
+    motion->count = count;
+    STREAM(stream, motion->start);
+    STREAM(stream, motion->end);
+    if (!snapshot_array(stream, memory, &motion->from, count, sizeof *motion->from) ||
+        !snapshot_array(stream, memory, &motion->to, count, sizeof *motion->to))
+        return false;
+    return snapshot_held(stream, snapshot_motion_fits(motion));
+}
+
+/// A deforming mesh as it was given, and its motion.
+static bool snapshot_deform(Stream *stream, Memory *memory, Deform *deform) {
+    if (stream->mode != STREAM_READ) {
+        MeshSolid given = *deform_solid(deform);
+        given.vertices = deform->rest;
+        return snapshot_mesh(stream, memory, &given) &&
+               snapshot_motion(stream, memory, given.vertex_count, &deform->motion);
+    }
+    MeshSolid given = {0};
+    Motion motion = {0};
+    bool ok = snapshot_mesh(stream, memory, &given) && snapshot_motion(stream, memory, given.vertex_count, &motion);
+    SingeResult result = ok ? deform_create(memory, given.vertex_count, given.vertices[0], given.triangle_count,
+                                            given.triangles[0], deform, NULL)
+                            : SINGE_OK;
+    mesh_solid_free(memory, &given);
+    if (ok && !result) {
+        motion_free(memory, &deform->motion);
+        deform->motion = motion;
+    } else {
+        motion_free(memory, &motion);
+    }
+    stream->failed |= result != SINGE_OK && result != SINGE_ERROR_MEMORY;
+    return ok && !result;
+}
+
 static bool snapshot_heights(Stream *stream, Memory *memory, const SingeColliderDef *def, HeightSolid *heights) {
     float *saved = heights->heights;
     size_t count = (size_t)def->columns * def->rows;
@@ -170,6 +205,7 @@ static bool snapshot_collider(Stream *stream, SingeSim *sim, Collider *collider)
     def.path_count = collider->path.count; // it may have been given another one
     if (!snapshot_held(stream, def.path_count > 0 && collider_check(&def, NULL) == SINGE_OK)) return false;
     if (collider->def.kind == SINGE_COLLIDER_MESH) return snapshot_mesh(stream, &sim->memory, &collider->mesh);
+    if (collider->def.kind == SINGE_COLLIDER_DEFORMING) return snapshot_deform(stream, &sim->memory, &collider->deform);
     if (collider->def.kind == SINGE_COLLIDER_HEIGHTFIELD)
         return snapshot_heights(stream, &sim->memory, &collider->def, &collider->heights);
     return true;
@@ -236,16 +272,35 @@ static SingeResult snapshot_state(Stream *stream, SingeSim *sim) {
     return result;
 }
 
+/// Of each pin, whether it follows positions, and those.
+static bool snapshot_pin_motions(Stream *stream, SingeSim *sim) {
+    for (uint32_t i = 0; i < sim->pins.count; i++) {
+        Pin *pin = &sim->pins.items[i];
+        uint8_t follows = pin->motion.to != NULL;
+        STREAM(stream, follows);
+        if (!snapshot_held(stream, follows <= (pin->generation != 0 && pin->count > 0))) return false;
+        if (follows && !snapshot_motion(stream, &sim->memory, pin->count, &pin->motion)) return false;
+    }
+    return true;
+}
+
+static bool snapshot_follows(const SingeSim *sim) {
+    for (uint32_t i = 0; i < sim->pins.count; i++)
+        if (sim->pins.items[i].motion.to) return true;
+    return false;
+}
+
 /// What most simulations have nothing of comes last, and only where there is something: a word that says what, and
 /// that.
 static bool snapshot_more(Stream *stream, SingeSim *sim) {
-    enum { MORE_REMAINDER = 1, MORE_ALL = 1 };
-    uint32_t more = sim->remainder != 0 ? MORE_REMAINDER : 0;
+    enum { MORE_REMAINDER = 1, MORE_PINS = 2, MORE_ALL = 3 };
+    uint32_t more = (sim->remainder != 0 ? MORE_REMAINDER : 0) | (snapshot_follows(sim) ? MORE_PINS : 0);
     if (stream->mode == STREAM_READ ? stream->offset == stream->size : !more) return true;
     STREAM(stream, more);
     if (!snapshot_held(stream, more != 0 && (more & ~(uint32_t)MORE_ALL) == 0)) return false;
     if (more & MORE_REMAINDER) STREAM(stream, sim->remainder);
-    return snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim));
+    if (!snapshot_held(stream, !(more & MORE_REMAINDER) || snapshot_remainder_fits(sim))) return false;
+    return !(more & MORE_PINS) || snapshot_pin_motions(stream, sim);
 }
 
 /// Walks the whole body. When reading, builds the shell once the sheets are there.

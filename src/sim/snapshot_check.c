@@ -25,6 +25,13 @@ bool snapshot_pin_fits(const Shell *shell, const Pin *pin) {
     return true;
 }
 
+bool snapshot_motion_fits(const Motion *motion) {
+    if (!isfinite(motion->start) || !isfinite(motion->end) || motion->end < motion->start) return false;
+    for (uint32_t i = 0; i < motion->count; i++)
+        if (!position_fits(motion->from[i]) || !position_fits(motion->to[i])) return false;
+    return true;
+}
+
 bool snapshot_remainder_fits(const SingeSim *sim) {
     const double h = (double)sim->def.time_step;
     return isfinite(sim->remainder) && sim->remainder != 0 && fabs(sim->remainder) <= 1e6 + h;

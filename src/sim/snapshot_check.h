@@ -5,6 +5,9 @@
 
 #include "sim/sim_internal.h"
 
+/// Points on their way are places, at times that are.
+bool snapshot_motion_fits(const Motion *motion);
+
 /// Whether an advance can have left such a remainder.
 bool snapshot_remainder_fits(const SingeSim *sim);
 

@@ -143,6 +143,8 @@ static void step_validate(const SingeSim *sim) {
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+    for (uint32_t i = 0; i < sim->colliders.count; i++)
+        if (sim->colliders.items[i].generation) collider_at(&sim->colliders.items[i], sim->state.time);
     if (sim->state.step == 0) sim_find_buried(sim);
     State before = sim->state;
     SingeTimers timers = sim->timers;

@@ -7,7 +7,7 @@ static bool in_range(float value, float low, float high) { return value >= low &
 
 SingeResult collider_check(const SingeColliderDef *def, SingeError *error) {
     const char *what = NULL;
-    if (def->kind < SINGE_COLLIDER_PLANE || def->kind > SINGE_COLLIDER_MESH) what = "kind is unknown";
+    if (def->kind < SINGE_COLLIDER_PLANE || def->kind > SINGE_COLLIDER_DEFORMING) what = "kind is unknown";
     bool round = def->kind == SINGE_COLLIDER_SPHERE || def->kind == SINGE_COLLIDER_CAPSULE;
     if (round && !in_range(def->radius, 1e-6f, 1e6f)) what = "radius must be above 0";
     for (int i = 0; i < 3; i++)
@@ -62,6 +62,9 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
     if (!result && def->kind == SINGE_COLLIDER_MESH)
         result = mesh_solid_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
                                    &collider->mesh, error);
+    if (!result && def->kind == SINGE_COLLIDER_DEFORMING)
+        result = deform_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
+                               &collider->deform, error);
     if (!result && def->kind == SINGE_COLLIDER_HEIGHTFIELD)
         result = height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights,
                                      error);
@@ -73,7 +76,12 @@ void collider_free(Memory *memory, Collider *collider) {
     path_free(&collider->path, memory);
     mesh_solid_free(memory, &collider->mesh);
     height_solid_free(memory, &collider->heights);
+    deform_free(memory, &collider->deform);
     *collider = (Collider){0};
+}
+
+void collider_at(const Collider *collider, double time) {
+    if (collider->def.kind == SINGE_COLLIDER_DEFORMING) deform_at(&collider->deform, time);
 }
 
 float collider_distance(const Collider *collider, Float3 p, float limit, Float3 *normal) {
@@ -88,6 +96,7 @@ float collider_distance(const Collider *collider, Float3 p, float limit, Float3 
     }
     case SINGE_COLLIDER_HEIGHTFIELD: return height_solid_distance(&collider->heights, p, limit, normal);
     case SINGE_COLLIDER_MESH: return mesh_solid_distance(&collider->mesh, p, limit, normal);
+    case SINGE_COLLIDER_DEFORMING: return mesh_solid_distance(deform_solid(&collider->deform), p, limit, normal);
     }
     *normal = float3(0, 0, 1);
     return INFINITY;
@@ -108,6 +117,7 @@ void collider_bounds(const Collider *collider, Float3 *low, Float3 *high) {
         return;
     }
     case SINGE_COLLIDER_MESH: *low = collider->mesh.low, *high = collider->mesh.high; return;
+    case SINGE_COLLIDER_DEFORMING: deform_bounds(&collider->deform, low, high); return;
     }
     *low = float3_scale(half, -1), *high = half;
 }

@@ -2,6 +2,7 @@
 #ifndef WORLD_COLLIDER_H
 #define WORLD_COLLIDER_H
 
+#include "world/deform.h"
 #include "world/height_solid.h"
 #include "world/mesh_solid.h"
 #include "world/path.h"
@@ -12,6 +13,7 @@ typedef struct Collider {
     Path path;
     MeshSolid mesh;      ///< of a mesh
     HeightSolid heights; ///< of a heightfield
+    Deform deform;       ///< of a deforming mesh
 } Collider;
 
 typedef struct ColliderList {
@@ -31,7 +33,10 @@ void collider_free(Memory *memory, Collider *collider);
 /// and no more than the distance, and the normal is any. With a limit of 0 only its sign counts, inside too.
 float collider_distance(const Collider *collider, Float3 local, float limit, Float3 *normal);
 
-/// The box that holds the collider, in its own frame; infinite where the collider is.
+/// Poses a deforming mesh at a time; others need no posing.
+void collider_at(const Collider *collider, double time);
+
+/// The box that holds the collider, in its own frame, throughout a substep; infinite where the collider is.
 void collider_bounds(const Collider *collider, Float3 *low, Float3 *high);
 
 #endif

@@ -62,11 +62,29 @@ static Float3 solid_centroid(const MeshSolid *solid, int i, int j, int k) {
                solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
 
+/// A vertex's normal, weighed by angles, from the triangles around it.
+static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t corner) {
+    if (solid->vertex_normals) return float3_load(solid->vertex_normals[solid->triangles[t][corner]]);
+    const uint32_t vertex = solid->triangles[t][corner], first = t;
+    Float3 sum = {0, 0, 0}, at = float3_load(solid->vertices[vertex]);
+    uint32_t turns = 0;
+    do {
+        uint32_t i = 0;
+        while (i < 2 && solid->triangles[t][i] != vertex) i++;
+        Float3 a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
+        Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
+        sum = float3_mad(sum, solid_face_normal(solid, t),
+                         atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)));
+        t = solid->neighbours[t][i];
+    } while (t != first && ++turns < solid->triangle_count);
+    return sum;
+}
+
 /// The pseudonormal where a foot lies.
 static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature) {
     if (feature >= TRIANGLE_FACE) return solid_face_normal(solid, t);
     if (feature < TRIANGLE_EDGE)
-        return float3_unit(float3_load(solid->vertex_normals[solid->triangles[t][feature - TRIANGLE_CORNER]]));
+        return float3_unit(solid_vertex_normal(solid, t, (uint32_t)(feature - TRIANGLE_CORNER)));
     Float3 sum = float3_add(solid_face_normal(solid, t),
                       solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
     return float3_unit(sum);
@@ -132,6 +150,20 @@ SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float
     return result;
 }
 
+SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, const float *vertices,
+                                     uint32_t triangle_count, const uint32_t *triangles, MeshSolid *solid,
+                                     SingeError *error) {
+    *solid = (MeshSolid){.cell = 1};
+    SingeResult result = mesh_solid_take(memory, vertex_count, vertices, triangle_count, triangles, solid, error);
+    if (!result) {
+        solid_bounds(solid);
+        if (!mesh_tree_create(memory, solid))
+            result = error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
+    }
+    if (result) mesh_solid_free(memory, solid);
+    return result;
+}
+
 void mesh_solid_free(Memory *memory, MeshSolid *solid) {
     FREE(memory, solid->vertices, solid->vertex_count);
     FREE(memory, solid->triangles, solid->room);
@@ -173,7 +205,7 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
         Float3 low = float3_sub(solid->low, p), high = float3_sub(p, solid->high);
         Float3 out = float3(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
         min = float3_length(out);
-        if (min >= limit) return min;
+        if (min > 0 && min >= limit) return min;
     }
     float square = SOLID_SLACK * max * max;
     uint32_t t = mesh_tree_nearest(solid, p, &square);

@@ -28,7 +28,7 @@ typedef struct MeshSolid {
     uint32_t (*triangles)[3];
     // what follows from them
     uint32_t (*neighbours)[3]; ///< across edge k, which runs from corner k to the next
-    float (*vertex_normals)[3]; ///< weighed by angles, any length
+    float (*vertex_normals)[3]; ///< weighed by angles, any length; NULL where vertices move
     uint32_t *order;           ///< [triangles] as the leaves have them
     uint32_t leaf_count, node_count;
     SolidLeaf *leaves;
@@ -37,7 +37,7 @@ typedef struct MeshSolid {
     float cell;                ///< m, side of the cells of the grid
     int32_t cells[3];
     Float3 origin;
-    float *coarse;             ///< signed distances at the centroids of the cells
+    float *coarse;             ///< signed distances at the centroids of the cells; none where vertices move
     bool turned;               ///< it was inside out
 } MeshSolid;
 
@@ -45,6 +45,11 @@ typedef struct MeshSolid {
 /// without extent that this leaves go; a mesh that is inside out is turned. Errors name the triangle or vertex.
 SingeResult mesh_solid_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
                               const uint32_t *triangles, MeshSolid *solid, SingeError *error);
+/// The same of a mesh whose vertices will move: without a grid of distances and normals of vertices, which would have
+/// to be made anew.
+SingeResult mesh_solid_create_moving(Memory *memory, uint32_t vertex_count, const float *vertices,
+                                     uint32_t triangle_count, const uint32_t *triangles, MeshSolid *solid,
+                                     SingeError *error);
 void mesh_solid_free(Memory *memory, MeshSolid *solid);
 
 /// See collider_distance.
@@ -58,6 +63,8 @@ SingeResult mesh_solid_take(Memory *memory, uint32_t vertex_count, const float *
 // mesh_tree.c
 /// Fills in order, leaves and nodes; false when out of memory.
 bool mesh_tree_create(Memory *memory, MeshSolid *solid);
+/// Makes the leaves, the boxes and `low` and `high` follow vertices that have moved.
+void mesh_tree_refit(MeshSolid *solid);
 /// The triangle nearest to p among those nearer than sqrt(*square), with its distance's square; UINT32_MAX: none.
 uint32_t mesh_tree_nearest(const MeshSolid *solid, Float3 p, float *square);
 

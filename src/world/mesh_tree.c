@@ -142,6 +142,48 @@ bool mesh_tree_create(Memory *memory, MeshSolid *solid) {
     return ok;
 }
 
+/// The box of a leaf's triangles, or of what a node holds.
+static void tree_child_box(const MeshSolid *solid, int32_t child, Float3 *low, Float3 *high) {
+    float bounds[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < 3; i++)
+        for (int lane = 0; lane < SOLID_WIDE; lane++) {
+            if (child >= 0) {
+                bounds[0][i] = fminf(bounds[0][i], solid->nodes[child].low[i][lane]);
+                bounds[1][i] = fmaxf(bounds[1][i], solid->nodes[child].high[i][lane]);
+                continue;
+            }
+            uint32_t slot = (uint32_t)~child * SOLID_WIDE + (uint32_t)lane;
+            slot = slot < solid->triangle_count ? slot : solid->triangle_count - 1;
+            for (int k = 0; k < 3; k++) {
+                float x = solid->vertices[solid->triangles[solid->order[slot]][k]][i];
+                bounds[0][i] = fminf(bounds[0][i], x), bounds[1][i] = fmaxf(bounds[1][i], x);
+            }
+        }
+    *low = float3_load(bounds[0]), *high = float3_load(bounds[1]);
+}
+
+void mesh_tree_refit(MeshSolid *solid) {
+    TreeBuild build = {.solid = solid};
+    const uint32_t count = solid->triangle_count;
+    for (uint32_t first = 0; first < count; first += SOLID_WIDE)
+        tree_leaf(&build, first, count - first < SOLID_WIDE ? count - first : SOLID_WIDE);
+    solid->low = float3(INFINITY, INFINITY, INFINITY), solid->high = float3(-INFINITY, -INFINITY, -INFINITY);
+    for (uint32_t n = solid->node_count; n-- > 0;) { // what a node holds has higher numbers
+        SolidNode *node = &solid->nodes[n];
+        for (int i = 0; i < SOLID_WIDE; i++) {
+            Float3 low, high;
+            if (node->child[i] == 0) continue; // nothing: the root is in no other
+            tree_child_box(solid, node->child[i], &low, &high);
+            node->low[0][i] = low.x, node->low[1][i] = low.y, node->low[2][i] = low.z;
+            node->high[0][i] = high.x, node->high[1][i] = high.y, node->high[2][i] = high.z;
+            if (n > 0) continue;
+            solid->low = float3(fminf(solid->low.x, low.x), fminf(solid->low.y, low.y), fminf(solid->low.z, low.z));
+            solid->high =
+                float3(fmaxf(solid->high.x, high.x), fmaxf(solid->high.y, high.y), fmaxf(solid->high.z, high.z));
+        }
+    }
+}
+
 static inline Float4 tree_dot(const Float4 a[3], const Float4 b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Squares of the distances to the boxes; infinite for an empty one.

@@ -3,6 +3,7 @@
 #define WORLD_PIN_H
 
 #include "shell/shell.h"
+#include "world/motion.h"
 #include "world/path.h"
 
 typedef struct Pin {
@@ -11,9 +12,15 @@ typedef struct Pin {
     uint32_t *particles;   ///< held particles, increasing
     float (*anchors)[3];   ///< m, in the frame of the path's pose
     Path path;
+    Motion motion;         ///< of the particles, in space, in place of the path; its arrays are NULL where the path holds
     void *user_data;
     SingePinDef waiting;   ///< of a pin that was added before the commit, until then: its points and vertices are its own
 } Pin;
+
+/// Where held particle k is at a time; `pose` is that of the path then.
+static inline Float3 pin_point(const Pin *pin, const Pose *pose, uint32_t k, float share) {
+    return pin->motion.to ? motion_point(&pin->motion, k, share) : pose_apply(pose, float3_load(pin->anchors[k]));
+}
 
 typedef struct PinList {
     uint32_t count, capacity;

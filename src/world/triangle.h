@@ -15,6 +15,7 @@ typedef enum TriangleFeature {
 typedef struct TriangleFoot {
     double square;   ///< of the distance
     double away[3];  ///< from the foot to the point
+    double s, t;     ///< weights of the second and third corner in it
     int feature;
 } TriangleFoot;
 
@@ -29,7 +30,7 @@ static inline void triangle_less(Float3 b, Float3 a, double out[3]) {
 /// The foot a + s ab + t ac.
 static inline TriangleFoot triangle_foot_at(const double pa[3], const double ab[3], const double ac[3], double s,
                                             double t, int feature) {
-    TriangleFoot foot = {.feature = feature};
+    TriangleFoot foot = {.feature = feature, .s = s, .t = t};
     for (int i = 0; i < 3; i++) foot.away[i] = pa[i] - s * ab[i] - t * ac[i];
     foot.square = triangle_dot(foot.away, foot.away);
     return foot;

@@ -1,0 +1,108 @@
+#include "world/deform.h"
+
+#include "world/triangle.h"
+
+#include <math.h>
+#include <string.h>
+
+static SingeResult deform_no_memory(SingeError *error) {
+    return error_set(error, SINGE_ERROR_MEMORY, "collider", -1, "out of memory for the mesh");
+}
+
+/// The arrays of the second solid that are its own.
+static bool deform_second(Memory *memory, DeformPose *pose) {
+    MeshSolid *second = &pose->solid[1];
+    *second = pose->solid[0];
+    second->vertices = NULL, second->leaves = NULL, second->nodes = NULL;
+    if (!NEW(memory, second->vertices, second->vertex_count) || !NEW(memory, second->leaves, second->leaf_count) ||
+        !NEW(memory, second->nodes, second->node_count))
+        return false;
+    memcpy(second->vertices, pose->solid[0].vertices, second->vertex_count * sizeof *second->vertices);
+    memcpy(second->leaves, pose->solid[0].leaves, second->leaf_count * sizeof *second->leaves);
+    memcpy(second->nodes, pose->solid[0].nodes, second->node_count * sizeof *second->nodes);
+    return true;
+}
+
+SingeResult deform_create(Memory *memory, uint32_t vertex_count, const float *vertices, uint32_t triangle_count,
+                          const uint32_t *triangles, Deform *deform, SingeError *error) {
+    *deform = (Deform){0};
+    if (!NEW(memory, deform->pose, 1)) return deform_no_memory(error);
+    SingeResult result = mesh_solid_create_moving(memory, vertex_count, vertices, triangle_count, triangles,
+                                                  &deform->pose->solid[0], error);
+    if (!result && (!motion_create(memory, vertex_count, vertices, &deform->motion) ||
+                    !NEW(memory, deform->rest, vertex_count) || !deform_second(memory, deform->pose)))
+        result = deform_no_memory(error);
+    if (result) {
+        deform->motion.count = vertex_count; // of what there is of its arrays
+        deform_free(memory, deform);
+        return result;
+    }
+    memcpy(deform->rest, vertices, vertex_count * sizeof *deform->rest);
+    deform_forget(deform);
+    return SINGE_OK;
+}
+
+void deform_free(Memory *memory, Deform *deform) {
+    if (deform->pose) {
+        MeshSolid *second = &deform->pose->solid[1];
+        FREE(memory, deform->rest, deform->motion.count);
+        FREE(memory, second->vertices, second->vertex_count);
+        FREE(memory, second->leaves, second->leaf_count);
+        FREE(memory, second->nodes, second->node_count);
+        mesh_solid_free(memory, &deform->pose->solid[0]);
+        motion_free(memory, &deform->motion);
+        FREE(memory, deform->pose, 1);
+    }
+    *deform = (Deform){0};
+}
+
+void deform_forget(const Deform *deform) { deform->pose->time[0] = deform->pose->time[1] = (double)NAN; }
+
+static void deform_make(const Deform *deform, int which, double time) {
+    MeshSolid *solid = &deform->pose->solid[which];
+    const float share = motion_share(&deform->motion, time);
+    for (uint32_t v = 0; v < solid->vertex_count; v++)
+        float3_store(solid->vertices[v], motion_point(&deform->motion, v, share));
+    mesh_tree_refit(solid);
+    deform->pose->time[which] = time;
+}
+
+void deform_at(const Deform *deform, double time) {
+    DeformPose *pose = deform->pose;
+    if (pose->time[pose->now] != time) deform_make(deform, pose->now, time);
+}
+
+void deform_between(const Deform *deform, double before, double after) {
+    DeformPose *pose = deform->pose;
+    if (pose->time[pose->now] == before) pose->now = 1 - pose->now;
+    if (pose->time[1 - pose->now] != before) deform_make(deform, 1 - pose->now, before);
+    deform_make(deform, pose->now, after);
+    float farthest = 0;
+    for (uint32_t v = 0; v < deform->motion.count; v++) {
+        Float3 way = float3_sub(float3_load(pose->solid[pose->now].vertices[v]),
+                                float3_load(pose->solid[1 - pose->now].vertices[v]));
+        farthest = fmaxf(farthest, float3_dot(way, way));
+    }
+    pose->farthest = sqrtf(farthest);
+}
+
+Float3 deform_drift(const Deform *deform, Float3 p) {
+    const MeshSolid *before = &deform->pose->solid[1 - deform->pose->now], *after = deform_solid(deform);
+    float square = INFINITY;
+    const uint32_t t = mesh_tree_nearest(before, p, &square);
+    if (t == UINT32_MAX) return float3(0, 0, 0);
+    const uint32_t *corner = before->triangles[t];
+    Float3 v[3], drift = {0, 0, 0};
+    for (int i = 0; i < 3; i++) v[i] = float3_load(before->vertices[corner[i]]);
+    const TriangleFoot foot = triangle_foot(p, v[0], v[1], v[2]);
+    const float weights[3] = {(float)(1 - foot.s - foot.t), (float)foot.s, (float)foot.t};
+    for (int i = 0; i < 3; i++)
+        drift = float3_mad(drift, float3_sub(float3_load(after->vertices[corner[i]]), v[i]), weights[i]);
+    return drift;
+}
+
+void deform_bounds(const Deform *deform, Float3 *low, Float3 *high) {
+    const MeshSolid *a = &deform->pose->solid[0], *b = &deform->pose->solid[1];
+    *low = float3(fminf(a->low.x, b->low.x), fminf(a->low.y, b->low.y), fminf(a->low.z, b->low.z));
+    *high = float3(fmaxf(a->high.x, b->high.x), fmaxf(a->high.y, b->high.y), fmaxf(a->high.z, b->high.z));
+}

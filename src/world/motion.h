@@ -1,0 +1,33 @@
+// Points on their way from where they are at one time to where a caller wants them at another, in straight lines.
+#ifndef WORLD_MOTION_H
+#define WORLD_MOTION_H
+
+#include "common/error.h"
+#include "common/float3.h"
+#include "common/memory.h"
+
+typedef struct Motion {
+    uint32_t count;
+    float (*from)[3], (*to)[3]; ///< [count] m; NULL: there is none
+    double start, end;          ///< s; at `from` before, at `to` after
+} Motion;
+
+/// All at rest at `points`. False when out of memory; nothing is left then.
+bool motion_create(Memory *memory, uint32_t count, const float *points, Motion *motion);
+void motion_free(Memory *memory, Motion *motion);
+
+/// Sets out at `now`, from where they are then, to be at `to` at `time`; at once where that is not later.
+void motion_set(Motion *motion, const float *to, double now, double time);
+
+/// Share of the way that is done, 0 to 1.
+float motion_share(const Motion *motion, double time);
+
+static inline Float3 motion_point(const Motion *motion, uint32_t i, float share) {
+    Float3 from = float3_load(motion->from[i]), to = float3_load(motion->to[i]);
+    return share < 1 ? float3_mad(from, float3_sub(to, from), share) : to;
+}
+
+/// Fails with the point that is not finite or beyond `max` m.
+SingeResult motion_check(uint32_t count, const float *points, float max, const char *owner, SingeError *error);
+
+#endif
