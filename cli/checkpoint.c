@@ -68,6 +68,13 @@ static uint64_t hash_solid(uint64_t hash, const SceneSolid *solid) {
     return hash_array(hash, solid->heights, (size_t)solid->columns * solid->rows, sizeof(float));
 }
 
+static uint64_t hash_sequence(uint64_t hash, const SceneSequence *sequence, uint32_t frames) {
+    if (sequence->frame_count) hash = hash_array(hash, sequence->triangles, 3 * (size_t)sequence->triangle_count, 4);
+    for (uint32_t f = 0; f < sequence->frame_count && f < frames; f++)
+        hash = hash_array(hash, sequence->frames[f].vertices, 3 * (size_t)sequence->vertex_count, sizeof(float));
+    return hash;
+}
+
 static uint64_t hash_image(uint64_t hash, const Image *image) {
     hash = hash_bytes(hash, &image->width, sizeof image->width);
     return hash_array(hash, image->rgb, 3 * (size_t)image->width * (size_t)image->height, sizeof *image->rgb);
@@ -110,6 +117,16 @@ SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets,
     return SINGE_ERROR_MEMORY;
 }
 
+/// The result's hash with what the moving meshes have been up to there; a longer run has more of them. Without any it
+/// stays as it is.
+static uint64_t hash_so_far(uint64_t hash, const SceneAssets *assets, Progress progress) {
+    const uint32_t frames = (uint32_t)progress.frame + (progress.step > 0);
+    for (uint32_t i = 0; i < assets->collider_count; i++)
+        hash = hash_sequence(hash, &assets->collider_motions[i], frames);
+    for (uint32_t i = 0; i < assets->pin_count; i++) hash = hash_sequence(hash, &assets->pin_motions[i], frames);
+    return hash;
+}
+
 SingeResult checkpoint_take(SingeSim *sim, CheckpointBytes *taken, SingeError *error) {
     SingeResult result = singe_sim_save(sim, &taken->bytes, &taken->size);
     if (result) {
@@ -125,7 +142,9 @@ void checkpoint_drop(SingeSim *sim, CheckpointBytes *taken) {
 }
 
 SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator, CheckpointBytes *taken,
-                             Progress progress, SceneHash hash, const Totals *totals, SingeError *error) {
+                             Progress progress, SceneHash hash, const SceneAssets *assets, const Totals *totals,
+                             SingeError *error) {
+    hash.result = hash_so_far(hash.result, assets, progress);
     size_t size = taken->size;
     uint8_t *grown = allocator.resize(allocator.context, taken->bytes, size, size + sizeof(Trailer));
     if (!grown) {
@@ -153,8 +172,8 @@ static SingeResult checkpoint_refuse(const Folder *folder, SingeResult code, con
     return code;
 }
 
-static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, Trailer *trailer,
-                                SingeError *error) {
+static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,
+                                Trailer *trailer, SingeError *error) {
     if (bytes->size < sizeof *trailer) return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
@@ -164,22 +183,23 @@ static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneH
     if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX ||
         trailer->step > INT_MAX)
         return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
-    if (trailer->hash.result != hash.result)
+    const Progress progress = {(int)trailer->frame, (int)trailer->step};
+    if (trailer->hash.result != hash_so_far(hash.result, assets, progress))
         return checkpoint_refuse(folder, SINGE_ERROR_STATE,
                       "the checkpoint is of another scene (the scene, its --set or a file it names has changed)",
                       error);
     return SINGE_OK;
 }
 
-SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash, Checkpoint *checkpoint,
-                            SingeError *error) {
+SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
+                            Checkpoint *checkpoint, SingeError *error) {
     *checkpoint = (Checkpoint){0};
     if (access(folder->checkpoint, F_OK) != 0 && errno == ENOENT) return SINGE_OK;
     Bytes bytes = {0};
     SingeResult result = file_read(folder->checkpoint, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
     Trailer trailer;
-    result = read_trailer(folder, &bytes, hash, &trailer, error);
+    result = read_trailer(folder, &bytes, hash, assets, &trailer, error);
     if (!result) {
         SingeError inner = {0};
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);

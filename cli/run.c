@@ -97,7 +97,7 @@ static SingeResult end_frame(Run *run, SingeError *error) {
 /// Steps to a frame; meanwhile the one before it is written, and is whole when this returns.
 static SingeResult reach_frame(Run *run, int frame, SingeError *error) {
     SingeError step_error;
-    SingeResult stepped = frame > 1 ? run_advance(run, &step_error) : SINGE_OK;
+    SingeResult stepped = frame > 1 ? run_advance(run, frame, &step_error) : SINGE_OK;
     SingeResult result = end_frame(run, error);
     if (result || !stepped) return result;
     *error = step_error;

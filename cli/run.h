@@ -94,7 +94,7 @@ SINGE_NODISCARD SingeResult run_draw_missing(Run *run, bool *whole, SingeError *
 SINGE_NODISCARD SingeResult run_convert_missing(Run *run, bool *whole, SingeError *error);
 
 /// Steps on to the next frame, or, when the run is asked to stop, by at least one step: run->step tells.
-SINGE_NODISCARD SingeResult run_advance(Run *run, SingeError *error);
+SINGE_NODISCARD SingeResult run_advance(Run *run, int frame, SingeError *error);
 
 /// Takes the frame that the simulation is at, and a snapshot when a checkpoint is due, as after the last frame, and
 /// begins to write its files. The first frame of a run is written at once.

@@ -68,7 +68,7 @@ static SingeResult open_tables(Run *run, SingeError *error) {
 static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
     SingeError error = {0};
-    SingeResult result = checkpoint_read(&run->folder, &run->job.hooks, run->hash, &checkpoint, &error);
+    SingeResult result = checkpoint_read(&run->folder, &run->job.hooks, run->hash, &run->job.assets, &checkpoint, &error);
     if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
     const int frame = checkpoint.progress.frame;
     if (frame == 0) return EXIT_GOOD;

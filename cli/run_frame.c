@@ -45,7 +45,11 @@ static void read_timers(Run *run, FrameCost *cost) {
     *before = now;
 }
 
-SingeResult run_advance(Run *run, SingeError *error) {
+SingeResult run_advance(Run *run, int frame, SingeError *error) {
+    if (run->step == 0) {
+        SingeResult result = scene_follow(run->job.scene, &run->job.assets, run->sim, frame - 1, error);
+        if (result) return result;
+    }
     while (run->step < run->job.scene->steps) {
         SingeResult result = singe_sim_step(run->sim);
         if (result) {
@@ -187,7 +191,8 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     if (!result) result = tables_sync(&run->tables, error);
     if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
-        result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash, totals,
+        result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash,
+                                  &run->job.assets, totals,
                                   error);
     run->checkpoint_cost += seconds_since(&clock);
     run->checkpoint_time = clock;

@@ -118,7 +118,8 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
         if (result) return result;
         facets = allocator_resize(preview->allocator, NULL, 0, sizeof *facets);
         if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
-        *facets = (Facets){.solid = solid, .triangle_count = solid->triangle_count, .next = preview->facets};
+        *facets = (Facets){.solid = solid, .triangle_count = solid->triangle_count, .passing = solid->passing,
+                            .next = preview->facets};
         preview->facets = facets;
         result = facets_build(preview, facets, error);
         if (result) facets->solid = NULL; // stays in the list till it is freed, but is not found
@@ -128,14 +129,37 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
     return SINGE_OK;
 }
 
+static void facets_free_one(Preview *preview, Facets *facets) {
+    if (facets->embree) rtcReleaseScene(facets->embree);
+    size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
+    allocator_resize(preview->allocator, facets->normals, size, 0);
+    allocator_resize(preview->allocator, facets, sizeof *facets, 0);
+}
+
+static bool facets_in_use(const Preview *preview, const Facets *facets) {
+    for (uint32_t i = 0; i < preview->shape_count; i++)
+        if (preview->shapes[i].facets == facets) return true;
+    return false;
+}
+
+void facets_drop(Preview *preview) {
+    Facets **link = &preview->facets;
+    while (*link) {
+        Facets *facets = *link;
+        if (facets->passing && !facets_in_use(preview, facets)) {
+            *link = facets->next;
+            facets_free_one(preview, facets);
+        } else {
+            link = &facets->next;
+        }
+    }
+}
+
 void facets_free(Preview *preview) {
     while (preview->facets) {
         Facets *facets = preview->facets;
         preview->facets = facets->next;
-        if (facets->embree) rtcReleaseScene(facets->embree);
-        size_t size = facets->normals ? 3 * (size_t)facets->triangle_count * sizeof *facets->normals : 0;
-        allocator_resize(preview->allocator, facets->normals, size, 0);
-        allocator_resize(preview->allocator, facets, sizeof *facets, 0);
+        facets_free_one(preview, facets);
     }
 }
 

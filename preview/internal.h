@@ -115,6 +115,7 @@ typedef struct Facets {
     Float3 middle;    ///< of its bounds, in its own frame
     float extent; ///< m, from the middle
     uint32_t triangle_count;
+    bool passing;     ///< goes when no shape has it any more
     struct Facets *next;
 } Facets;
 
@@ -215,6 +216,8 @@ Float3 sky_mirrored(const Sky *sky, Float3 direction);
 
 /// Finds or makes those of a solid.
 SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets **facets, SingeError *error);
+/// Frees what was made for passing solids that no shape has.
+void facets_drop(Preview *preview);
 void facets_free(Preview *preview);
 /// Distance along a ray in the solid's frame, in (near, far), or -1; *normal points outward.
 float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Float3 *normal);

@@ -211,6 +211,7 @@ SingeResult preview_set_shapes(Preview *preview, const PreviewShape *shapes, uin
     }
     allocator_resize(preview->allocator, preview->shapes, preview->shape_count * sizeof *preview->shapes, 0);
     preview->shapes = copy, preview->shape_count = drawn;
+    facets_drop(preview);
     return SINGE_OK;
 }
 

@@ -17,6 +17,7 @@ typedef struct PreviewSolid {
     uint32_t vertex_count, triangle_count;
     float *vertices;     ///< [3 * vertex_count] m
     uint32_t *triangles; ///< [3 * triangle_count]
+    bool passing;        ///< one of many that a shape has in turn: what is made for it goes with the next shapes
 } PreviewSolid;
 
 /// A rigid thing that is drawn: the scene's colliders and hot balls at the frame's time.

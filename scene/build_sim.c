@@ -110,6 +110,13 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     def.vertex_count = solid->surface.vertex_count, def.vertices = solid->surface.vertices;
     def.triangle_count = solid->surface.triangle_count, def.triangles = solid->surface.triangles;
     def.columns = solid->columns, def.rows = solid->rows, def.heights = solid->heights;
+    const SceneSequence *sequence = &builder->assets->collider_motions[index];
+    if (sequence->frame_count) {
+        const PreviewSolid *first = &sequence->frames[0];
+        def.kind = SINGE_COLLIDER_DEFORMING;
+        def.vertex_count = first->vertex_count, def.vertices = first->vertices;
+        def.triangle_count = first->triangle_count, def.triangles = first->triangles;
+    }
     SingeColliderId id;
     SingeResult result = singe_sim_add_collider(builder->sim, &def, &id);
     free(path);

@@ -79,14 +79,23 @@ void finish_source(Reader *reader, const Node *map, void *object) {
 void finish_collider(Reader *reader, const Node *map, void *object) {
     SceneCollider *collider = object;
     check_path(reader, map, collider->keys, collider->key_count);
+    const Node *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
+    if (!node_find(map, "kind") || collider->def.kind != SINGE_COLLIDER_MESH)
+        return;
+    if (mesh && motion)
+        complain(reader, motion->key_location, "'mesh' and 'motion' exclude each other; give one");
+    if (!mesh && !motion)
+        complain(reader, map->location, "a mesh needs 'mesh' (a file) or 'motion' (a file for each frame)");
 }
 
 void finish_pin(Reader *reader, const Node *map, void *object) {
     ScenePin *pin = object;
     if (!node_find(map, "points") && !node_find(map, "vertices"))
         complain(reader, map->location, "a pin needs 'points' or 'vertices'");
-    const Node *path = node_find(map, "path");
+    const Node *path = node_find(map, "path"), *motion = node_find(map, "motion");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
+    if (path && motion)
+        complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
 /// Whether the scene says where the camera is; otherwise scene_frame places it.

@@ -80,6 +80,14 @@ bool default_collider(SceneArena *arena, void *object) {
     return collider->keys != NULL;
 }
 
+bool default_motion(SceneArena *arena, void *object) {
+    (void)arena;
+    SceneMotion *motion = object;
+    motion->first = 1;
+    motion->scale = 1;
+    return true;
+}
+
 bool default_pin(SceneArena *arena, void *object) {
     (void)arena;
     ((ScenePin *)object)->radius = singe_default_pin().radius;

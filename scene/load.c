@@ -4,6 +4,7 @@
 #include "scene/probes.h"
 #include "scene/rotation.h"
 #include "scene/schema.h"
+#include "scene/sequence.h"
 #include "scene/solid.h"
 
 #include <math.h>
@@ -49,7 +50,7 @@ static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *
 static const float location_max = 1e4f;
 
 /// Grids are in metres.
-static double metres_per_unit(int unit, float scale) {
+double metres_per_unit(int unit, float scale) {
     static const double units[] = {[SCENE_UNITS_M] = 1, [SCENE_UNITS_CM] = 0.01, [SCENE_UNITS_MM] = 0.001,
                                    [SCENE_UNITS_IN] = 0.0254, [SCENE_UNITS_FT] = 0.3048};
     return units[unit] * (double)scale;
@@ -162,6 +163,14 @@ static void load_sheet(Loader *loader, uint32_t index) {
     }
 }
 
+/// The files of something that moves with a mesh.
+static void load_motion(Loader *loader, const SceneMotion *motion, SceneSequence *sequence) {
+    SingeError error = {0};
+    SingeResult result = sequence_read(motion, loader->scene->frames, sequence, &error);
+    if (result)
+        loader_fail(loader, &motion->mesh, result, error.message);
+}
+
 /// A collider's mesh or heights.
 static void load_solid(Loader *loader, uint32_t index) {
     const SceneCollider *collider = &loader->scene->colliders[index];
@@ -169,7 +178,9 @@ static void load_solid(Loader *loader, uint32_t index) {
     SingeError error = {0};
     SingeResult result = SINGE_OK;
     const SceneFile *file = &collider->mesh;
-    if (collider->def.kind == SINGE_COLLIDER_MESH) {
+    if (collider->def.kind == SINGE_COLLIDER_MESH && collider->motion.given) {
+        load_motion(loader, &collider->motion, &loader->assets->collider_motions[index]);
+    } else if (collider->def.kind == SINGE_COLLIDER_MESH) {
         Bytes bytes = {0};
         result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
         if (!result)
@@ -198,7 +209,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     Loader loader = {scene, assets, messages, false};
     uint32_t before = message_total(messages), first = messages->count;
     *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count,
-                            .collider_count = scene->collider_count};
+                            .collider_count = scene->collider_count, .pin_count = scene->pin_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
@@ -209,6 +220,8 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
     assets->probes = many(&loader, scene->probe_count, sizeof *assets->probes);
+    assets->collider_motions = many(&loader, scene->collider_count, sizeof *assets->collider_motions);
+    assets->pin_motions = many(&loader, scene->pin_count, sizeof *assets->pin_motions);
     if (loader.no_memory)
         message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
     for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
@@ -218,6 +231,9 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
             load_luminance(&loader, &scene->sources[i].texture, &assets->source_textures[i]);
     for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++)
         load_solid(&loader, i);
+    for (uint32_t i = 0; i < scene->pin_count && !loader.no_memory; i++)
+        if (scene->pins[i].motion.given)
+            load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
     if (message_total(messages) == before && !loader.no_memory)
@@ -249,7 +265,13 @@ void scene_assets_free(SceneAssets *assets) {
         picture_free(&assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++)
         solid_free(&assets->solids[i]);
+    for (uint32_t i = 0; i < assets->collider_count && assets->collider_motions; i++)
+        sequence_free(&assets->collider_motions[i]);
+    for (uint32_t i = 0; i < assets->pin_count && assets->pin_motions; i++)
+        sequence_free(&assets->pin_motions[i]);
     image_free(&assets->sky);
+    free(assets->collider_motions);
+    free(assets->pin_motions);
     free(assets->solids);
     free(assets->probes);
     free(assets->meshes);

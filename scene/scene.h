@@ -125,12 +125,23 @@ typedef struct SceneSource {
     bool visible;         ///< balls: drawn in the preview
 } SceneSource;
 
+/// A mesh that moves: a file for each frame.
+typedef struct SceneMotion {
+    bool given;
+    SceneFile mesh; ///< with a run of # for the number
+    int first;      ///< number of the file of frame 1
+    float scale;    ///< times what `units` says
+    int units;      ///< SceneUnits of the files
+    int up;         ///< SceneUp of the files
+} SceneMotion;
+
 typedef struct SceneCollider {
     SceneLocation location;
     SingeColliderDef def; ///< its pointers are empty
     SceneFile mesh;       ///< of a mesh
     float scale;          ///< times what `units` says
     int units;            ///< SceneUnits of the mesh file
+    SceneMotion motion;   ///< of a mesh that deforms, in place of `mesh`
     SceneFile picture;    ///< of a heightfield
     float heights[2];     ///< m, where the picture is black and where it is white
     uint32_t key_count;   ///< at least 1
@@ -154,6 +165,7 @@ typedef struct ScenePin {
     uint32_t *vertices;
     uint32_t key_count;
     SceneKey *keys;
+    SceneMotion motion;   ///< in place of keys
 } ScenePin;
 
 /// How a probe's place is given.
@@ -267,9 +279,24 @@ typedef struct SceneProbePlace {
     double distance;  ///< from what the scene asks for: m, or of uv
 } SceneProbePlace;
 
+/// A pin's particle on a triangle of a moving mesh (sequence.c).
+typedef struct SceneBond {
+    uint32_t triangle;
+    double weights[3], away[3];
+} SceneBond;
+
+/// The frames of a moving mesh, in metres. All have the triangles of the first.
+typedef struct SceneSequence {
+    uint32_t vertex_count, triangle_count, frame_count; ///< 0: there is none
+    uint32_t *triangles;
+    PreviewSolid *frames;  ///< [frame_count] with vertices of their own
+    uint32_t bond_count;
+    SceneBond *bonds;      ///< of a pin; NULL until scene_follow has made them
+} SceneSequence;
+
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
-    uint32_t sheet_count, source_count, collider_count;
+    uint32_t sheet_count, source_count, collider_count, pin_count;
     Mesh *meshes;                 ///< [sheet_count]
     MeshReport *reports;          ///< [sheet_count] what was done to those of files
     Image *images;                ///< [sheet_count], zeroed where there is none
@@ -279,6 +306,8 @@ typedef struct SceneAssets {
     SingeTexture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
     SingeTexture *source_textures; ///< [source_count]
     SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives
+    SceneSequence *collider_motions; ///< [collider_count]
+    SceneSequence *pin_motions;      ///< [pin_count]
     Image sky;                    ///< zeroed where there is none
     SceneProbePlace *probes;      ///< [Scene.probe_count]
 } SceneAssets;
@@ -310,6 +339,11 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
 /// or the first other object. What is certain to have no effect is reported to the log of `hooks`, with its place.
 SINGE_NODISCARD SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const SingeSimDef *hooks,
                                         SingeSim **sim, SceneMessages *messages);
+
+/// Tells a simulation of this scene where what moves with meshes is at the end of frame `frame` (from 1), which is the
+/// start of the next. To be called before the first step of each frame. `assets` keep what pins are bonded to.
+SINGE_NODISCARD SingeResult scene_follow(const Scene *scene, SceneAssets *assets, SingeSim *sim, int frame,
+                                         SingeError *error);
 
 // ---- from scene to preview
 

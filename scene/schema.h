@@ -39,6 +39,7 @@ enum {
     ROW_INF = 8,        ///< "inf" is allowed
     ROW_NONE = 16,      ///< "none" is allowed: -INFINITY
     ROW_SHORT = 32,     ///< short for another key; not dumped
+    ROW_NUMBERED = 64,  ///< ROW_FILE: a name with a run of # in the place of a number
 };
 
 typedef struct SchemaRow {
@@ -147,6 +148,7 @@ bool default_scene(SceneArena *arena, void *object);
 bool default_sheet(SceneArena *arena, void *object);
 bool default_source(SceneArena *arena, void *object);
 bool default_collider(SceneArena *arena, void *object);
+bool default_motion(SceneArena *arena, void *object);
 bool default_pin(SceneArena *arena, void *object);
 bool default_measured(SceneArena *arena, void *object);
 bool default_noise(SceneArena *arena, void *object);

@@ -44,6 +44,23 @@ static const Schema schema_strength = {
     .title = "a strength's entry", .size = sizeof(SingeValueKey), ROWS(strength_rows),
     .doc = "How strong a texture source is at a time; straight lines in between. Times must increase."};
 
+static const SchemaRow motion_rows[] = {
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneMotion, mesh), .flags = ROW_REQUIRED | ROW_NUMBERED,
+     .doc = "files of one mesh, a frame each, by a name with a run of # for the number: `body.####.ply` is "
+            "`body.0001.ply` at frame 1. All have the same vertices and faces in the same order; after the last one it "
+            "stands still"},
+    {"first", ROW_INT, DIM_NONE, AT(SceneMotion, first), WITHIN(0, 1e6), .doc = "number of the file of frame 1"},
+    {"scale", ROW_FLOAT, DIM_NONE, AT(SceneMotion, scale), WITHIN(1e-6, 1e4), .doc = "times `units`"},
+    {"units", ROW_ENUM, DIM_NONE, AT(SceneMotion, units), .names = units_names,
+     .doc = "what the numbers of the files are"},
+    {"up", ROW_ENUM, DIM_NONE, AT(SceneMotion, up), .names = up_names,
+     .doc = "the files' axis that points up; files whose y is up are turned by 90 degrees about x"},
+};
+static const Schema schema_motion = {
+    .title = "a motion", .size = sizeof(SceneMotion), ROWS(motion_rows), .defaults = default_motion,
+    .doc = "A mesh that moves frame by frame, as animation programs write it. Vertices go in straight lines from frame "
+           "to frame, with the velocity that this takes."};
+
 // ---- sheets
 
 static const SchemaRow grid_rows[] = {
@@ -150,10 +167,14 @@ static const SchemaRow collider_rows[] = {
     {"half_size", ROW_VECTOR, DIM_LENGTH, AT(SceneCollider, def.half_size), .length = 3, .kinds = BOX,
      WITHIN(1e-6, 1e4), .doc = "half of the box's lengths along its own axes"},
     COLLIDER("height", height, DIM_LENGTH, CAPSULE, WITHIN(0, 1e4), "between the centres of the capsule's caps"),
-    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH, .flags = ROW_REQUIRED,
+    {"mesh", ROW_FILE, DIM_NONE, AT(SceneCollider, mesh), .kinds = MESH,
      .doc = "a closed mesh of triangles or polygons: OBJ, PLY, glTF and others, whose faces turn "
             "counter-clockwise seen from outside and do not pass through each other; one that is inside out is "
-            "turned"},
+            "turned; this or `motion`"},
+    {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given), .kinds = MESH,
+     .sub = &schema_motion,
+     .doc = "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
+            "by it"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
      .doc = "times `units`: how large the mesh file is made"},
     {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
@@ -193,7 +214,7 @@ const Schema schema_collider = {
     .defaults = default_collider,
     .finish = finish_collider,
     .location = collider_location,
-    .doc = "A rigid thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
+    .doc = "A thing that sheets rest on and slide over. Its `kind` decides which keys it has."};
 
 static SceneLocation *pin_location(void *object) { return &((ScenePin *)object)->location; }
 static const SchemaRow pin_rows[] = {
@@ -208,6 +229,9 @@ static const SchemaRow pin_rows[] = {
      .doc = "numbers of the mesh's vertices, from 0"},
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
      .doc = "how what is held moves, relative to the path's pose at the start; held still without"},
+    {"motion", ROW_MAP, DIM_NONE, AT(ScenePin, motion), EXTRA(ScenePin, motion.given), .sub = &schema_motion,
+     .doc = "a moving mesh in the world that what is held follows, each particle by the triangle that is nearest to it at "
+            "frame 1; instead of `path`"},
 };
 const Schema schema_pin = {
     .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,

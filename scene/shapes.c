@@ -91,6 +91,11 @@ static bool collider_shape(const Scene *scene, const SceneAssets *assets, uint32
                             .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
     if (def->kind == SINGE_COLLIDER_MESH || def->kind == SINGE_COLLIDER_HEIGHTFIELD)
         shape->solid = &assets->solids[index].surface;
+    const SceneSequence *sequence = &assets->collider_motions[index];
+    if (sequence->frame_count) {
+        const double frame = floor(time * (double)scene->fps + 0.5), last = (double)sequence->frame_count - 1;
+        shape->solid = &sequence->frames[(uint32_t)fmax(0, fmin(frame, last))];
+    }
     memcpy(shape->half_size, def->half_size, sizeof shape->half_size);
     memcpy(shape->colour, collider->colour, sizeof shape->colour);
     shape_move(collider->keys, collider->key_count, time, shape);

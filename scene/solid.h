@@ -13,6 +13,9 @@ SINGE_NODISCARD SingeResult solid_read_mesh(const char *name, const uint8_t *byt
 SINGE_NODISCARD SingeResult solid_make_heights(const SingeTexture *picture, const float size[2], const float heights[2],
                                                SceneSolid *solid, SingeError *error);
 
+/// m, of a number in a file of these SceneUnits, times `scale` (load.c).
+double metres_per_unit(int unit, float scale);
+
 void solid_free(SceneSolid *solid);
 
 #endif

@@ -2,6 +2,7 @@
 #include "scene/values.h"
 
 #include "formats/printable.h"
+#include "scene/sequence.h"
 
 #include <math.h>
 #include <string.h>
@@ -252,6 +253,12 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
         value_wrong(reader, node, row);
         return;
     }
+    if (row->flags & ROW_NUMBERED && !sequence_name_fits(node->text)) {
+        message_add(reader->messages, reader->text, node->location,
+                    "%s: the file's name needs one run of # for the number of the frame, as in 'body.####.ply'",
+                    row->key);
+        return;
+    }
     field->location = node->location;
     field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
     if (!reader->base_dir || !field->name)
@@ -260,7 +267,7 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
         field->path = value_join(reader->arena, reader->base_dir, "/", field->name);
     struct stat status;
     const char *fault = NULL;
-    if (!field->path)
+    if (!field->path || row->flags & ROW_NUMBERED)
         return;
     if (stat(field->path, &status))
         fault = "there is no such file";

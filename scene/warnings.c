@@ -62,6 +62,15 @@ static void warn_of_probe(const Scene *scene, const SceneAssets *assets, uint32_
                      (double)probe->point[0], (double)probe->point[1], (double)probe->point[2], gap);
 }
 
+/// A motion that ends before the scene does.
+static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const SceneSequence *sequence,
+                           const SingeLog *log) {
+    if (sequence->frame_count && sequence->frame_count < (uint32_t)scene->frames)
+        message_warn(log, scene->text, motion->mesh.location,
+                     "the motion has files for %u of %d frames; after them it stands still", sequence->frame_count,
+                     scene->frames);
+}
+
 static bool is_weak(const SceneSource *source) {
     bool weak = source->strength_count > 0;
     for (uint32_t i = 0; i < source->strength_count; i++)
@@ -96,6 +105,10 @@ void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *l
         warn_of_source(scene, &scene->sources[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
         warn_of_pin(scene, assets, &scene->pins[i], log);
+    for (uint32_t i = 0; i < scene->collider_count && log->write; i++)
+        warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
+    for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
+        warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
     for (uint32_t i = 0; i < scene->probe_count && log->write; i++)
         warn_of_probe(scene, assets, i, log);
 }

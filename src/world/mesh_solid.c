@@ -74,7 +74,7 @@ static Float3 solid_vertex_normal(const MeshSolid *solid, uint32_t t, uint32_t c
         Float3 a = float3_sub(solid_corner(solid, t, (i + 1) % 3), at);
         Float3 b = float3_sub(solid_corner(solid, t, (i + 2) % 3), at);
         sum = float3_mad(sum, solid_face_normal(solid, t),
-                         atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)));
+                         real_atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)));
         t = solid->neighbours[t][i];
     } while (t != first && ++turns < solid->triangle_count);
     return sum;

@@ -25,9 +25,10 @@ static const char base[] =
     "  - {kind: box, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: capsule, conductance: 10, path: [{time: 0}]}\n"
     "  - {kind: heightfield, picture: heights.png, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: mesh, mesh: cube.obj, conductance: 10, path: [{time: 0}]}\n"
+    "  - {kind: mesh, motion: {mesh: cube.#.obj}, conductance: 10, path: [{time: 0}]}\n"
     "pins:\n"
     "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n"
+    "  - {points: [[0, 0, 0]], vertices: [0], motion: {mesh: cube.#.obj}}\n"
     "probes:\n"
     "  - {kind: uv, at: [0, 0]}\n"
     "  - {kind: point, at: [0, 0, 0]}\n";
@@ -215,6 +216,8 @@ static void walk_schema(Walk *walk, const Schema *schema, const char *prefix, un
         if (!row_allowed(row, kind) || (row->flags & ROW_SHORT))
             continue;
         snprintf(path, sizeof path, "%s%s", prefix, row->key);
+        if (strcmp(path, "pins.0.motion") == 0) // which excludes a path: the second pin has it
+            strcpy(path, "pins.1.motion");
         walk_row(walk, row, path);
     }
 }
@@ -232,11 +235,18 @@ static void test_every_row(void **state) {
     snprintf(cube, sizeof cube, "%s/cube.obj", walk.folder);
     assert_int_equal(png_write(heights, 2, 2, (const uint8_t[12]){0, 0, 0, 255, 255, 255}, &error), SINGE_OK);
     assert_int_equal(file_write(cube, cube_file, sizeof cube_file - 1, &error), SINGE_OK);
+    static const int numbers[] = {0, 1, 1000000}; // first frames of motions
+    char moving[3][64];
+    for (int i = 0; i < 3; i++) {
+        snprintf(moving[i], sizeof moving[i], "%s/cube.%d.obj", walk.folder, numbers[i]);
+        assert_int_equal(file_write(moving[i], cube_file, sizeof cube_file - 1, &error), SINGE_OK);
+    }
     walk_schema(&walk, &schema_scene, "", ~0u);
     assert_true(walk.rows > 110);
     unlink(picture);
     unlink(heights);
     unlink(cube);
+    for (int i = 0; i < 3; i++) unlink(moving[i]);
     rmdir(walk.folder);
 }
 
