@@ -3,9 +3,11 @@
 /// ABI rule: a Def begins with `struct_size`, set by its `singe_default_...()` function, which is inline: it
 /// has the size that the caller's header knows. Fields are only ever appended; a smaller Def from an older
 /// header is accepted and the fields it lacks take their defaults, of a larger one from a newer header the
-/// unknown fields are not read. This holds for a Def inside another, too. All other structs keep their size
-/// while SINGE_VERSION_MAJOR does: what Defs are made of (parameters, textures, keys, hooks) and what a
-/// simulation gives (views, statistics, surfaces). Enumerators keep their values for ever.
+/// unknown fields are not read. This holds for a Def inside another, too. What a simulation gives (views,
+/// statistics, timers, counts, ranges, surfaces, gas) grows at its end as well: it is filled by a function that takes the
+/// caller's sizeof and writes no more, and 0 in what the library does not know yet; an inline function beside it returns
+/// the struct by value. All other structs keep their size while SINGE_VERSION_MAJOR does: what Defs are made of
+/// (parameters, textures, keys, hooks). Enumerators keep their values for ever. tests/abi/abi.txt has all of them.
 ///
 /// Units are SI and kelvin throughout. Nothing here depends on the locale.
 #ifndef SINGE_BASE_H

@@ -143,6 +143,7 @@ enum {
 /// tear, vertices are in reserve at the end of each sheet's and springs at the end of the blue ones: not
 /// SINGE_ALIVE till a tear makes something of them; `cells` and `springs` then change, too.
 typedef struct SingeView {
+    size_t struct_size;                 ///< of what the library has filled in; callbacks get it by pointer
     double time;                        ///< s
     uint64_t step;                      ///< steps done
     uint64_t topology_version;
@@ -197,8 +198,15 @@ static inline SingeSheetRange singe_sim_sheet_range(const SingeSim *sim, SingeSh
     return range;
 }
 
-/// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL.
-SINGE_API SingeView singe_sim_view(const SingeSim *sim);
+/// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL. Fills `struct_size` bytes,
+/// the caller's sizeof.
+SINGE_API void singe_sim_read_view(const SingeSim *sim, SingeView *view, size_t struct_size);
+
+static inline SingeView singe_sim_view(const SingeSim *sim) {
+    SingeView view;
+    singe_sim_read_view(sim, &view, sizeof view);
+    return view;
+}
 
 typedef enum SingeEventKind {
     SINGE_EVENT_IGNITED = 0,     ///< element is the particle
@@ -249,8 +257,14 @@ typedef struct SingeTimers {
     uint64_t contact_pairs;     ///< pairs of cells that the broad phase found, summed over steps
 } SingeTimers;
 
-/// All 0 before the commit.
-SINGE_API SingeTimers singe_sim_timers(const SingeSim *sim);
+/// All 0 before the commit. Fills `struct_size` bytes, the caller's sizeof.
+SINGE_API void singe_sim_read_timers(const SingeSim *sim, SingeTimers *timers, size_t struct_size);
+
+static inline SingeTimers singe_sim_timers(const SingeSim *sim) {
+    SingeTimers timers;
+    singe_sim_read_timers(sim, &timers, sizeof timers);
+    return timers;
+}
 
 /// A ledger closes while its error is at most this. Sound runs stay below 1e-5.
 #define SINGE_LEDGER_BOUND 1e-3
@@ -284,7 +298,14 @@ typedef struct SingeStats {
     bool ledgers_close;
 } SingeStats;
 
-SINGE_API SingeStats singe_sim_stats(const SingeSim *sim);
+/// Fills `struct_size` bytes, the caller's sizeof.
+SINGE_API void singe_sim_read_stats(const SingeSim *sim, SingeStats *stats, size_t struct_size);
+
+static inline SingeStats singe_sim_stats(const SingeSim *sim) {
+    SingeStats stats;
+    singe_sim_read_stats(sim, &stats, sizeof stats);
+    return stats;
+}
 
 /// Counts of a committed simulation's elements.
 typedef struct SingeCounts {
@@ -294,14 +315,33 @@ typedef struct SingeCounts {
     size_t memory;              ///< bytes held, of the allocator
 } SingeCounts;
 
-SINGE_API SingeCounts singe_sim_counts(const SingeSim *sim);
+/// Fills `struct_size` bytes, the caller's sizeof.
+SINGE_API void singe_sim_read_counts(const SingeSim *sim, SingeCounts *counts, size_t struct_size);
+
+static inline SingeCounts singe_sim_counts(const SingeSim *sim) {
+    SingeCounts counts;
+    singe_sim_read_counts(sim, &counts, sizeof counts);
+    return counts;
+}
 
 /// Draws the present state into *surface, which is zeroed but for its allocator before its first use and grows as
 /// needed; a zeroed allocator is libc's. SINGE_ERROR_MEMORY leaves it without vertices and triangles, to be used again.
-SINGE_API SINGE_NODISCARD SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface);
+/// `struct_size` is the caller's sizeof; SINGE_ERROR_ARGUMENT where it is smaller than that of version 0.2.
+SINGE_API SINGE_NODISCARD SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size);
 
-/// The gas now. The simulation owns the arrays; they stay valid, their contents until the next step.
-SINGE_API SingeGas singe_sim_gas(const SingeSim *sim);
+SINGE_NODISCARD static inline SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
+    return singe_sim_draw(sim, surface, sizeof *surface);
+}
+
+/// The gas now. The simulation owns the arrays; they stay valid, their contents until the next step. Fills `struct_size`
+/// bytes, the caller's sizeof.
+SINGE_API void singe_sim_read_gas(const SingeSim *sim, SingeGas *gas, size_t struct_size);
+
+static inline SingeGas singe_sim_gas(const SingeSim *sim) {
+    SingeGas gas;
+    singe_sim_read_gas(sim, &gas, sizeof gas);
+    return gas;
+}
 
 /// Saves the whole simulation. *bytes comes from the simulation's allocator; free it with singe_sim_free_bytes, before
 /// the simulation is destroyed. Versioned and checksummed; the byte order is the machine's. SINGE_ERROR_STATE before

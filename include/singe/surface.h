@@ -37,8 +37,10 @@ typedef struct SingeSurface {
     SingeAllocator allocator;  ///< that the arrays come from
 } SingeSurface;
 
-/// Frees a surface's arrays and zeroes it.
-SINGE_API void singe_surface_free(SingeSurface *surface);
+/// Frees a surface's arrays and zeroes its `struct_size` bytes, the caller's sizeof; NULL is allowed.
+SINGE_API void singe_surface_release(SingeSurface *surface, size_t struct_size);
+
+static inline void singe_surface_free(SingeSurface *surface) { singe_surface_release(surface, sizeof *surface); }
 
 /// The hot gas about what burns: cubes of side `cell` along the axes of space, x fastest. Cell (i, j, k) is entry
 /// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its centre.

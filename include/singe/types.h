@@ -29,6 +29,8 @@ typedef struct SingeValueKey {
 
 /// A sheet: a quad mesh and its material. Cells are counter-clockwise seen from the front; the centre
 /// layer lies `thickness` from the corner layer, on the side of the normal (the front).
+///
+/// Defaults: singe_default_material(), at rest, drop_pieces_below 0; all else 0 or NULL.
 typedef struct SingeSheetDef {
     size_t struct_size;
     const char *name;          ///< for messages; NULL is "sheet"
@@ -82,6 +84,9 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// Something that heats. Ball and spot: conductance towards `temperature`, full within `radius` of a point in
 /// space, falling smoothly to nothing at `radius + falloff`. Fluxes and conductances are those into a layer, and
 /// a sheet has two: it takes twice as much a square metre.
+///
+/// Defaults: SINGE_SOURCE_SPOT, start 0, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
+/// 30e3; all else 0 or NULL: it stands at the origin.
 typedef struct SingeSourceDef {
     size_t struct_size;
     SingeSourceKind kind;
@@ -128,6 +133,10 @@ typedef enum SingeContactSides {
 } SingeContactSides;
 
 /// A rigid solid that sheets rest on and slide over.
+///
+/// Defaults: SINGE_COLLIDER_PLANE, radius 0.05, half_size 0.05, height 0.1, friction 0.4, offset 0.0005, temperature 293.15,
+/// conductance 0, contact_distance 0.002, SINGE_SIDES_TOUCHING, size 0.2, rotation {0,0,0,1}; all else 0 or NULL: it stands
+/// at the origin.
 typedef struct SingeColliderDef {
     size_t struct_size;
     SingeColliderKind kind;
@@ -166,6 +175,8 @@ static inline SingeColliderDef singe_default_collider(void) {
 
 /// Holds particles of one sheet: those within `radius` of any of the points (rest position) and the
 /// listed vertices. They follow the path, taken relative to its pose at the time the pin is added.
+///
+/// Defaults: radius 0.005; all else 0 or NULL: held still.
 typedef struct SingePinDef {
     size_t struct_size;
     SingeSheetId sheet;
@@ -188,6 +199,8 @@ static inline SingePinDef singe_default_pin(void) {
 }
 
 /// The air's motion: a mean and seeded gusts that vary over time and space.
+///
+/// Defaults: velocity 0, gust 0, gust_time 0.5, gust_size 0.3, seed 1.
 typedef struct SingeWindDef {
     size_t struct_size;
     float velocity[3]; ///< m/s, each -1000 to 1000
@@ -215,6 +228,10 @@ typedef enum SingeSolverMethod {
 } SingeSolverMethod;
 
 /// The solver of the shell's motion (docs/equations.md).
+///
+/// Defaults: SINGE_SOLVER_STRAND, substeps 3, projections 1, order green, red, yellow, blue, regularisation 2 (red), 0.1
+/// (green), 0.001 (blue), 0.01 (yellow), attachments, early_exit, tolerance 1e-7, stiffness 1000, smoothing 170,
+/// smoothing_length 0.02, height_min 0.3, height_gain 0.5; no creases, no tearing.
 typedef struct SingeSolverDef {
     size_t struct_size;
     SingeSolverMethod method;
@@ -257,6 +274,8 @@ typedef enum SingeInstructions {
 } SingeInstructions;
 
 /// The gas about what burns: hot air, flames and smoke on a grid, which rises, heats and lifts (docs/equations.md).
+///
+/// Defaults: not enabled, cell_size 0, height 0.25, conductance 10, radiated 0.3, soot 0.01.
 typedef struct SingeGasDef {
     size_t struct_size;
     bool enabled;
@@ -276,6 +295,8 @@ static inline SingeGasDef singe_default_gas(void) {
 }
 
 /// Contact of sheets with themselves and each other (docs/equations.md). Colliders have a friction of their own.
+///
+/// Defaults: not enabled, thickness 0.0005, friction 0.3.
 typedef struct SingeContactDef {
     size_t struct_size;
     bool enabled;    ///< false: sheets pass through themselves, as in the paper
@@ -294,6 +315,10 @@ static inline SingeContactDef singe_default_contact(void) {
 }
 
 /// A simulation.
+///
+/// Defaults: libc's allocator, no log, a pool of 1 thread, SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1/480, pace 1, gravity
+/// {0,0,-9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_detail 0, surface_raggedness
+/// 0.002, and the defaults of what lies inside.
 typedef struct SingeSimDef {
     size_t struct_size;
     SingeAllocator allocator;

@@ -10,6 +10,8 @@
 #include "heat/heat.h"
 #include "tear/tear.h"
 
+#include <string.h>
+
 struct SingeSim {
     Memory memory;
     SingeSimDef def;
@@ -61,6 +63,12 @@ SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t
 /// Copies what both headers know of a caller's Def, which begins with its struct_size, over *def of `size`
 /// bytes that holds the defaults. `given_size` bounds what may be read. False when struct_size is not set.
 bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
+
+/// Fills the caller's `size` bytes of a result of ours; 0 where the caller's is longer.
+static inline void sim_give(void *result, size_t size, const void *ours, size_t known) {
+    memset(result, 0, size);
+    memcpy(result, ours, size < known ? size : known);
+}
 
 /// Checks the numbers of a simulation's Def.
 SingeResult sim_check_def(const SingeSimDef *def, SingeError *error);

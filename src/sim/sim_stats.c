@@ -143,7 +143,7 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
         stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
 
-SingeStats singe_sim_stats(const SingeSim *sim) {
+static SingeStats stats_now(const SingeSim *sim) {
     const Shell *shell = &sim->shell;
     SingeStats stats = {.time = sim->state.time, .pieces = sim->state.ablate.piece_count};
     if (!sim->committed) return stats;
@@ -160,4 +160,9 @@ SingeStats singe_sim_stats(const SingeSim *sim) {
     stats.front_speed = stats_front_speed(sim);
     for (uint32_t s = 0; s < shell->sheet_count; s++) stats.thickening = fmaxf(stats.thickening, sim->thickening[s]);
     return stats;
+}
+
+void singe_sim_read_stats(const SingeSim *sim, SingeStats *stats, size_t struct_size) {
+    const SingeStats ours = stats_now(sim);
+    sim_give(stats, struct_size, &ours, sizeof ours);
 }

@@ -1,19 +1,11 @@
 // Read-only views, events, timers, counts and the drawn surface.
 #include "sim/sim_internal.h"
 
-#include <string.h>
-
-/// Fills the caller's `size` bytes of a result that begins with its struct_size; 0 where the caller's is longer.
-static void sim_give(void *result, size_t size, const void *ours, size_t known) {
-    memset(result, 0, size);
-    memcpy(result, ours, size < known ? size : known);
-    if (size >= sizeof size) memcpy(result, &size, sizeof size);
-}
-
-SingeView singe_sim_view(const SingeSim *sim) {
+void singe_sim_read_view(const SingeSim *sim, SingeView *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
     const State *state = &sim->state;
     SingeView view = {
+        .struct_size = struct_size < sizeof view ? struct_size : sizeof view,
         .time = state->time,
         .step = state->step,
         .topology_version = state->ablate.topology_version,
@@ -46,11 +38,11 @@ SingeView singe_sim_view(const SingeSim *sim) {
         view.spring_rest[colour] = shell->springs[colour].rest;
         view.spring_flags[colour] = state->ablate.spring_flags[colour];
     }
-    return view;
+    sim_give(out, struct_size, &view, sizeof view);
 }
 
 void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheetRange *range, size_t struct_size) {
-    SingeSheetRange ours = {0};
+    SingeSheetRange ours = {.struct_size = struct_size};
     if (sim->committed && id.generation == 1 && id.index < sim->sheet_count) {
         const Sheet *sheet = &sim->shell.sheets[id.index];
         ours.vertex_first = sheet->vertex_first;
@@ -69,13 +61,16 @@ const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
     return events->items;
 }
 
-SingeGas singe_sim_gas(const SingeSim *sim) {
-    return sim->gas ? gas_view(sim->gas) : (SingeGas){0};
+void singe_sim_read_gas(const SingeSim *sim, SingeGas *gas, size_t struct_size) {
+    const SingeGas ours = sim->gas ? gas_view(sim->gas) : (SingeGas){0};
+    sim_give(gas, struct_size, &ours, sizeof ours);
 }
 
-SingeTimers singe_sim_timers(const SingeSim *sim) { return sim->timers; }
+void singe_sim_read_timers(const SingeSim *sim, SingeTimers *timers, size_t struct_size) {
+    sim_give(timers, struct_size, &sim->timers, sizeof sim->timers);
+}
 
-SingeCounts singe_sim_counts(const SingeSim *sim) {
+void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_size) {
     const Shell *shell = &sim->shell;
     SingeCounts counts = {.cells = shell->cell_count, .memory = sim->memory.held};
     double springs = 0, strands = 0, size = 0;
@@ -90,7 +85,7 @@ SingeCounts singe_sim_counts(const SingeSim *sim) {
     for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
     counts.cell_size = (float)size;
     for (uint32_t i = 0; i < shell->particle_count; i++) counts.particles += shell->matter.area[i] > 0;
-    return counts;
+    sim_give(out, struct_size, &counts, sizeof counts);
 }
 
 /// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.
@@ -101,7 +96,9 @@ static float bulge_max(const SingeSim *sim) {
     return 0.45f * fminf(sim->def.contact.thickness, 0.4f * cell);
 }
 
-SingeResult singe_sim_surface(SingeSim *sim, SingeSurface *surface) {
+SingeResult singe_sim_draw(SingeSim *sim, SingeSurface *surface, size_t struct_size) {
+    if (struct_size < sizeof *surface)
+        return sim_fail(sim, SINGE_ERROR_ARGUMENT, "surface", -1, "struct_size is smaller than a SingeSurface");
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "surface", -1, "singe_sim_commit comes before the surface");
     SurfaceDetail detail = {sim->def.surface_detail, sim->def.surface_raggedness, (uint32_t)sim->def.seed, NULL,

@@ -28,12 +28,12 @@ static bool obtain(Memory *memory, SingeSurface *surface, const SurfaceArray *ar
     return block != NULL;
 }
 
-void singe_surface_free(SingeSurface *surface) {
-    if (!surface) return;
+void singe_surface_release(SingeSurface *surface, size_t struct_size) {
+    if (!surface || struct_size < sizeof *surface) return;
     Memory memory = memory_make(surface->allocator);
     for (int i = 0; i < VERTEX_ARRAYS; i++) arrays_release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
     arrays_release(&memory, surface, &triangle_array, surface->triangle_capacity);
-    *surface = (SingeSurface){0};
+    memset(surface, 0, struct_size);
 }
 
 void surface_clear(SingeSurface *surface) {

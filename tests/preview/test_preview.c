@@ -150,7 +150,7 @@ static void test_solids(void **state) {
     uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * (0.02f + 0.01f * (float)(k % 3));
-    PreviewSolid solid = {8, 12, vertices, triangles};
+    PreviewSolid solid = {8, 12, vertices, triangles, false};
     PreviewShape shape = {.position = {0.06f, 0.02f, 0.05f}, .rotation = {0.2f, 0.1f, 0.3f, 0.9274f},
                           .half_size = {0.02f, 0.03f, 0.04f}, .colour = {0.1f, 0.1f, 0.8f}, .temperature = 293};
     def.shapes = &shape, def.shape_count = 1;

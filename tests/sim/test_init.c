@@ -142,8 +142,73 @@ static void older_inner_defs(void **state) {
     assert_bytes(&bytes, start + material + tail, MAX, UNTOUCHED);
 }
 
+/// A simulation of one cell after a step.
+static SingeSim *one_cell(void) {
+    const float positions[] = {0, 0, 0, 0.01f, 0, 0, 0.01f, 0.01f, 0, 0, 0.01f, 0};
+    const uint32_t cell[] = {0, 1, 2, 3};
+    SingeSimDef def = singe_default_sim();
+    SingeSheetDef sheet = singe_default_sheet();
+    SingeSheetId id;
+    SingeSim *sim;
+    sheet.vertex_count = 4, sheet.positions = positions, sheet.cell_count = 1, sheet.cells = cell;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    assert_int_equal(singe_sim_add_sheet(sim, &sheet, &id), SINGE_OK);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    assert_int_equal(singe_sim_step(sim), SINGE_OK);
+    return sim;
+}
+
+/// Results fill as many bytes as a caller's header has: the first ones of an older, and 0 behind ours of a newer.
+static void results_of_any_size(void **state) {
+    (void)state;
+    SingeSim *sim = one_cell();
+    union {
+        unsigned char at[1024];
+        SingeView view;
+        SingeStats stats;
+        SingeTimers timers;
+        SingeCounts counts;
+        SingeGas gas;
+    } given;
+#define READ(Type, name)                                                                            \
+    do {                                                                                            \
+        const Type whole = singe_sim_##name(sim);                                                   \
+        const size_t sizes[] = {sizeof whole / 2, sizeof whole, sizeof whole + LONGER};             \
+        for (int k = 0; k < 3; k++) {                                                               \
+            memset(&given, UNTOUCHED, sizeof given);                                                \
+            singe_sim_read_##name(sim, &given.name, sizes[k]);                                      \
+            const size_t known = sizes[k] < sizeof whole ? sizes[k] : sizeof whole;                 \
+            const size_t first = sizeof(void *); /* a view's struct_size differs */                 \
+            assert_memory_equal(given.at + first, (const unsigned char *)&whole + first, known - first); \
+            for (size_t i = known; i < sizes[k]; i++) assert_int_equal(given.at[i], 0);             \
+            for (size_t i = sizes[k]; i < sizeof given; i++) assert_int_equal(given.at[i], UNTOUCHED); \
+        }                                                                                           \
+    } while (0)
+    READ(SingeView, view);
+    READ(SingeStats, stats);
+    READ(SingeTimers, timers);
+    READ(SingeCounts, counts);
+    READ(SingeGas, gas);
+    singe_sim_read_view(sim, &given.view, 64);
+    assert_int_equal(given.view.struct_size, 64);
+    assert_int_equal(singe_sim_view(sim).struct_size, sizeof(SingeView));
+    struct {
+        SingeSurface surface;
+        unsigned char more[LONGER];
+    } newer = {0};
+    assert_int_equal(singe_sim_draw(sim, &newer.surface, sizeof newer.surface - 1), SINGE_ERROR_ARGUMENT);
+    assert_int_equal(singe_sim_draw(sim, &newer.surface, sizeof newer), SINGE_OK);
+    assert_int_equal(newer.surface.triangle_count, 4);
+    memset(newer.more, UNTOUCHED, sizeof newer.more);
+    singe_surface_release(&newer.surface, sizeof newer);
+    assert_null(newer.surface.position);
+    assert_int_equal(newer.more[LONGER - 1], 0);
+    singe_sim_destroy(sim);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(results_of_any_size),
         cmocka_unit_test(no_byte_beyond_the_size),
         cmocka_unit_test(sheet_of_any_size),
         cmocka_unit_test(sim_of_any_size),
