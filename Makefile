@@ -11,7 +11,7 @@ DEMO_DIR ?= out/letter
 # tests that measure, for a minute or more under a sanitizer, on code that others go through there
 MEASURING = bending|cli_paper|cli_paper_parts|cli_materials|cli_bench|heat_front
 # check-examples has them: together they would take longer than all the rest
-LONG = isotropy|fold|spread|cli_paper_all|cli_validate|cli_materials|example_(SameBytes|HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall)
+LONG = platforms|presets|isotropy|fold|spread|cli_paper_all|cli_validate|cli_materials|example_(SameBytes|HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall)
 
 # tests of what stands outside those folders, or of how fast it is
 NO_COVERAGE = mesh_zoo|mesh_gate|cli_wrinkles|cli_rim|cli_crossings|cli_validate|cli_paper_.*|step_cost|step_instructions|front|spread|install
