@@ -7,6 +7,7 @@
 //
 // Idle workers watch for the next job for a short while, for a step has many, and then block; no more of them watch, or
 // are woken, than there are processors to run them.
+#include "common/check.h"
 #include "common/pool.h"
 
 #include "common/error.h"
@@ -190,6 +191,7 @@ typedef struct PoolSum {
 
 static void pool_sum_blocks(void *task, int begin, int end) {
     PoolSum *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         int first = block * POOL_BLOCK, rest = job->count - first;
         job->partial[block] = job->sum(job->context, first, first + (rest < POOL_BLOCK ? rest : POOL_BLOCK));

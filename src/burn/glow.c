@@ -30,6 +30,7 @@
 // in place of CO2 (Arthur, Trans. Faraday Soc. 47, 1951, 164-178), h = .28 the share of the heat that this gives: 9.2
 // of
 // 32.8 MJ/kg of carbon. So the hotter an ember is the less it gives, and more air makes it faster rather than hotter.
+#include "common/check.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 
@@ -47,11 +48,13 @@ static float glow_ash(const BurnJob *job, uint32_t i) {
 }
 
 static bool glow_is_gone(const BurnJob *job, uint32_t cell) {
+    SINGE_ASSERT(cell == SHELL_NONE || cell < job->shell->cell_count);
     return cell == SHELL_NONE || !(job->state->ablate->cell_flags[cell] & SINGE_ALIVE);
 }
 
 /// w of a cell's centre; 1 beside a cell that is gone, and at the border.
 static float glow_centre(const BurnJob *job, uint32_t cell) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     const Shell *shell = job->shell;
     float ash = glow_ash(job, shell_centre(shell, cell));
     for (int k = 0; k < 4; k++) {
@@ -63,6 +66,7 @@ static float glow_centre(const BurnJob *job, uint32_t cell) {
 
 /// w of a corner.
 static float glow_corner(const BurnJob *job, uint32_t vertex) {
+    SINGE_ASSERT(vertex < job->shell->vertex_count);
     const Shell *shell = job->shell;
     float ash = glow_ash(job, vertex);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
@@ -109,6 +113,7 @@ static void glow_air_run(BurnJob *job, uint32_t first, uint32_t last) {
 
 static void glow_air_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         burn_block(job, block, &first, &last);

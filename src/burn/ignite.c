@@ -1,4 +1,5 @@
 // Ignition: a particle ignites when its temperature first reaches its ignition temperature.
+#include "common/check.h"
 #include "burn/burn_job.h"
 
 #define NEVER (-1.0f)
@@ -23,6 +24,7 @@ static uint32_t mark_run(BurnJob *job, uint32_t first, uint32_t last) {
 /// Leaves the number of new ignitions in every block's partial.
 static void mark_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run, count = 0;
         burn_block(job, block, &first, &last);

@@ -25,6 +25,7 @@
 //   else      f (1 - (1 - r)^(1/(1 - p))),  r = (1 - p) k f^(p - 1), and all of f once r >= 1
 //
 // What pyrolysis warms the sheet by is eta (1 - nu) df, eq 1.
+#include "common/check.h"
 #include "common/real.h"
 #include "burn/burn_job.h"
 
@@ -109,6 +110,7 @@ static void be_calm(BurnState *burn, uint32_t first, uint32_t last) {
 
 static void lose_blocks(void *context, int begin, int end) {
     BurnJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int block = begin; block < end; block++) {
         uint32_t first, last, run;
         double lost = 0;

@@ -17,6 +17,7 @@
 // p b^2 in place of b^2, and p is in its `grain` already (shell/fibre.c).
 //
 // v follows from the mass alone, so that only springs with an end that lost mass need a new length.
+#include "common/check.h"
 #include "burn/burn_job.h"
 
 #include <math.h>
@@ -67,6 +68,7 @@ static inline float target_length(const SpringSet *springs, uint32_t s, SpringEn
 
 static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_t s, SpringEnd a, SpringEnd b,
                                  float in_plane) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     if (job->state->ablate->spring_flags[colour][s] & SINGE_ALIVE)
         job->burn->spring_length[colour][s] = target_length(&job->shell->springs[colour], s, a, b, in_plane);
 }
@@ -74,6 +76,7 @@ static inline void shrink_spring(const BurnJob *job, SingeColour colour, uint32_
 /// The springs of a cell of which an end burns. One that lies in two cells is left to the first of them that sees an
 /// end of it burn: both see those of a blue spring, and each sees its own centre of a green one.
 static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool burns[4], bool centre_burns) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
     const BurnState *burn = job->burn;
@@ -98,6 +101,7 @@ static void shrink_burning_cell(const BurnJob *job, uint32_t cell, const bool bu
 
 static void shrink_cells(void *context, int begin, int end) {
     const BurnJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const float *burn_rate = job->burn->burn_rate;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];

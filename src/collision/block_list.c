@@ -1,3 +1,4 @@
+#include "common/check.h"
 #include "collision/block_list.h"
 
 #include <string.h>
@@ -40,6 +41,7 @@ typedef struct Job {
 
 static void write_blocks(void *task, int begin, int end) {
     const Job *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int b = begin; b < end; b++) {
         ListBlock *block = &job->list->blocks[b];
         if (job->again) block->room = block->start < job->count ? job->count - block->start : 0;
@@ -82,6 +84,7 @@ uint32_t block_list_settle(BlockList *list, Pool *pool, int blocks, uint64_t cou
 
 static void read_blocks(void *task, int begin, int end) {
     const Job *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const BlockList *list = job->list;
     for (int b = begin; b < end; b++) {
         const ListBlock *block = &list->blocks[b];

@@ -3,6 +3,7 @@
 // A cell is a box that moves along: its box at the search, widened by half of thickness + slack, on the way that its
 // corners were on. Two cells whose boxes do not meet in plan->steps steps stay farther apart than the thickness, as
 // long as no corner leaves its displacement by more than half the slack; ccd.c watches that.
+#include "common/check.h"
 #include "common/error.h"
 #include "collision/collision_plan.h"
 
@@ -21,6 +22,7 @@ static bool has_corners(const uint32_t cell[4], uint32_t a, uint32_t b) {
 
 /// A side that a cell across has too belongs to the lower of the two.
 static bool owns_side(const CollisionPlan *plan, const Shell *shell, uint32_t c, int side) {
+    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t across = shell_neighbour(shell, c, side);
     if (across == SHELL_NONE || across > c || !plan->alive[across]) return true;
     return !has_corners(shell->cells[across], shell->cells[c][side], shell->cells[c][(side + 1) & 3]);
@@ -71,6 +73,7 @@ static CollisionSlab slab(const Float4 position[4]) {
 
 static void box_range(void *task, int begin, int end) {
     Find *find = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = find->plan;
     float time = (float)plan->steps * plan->time_step;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++) {
@@ -89,6 +92,7 @@ static void box_range(void *task, int begin, int end) {
 
 /// Widens the swept boxes for plan->reach.
 static void sweep_boxes(void *task, int begin, int end) {
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = ((Find *)task)->plan;
     float wide = 0.5f * plan->reach;
     Float4 zero = {0};

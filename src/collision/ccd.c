@@ -5,6 +5,7 @@
 //
 // A corner that has left the box that the search gave its cell may have met what the search did not list: then the
 // search is repeated for this step's own displacements.
+#include "common/check.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/ccd.h"
@@ -43,6 +44,7 @@ static void measure_cell(const Ccd *ccd, uint32_t c) {
 
 static void measure_range(void *task, int begin, int end) {
     const Ccd *ccd = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         if (ccd_is_alive(ccd, (uint32_t)c)) measure_cell(ccd, (uint32_t)c);
         else ccd->plan->is_outside[c] = 0;
@@ -51,6 +53,7 @@ static void measure_range(void *task, int begin, int end) {
 
 static void measure_changed(void *task, int begin, int end) {
     const Ccd *ccd = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= ccd->plan->changed_count);
     for (int k = begin; k < end; k++) measure_cell(ccd, ccd->plan->changed_list[k]);
 }
 
@@ -62,6 +65,7 @@ void ccd_forget_changed(CollisionPlan *plan) {
 }
 
 void ccd_mark_changed(const Ccd *ccd, uint32_t cell) {
+    SINGE_ASSERT(cell < ccd->shell->cell_count);
     CollisionPlan *plan = ccd->plan;
     if (plan->changed[cell] || !ccd_is_alive(ccd, cell)) return;
     plan->changed[cell] = 1;
@@ -123,6 +127,7 @@ static uint32_t list_changed(CollisionPlan *plan) {
 
 /// Searches for the displacements of this step.
 static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, float h) {
+    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Float4 start = float4_load(plan->start[v]), speed = (float4_load(ccd->dynamics->position[v]) - start) / h;
@@ -158,6 +163,7 @@ static uint32_t list_strayed(CollisionPlan *plan) {
 /// Lists what cells that have left their boxes may have met; all again where these are many. *first is the first pair
 /// that is new.
 static SingeResult follow_strayed(Ccd *ccd, const StateInput *state, Pool *pool, float h, uint32_t *first) {
+    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     uint32_t count = list_strayed(plan);
     *first = plan->pair_count;
@@ -176,6 +182,7 @@ static SingeResult follow_strayed(Ccd *ccd, const StateInput *state, Pool *pool,
 
 /// One look at all that may have met, or at what the last round has changed; *hits is the number of pairs that have.
 static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float h, bool changed, uint32_t *hits) {
+    SINGE_ASSERT(h > 0);
     uint32_t first;
     if (changed) {
         *hits = meet_changed(ccd, pool);
@@ -193,6 +200,7 @@ static SingeResult ccd_look(Ccd *ccd, const StateInput *state, Pool *pool, float
 /// been gone in the step. What the step's last substep has brought in is in the velocity, in the way only by a small
 /// part.
 static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement, float h) {
+    SINGE_ASSERT(h > 0);
     Float4 after = before + shift / h, gone = displacement / h;
     float max = fmaxf(float4_dot(before, before), float4_dot(gone, gone)), square = float4_dot(after, after);
     return square > max ? sqrtf(max / square) * after : after;
@@ -200,6 +208,7 @@ static Float4 shifted_velocity(Float4 before, Float4 shift, Float4 displacement,
 
 /// Velocities and centres follow what has been changed.
 static void close_trajectories(const Ccd *ccd, float h) {
+    SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     DynamicsState *dynamics = ccd->dynamics;
     for (uint32_t c = 0; c < plan->cell_count; c++) {
@@ -233,6 +242,7 @@ static void empty_zones(CollisionPlan *plan) {
 
 static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                               DynamicsState *dynamics) {
+    SINGE_ASSERT(h > 0);
     Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags,
                    h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
@@ -261,6 +271,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
 
 SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                         DynamicsState *dynamics) {
+    SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     SingeResult result = close_step(plan, shell, state, pool, h, dynamics);
     plan->pair_count = plan->listed_count;

@@ -7,6 +7,7 @@
 //
 // Cells that share a side or a corner are free where they can be shown not to cross as the step ends, by their normals
 // or by a plane between them (feature_distance.c). What is left is swept, feature by feature.
+#include "common/check.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -106,6 +107,7 @@ static void sweep_pair(const Ccd *ccd, CollisionPair *pair) {
 /// by less than an eighth of its width. One that is open may have passed through itself on the way: then it is on the
 /// wrong side of a cell that shares two sides with it, though it met no feature of that one.
 static bool own_is_free(const Ccd *ccd, uint32_t cell) {
+    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const Float4 *motion = ccd->plan->motion[cell];
     const float(*x)[4] = (const float(*)[4])ccd->dynamics->position;
     const uint32_t *corner = ccd->shell->cells[cell];
@@ -184,6 +186,7 @@ typedef struct Look {
 
 static double look_range(void *task, int begin, int end) {
     const Look *look = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     double hits = 0;
     for (int k = begin; k < end; k += 4) {
         uint32_t number[4], count = end - k < 4 ? (uint32_t)(end - k) : 4;

@@ -9,6 +9,7 @@
 // A zone that meets again halves its share, and has 0 from round ZONE_PATIENCE on, when it moves as one piece (the
 // impact zones of Provot, 1997). Zones are only ever joined, and shares lessened, so the rounds end. Held corners go
 // their own displacement.
+#include "common/check.h"
 #include "collision/ccd.h"
 #include "collision/feature_distance.h"
 
@@ -55,6 +56,7 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
 /// counts as lighter than a quarter of the heaviest. Else a light corner, far from the point, would be thrown far to
 /// move it. Returns the point's own inverse mass.
 static float impact_lever(const Ccd *ccd, uint32_t cell, const float w[4], float lever[4]) {
+    SINGE_ASSERT(cell < ccd->shell->cell_count);
     const uint32_t *corner = ccd->shell->cells[cell];
     float min = INFINITY, inverse[4], own = 0, sum = 0;
     for (int i = 0; i < 4; i++) {

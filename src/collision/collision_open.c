@@ -3,6 +3,7 @@
 // A pair's distance is kept as a bound: it is at least that of the last time it was measured, less what the two cells
 // have moved against each other since. Only where the bound does not tell that all features stay apart in this step are
 // they looked at. So what is found depends on the pair's positions and speeds alone, not on when it was measured.
+#include "common/check.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "collision/narrow_phase.h"
@@ -37,6 +38,7 @@ static bool is_as_left(const CollisionPlan *plan, const uint32_t corner[4], cons
 
 static void measure_range(void *task, int begin, int end) {
     const Opening *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     CollisionPlan *plan = job->plan;
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
@@ -157,6 +159,7 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
 }
 
 static void node_velocities(const Opening *job, uint32_t cell, Float4 speed[5]) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     for (int i = 0; i < 4; i++) speed[i] = float4_load(job->dynamics->velocity[job->shell->cells[cell][i]]);
     speed[4] = 0.25f * ((speed[0] + speed[1]) + (speed[2] + speed[3]));
 }

@@ -1,4 +1,5 @@
 // Cells that have left the boxes that the search foresaw: what they may have met in this step.
+#include "common/check.h"
 #include "collision/broad_grid.h"
 
 typedef struct OutsideSearch {
@@ -11,6 +12,7 @@ typedef struct OutsideSearch {
 } OutsideSearch;
 
 static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     const CollisionPlan *plan = job->plan;
     const uint32_t *corner = job->shell->cells[cell];
     Float4 low = float4_load(job->x[corner[0]]), high = low;
@@ -24,6 +26,7 @@ static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
 
 static void box_range(void *task, int begin, int end) {
     const OutsideSearch *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int k = begin; k < end; k++) job->plan->outside_boxes[k] = outside_box(job, job->plan->outside[k]);
 }
 

@@ -9,12 +9,14 @@
 // COLLISION_PART m/s. Slip across n since the substep began is taken back by at most mu |C| (Coulomb), as contact with
 // colliders does. A virtual centre stands for its four corners by quarters. What lies
 // nearer at rest than twice the thickness (the edges of a tear) is kept apart by four times CCD's gap only.
+#include "common/check.h"
 #include "common/clock.h"
 #include "collision/collision_plan.h"
 
 /// Takes back slip across the normal, at most `most`.
 static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max, float weight,
                 DynamicsState *dynamics) {
+    SINGE_ASSERT(h > 0);
     float(*x)[4] = dynamics->position;
     Float4 slip = {0};
     for (uint32_t i = 0; i < repulsion->count; i++) {
@@ -34,6 +36,7 @@ static void repulsion_friction(const Repulsion *repulsion, const float (*predict
 }
 
 void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, DynamicsState *dynamics) {
+    SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {

@@ -15,6 +15,7 @@
 // what a source that takes over from one that has burnt finds too far, and what has gone too far while a tight sheet
 // that may tear was left to its springs. What has come free of a source is let go at the end of the step. A sheet whose
 // mesh may stretch by its compliance has no attachments.
+#include "common/check.h"
 #include "dynamics/attach.h"
 
 #include "common/float3.h"
@@ -233,6 +234,7 @@ void attach_position(Attachments *attachments, const Shell *shell, const Dynamic
 
 void attach_range(const Attachments *attachments, const Shell *shell, AttachHold *hold, DynamicsState *dynamics,
                   int begin, int end) {
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         const AttachSpread *spread = &attachments->spread[s];
         int first = (int)shell->sheets[s].vertex_first, last = first + (int)shell->sheets[s].vertex_count;
@@ -253,6 +255,7 @@ typedef struct Attach {
 
 static void attach_task(void *task, int begin, int end) {
     const Attach *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->vertex_count);
     attach_range(job->attachments, job->shell, job->hold, job->dynamics, begin, end);
 }
 

@@ -2,6 +2,7 @@
 //
 // One projection of every colour a substep instead of several a step: the same cost and a smaller
 // error (Macklin et al., Small steps in physics simulation, 2019).
+#include "common/check.h"
 #include "common/clock.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/paper_solver.h"
@@ -151,6 +152,7 @@ static uint32_t dynamics_pose_colliders(DynamicsPlan *plan, const ColliderList *
 /// Counts particles that are not finite or farther than 10 km from the origin.
 static double dynamics_count_lost(void *task, int begin, int end) {
     const DynamicsState *dynamics = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     double lost = 0;
     for (int i = begin; i < end; i++) {
         const float *x = dynamics->position[i];
@@ -172,6 +174,7 @@ static SingeResult dynamics_check(DynamicsPlan *plan, Pool *pool, DynamicsState 
 /// best: so it mends what they disturb.
 static void dynamics_project(DynamicsPlan *plan, const Shell *shell, Pool *pool, float h, bool attached,
                              DynamicsState *dynamics, DynamicsCounters *counters) {
+    SINGE_ASSERT(h > 0);
     const SingeSolverDef *solver = &plan->settings.solver;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) {
         if (solver->attachments && ((i == 0 && !attached) || i == SINGE_COLOUR_COUNT - 1))

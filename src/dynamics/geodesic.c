@@ -10,6 +10,7 @@
 //
 // This is exact in the plane and on what unrolls to it (Novotni and Klein, Computing geodesic distances on
 // triangular meshes, 2002). The metric is intrinsic: target lengths of blue and yellow springs, wherever the sheet is.
+#include "common/check.h"
 #include "dynamics/geodesic.h"
 
 #include "common/float3.h"
@@ -75,6 +76,7 @@ static float geodesic_through(float dv, float dw, float c, float vu, float wu) {
 
 /// Length of the side or diagonal between corners i and j of a cell. What is held cannot shrink to its target.
 static float cell_length(const Shell *shell, const StateInput *state, uint32_t cell, int i, int j) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const DynamicsState *dynamics = state->dynamics;
     int side = ((i + 1) & 3) == j ? i : j;
@@ -88,6 +90,7 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.
 static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const StateInput *state, uint32_t cell, int i,
                                 float *distance) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     float dv = distance[corner[i]];
     for (int turn = 1; turn < 4; turn++) {

@@ -11,6 +11,7 @@
 // centre stands over the mean of its corners; a centre that leans aside gets a small moment. Cells of one family
 // share no corner; family follows family. Where all centres of a block of cells are
 // twice as high as they must be, they are left alone for some substeps.
+#include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -70,6 +71,7 @@ static inline bool height_cell(const Height *job, uint32_t c) {
 /// Blocks of the family's cells.
 static void height_blocks(void *task, int begin, int end) {
     const Height *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int b = begin; b < end; b++) {
         uint8_t *wait = &job->wait[b];
         if (*wait > 0) {

@@ -12,6 +12,7 @@
 //
 // A cell whose diagonals are parallel has no normal, and no front that its centre could be on: it is left as it is and
 // counts as inverted no more than as in order (sim/sim_stats.c).
+#include "common/check.h"
 #include "common/float4.h"
 #include "dynamics/dynamics_plan.h"
 
@@ -54,6 +55,7 @@ static inline void order_cell(const Order *job, uint32_t c) {
 
 static void order_cells(void *task, int begin, int end) {
     const Order *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     for (int c = begin; c < end; c++)
         if (job->ablate->cell_flags[c] & SINGE_ALIVE) order_cell(job, (uint32_t)c);
 }

@@ -3,6 +3,7 @@
 //
 // The projection steps end after `projections` of them. With early_exit they also end after one in which every colour
 // began with a residual below `tolerance` of its target lengths, so that there was nothing to solve.
+#include "common/check.h"
 #include "dynamics/paper_solver.h"
 
 #include "common/clock.h"
@@ -26,6 +27,7 @@ static bool paper_one_system(SingeSolverMethod method) {
 
 /// Spring `slot` of a cell, of the slots of its colour in the order in which they are numbered.
 static uint32_t paper_slot(const CellSprings *cell, SingeColour colour, uint32_t slot) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     static const uint32_t sides[] = {0, 3, 1, 2}; // on a grid the first two sides of all cells are nearly all edges
     switch (colour) {
     case SINGE_RED: return cell->red[slot];
@@ -38,6 +40,7 @@ static uint32_t paper_slot(const CellSprings *cell, SingeColour colour, uint32_t
 /// Numbers a colour's springs slot by slot, and within a slot cell by cell. Then the neighbours of springs in a row are
 /// in a row themselves, along the lines of a grid, and the matrix is read in runs. `ends`: of the springs, by row.
 static bool paper_number(Memory *memory, const Shell *shell, SingeColour colour, Paper *paper, uint32_t (*ends)[2]) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const SpringSet *set = &shell->springs[colour];
     uint8_t *seen;
     paper->spring_count[colour] = set->count;
@@ -112,6 +115,7 @@ typedef struct Fill {
 
 static void paper_fill_particles(void *task, int begin, int end) {
     const Fill *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->particle_count);
     Network *network = &job->paper->network;
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
     for (int i = begin; i < end; i++) {
@@ -124,6 +128,7 @@ static void paper_fill_particles(void *task, int begin, int end) {
 
 static void paper_fill_springs(void *task, int begin, int end) {
     const Fill *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     Stiffness stiffness;
     stiffness_begin(job->shell, job->colour, 0, 0, &stiffness);
     const float *length = job->state->burn->spring_length[job->colour];
@@ -164,6 +169,7 @@ typedef struct Exchange {
 
 static void paper_begin(void *task, int begin, int end) {
     const Exchange *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     bool literal = job->paper->solver.method == SINGE_SOLVER_PAPER_LITERAL;
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
@@ -177,6 +183,7 @@ static void paper_begin(void *task, int begin, int end) {
 /// Positions to single precision: for the contacts, and for the state.
 static void paper_put(void *task, int begin, int end) {
     const Exchange *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) job->dynamics->position[i][c] = (float)job->paper->network.position[i][c];
 }
@@ -184,6 +191,7 @@ static void paper_put(void *task, int begin, int end) {
 /// Takes over what has been moved since paper_put; the rest keeps its double precision.
 static void paper_take(void *task, int begin, int end) {
     const Exchange *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
             double *x = &job->paper->network.position[i][c];
@@ -194,6 +202,7 @@ static void paper_take(void *task, int begin, int end) {
 /// Eq 13: v^ = v~ + (x^ - x~)/h.
 static void paper_finish(void *task, int begin, int end) {
     const Exchange *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int i = begin; i < end; i++)
         for (int c = 0; c < 3; c++) {
             double moved = job->paper->network.position[i][c] - job->paper->predicted[i][c];
@@ -203,6 +212,7 @@ static void paper_finish(void *task, int begin, int end) {
 }
 
 static SingeResult paper_broken(const Paper *paper, SingeColour colour, SingeError *error) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     static const char *const names[] = {"red", "green", "blue", "yellow"};
     return error_set(error, SINGE_ERROR_DIVERGED, "dynamics", -1,
                      "the system of %s springs is singular or not finite, and conjugate gradients broke down; a smaller "
@@ -227,6 +237,7 @@ static SingeResult paper_step(Paper *paper, Pool *pool, DynamicsCounters *counte
 }
 
 static void paper_hooke(Paper *paper, Pool *pool, float h, const DynamicsState *dynamics, DynamicsCounters *counters) {
+    SINGE_ASSERT(h > 0);
     ProjectionReport report = mass_spring_project(&paper->network, (double)paper->solver.stiffness,
                                                   (const float(*)[4])dynamics->velocity, (double)h, pool);
     counters->flops += report.flops, counters->bytes += report.bytes;
@@ -235,6 +246,7 @@ static void paper_hooke(Paper *paper, Pool *pool, float h, const DynamicsState *
 
 SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
                           Pool *pool, float h, DynamicsState *dynamics, DynamicsCounters *counters, SingeError *error) {
+    SINGE_ASSERT(h > 0);
     Paper *paper = plan->paper;
     const SingeSolverDef *solver = &paper->solver;
     int particles = (int)shell->particle_count;

@@ -5,6 +5,7 @@
 //
 // Drag of a sheet of area A on its normal velocity v_n: F = 1/2 rho C_d A v_n |v_n|; each layer
 // takes half of it.
+#include "common/check.h"
 #include "dynamics/dynamics_plan.h"
 
 #include <string.h>
@@ -23,6 +24,7 @@ typedef struct Prepare {
 
 static void prepare_cells(void *task, int begin, int end) {
     Prepare *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const float(*x)[4] = (const float(*)[4])job->dynamics->position;
     for (int c = begin; c < end; c++) {
         const uint32_t *corner = job->shell->cells[c];
@@ -33,6 +35,7 @@ static void prepare_cells(void *task, int begin, int end) {
 }
 
 static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags, uint32_t particle) {
+    SINGE_ASSERT(particle < shell->particle_count);
     if (particle >= shell->vertex_count) return float3_unit(float3_load(plan->cell_normal[particle - shell->vertex_count]));
     Float3 sum = {0, 0, 0};
     for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++) {
@@ -44,6 +47,7 @@ static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const
 
 static void prepare_particles(void *task, int begin, int end) {
     Prepare *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->particle_count);
     DynamicsPlan *plan = job->plan;
     const StateInput *state = job->state;
     const Matter *matter = &job->shell->matter;
@@ -67,6 +71,7 @@ static void prepare_particles(void *task, int begin, int end) {
 
 static void prepare_strands(void *task, int begin, int end) {
     Prepare *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const SpringSet *springs = &job->shell->springs[job->colour];
     StrandSet *set = &job->plan->strands.sets[job->colour];
     const uint8_t *flags = job->state->ablate->spring_flags[job->colour];

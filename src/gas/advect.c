@@ -17,6 +17,7 @@
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
 // The way of a step is cut so that along no axis more than a cell is passed at once.
+#include "common/check.h"
 #include "gas/sweep.h"
 
 #include <limits.h>
@@ -31,6 +32,7 @@ static const float ADVECT_MIX_MAX = 0.1f; ///< twice as much must be stable alon
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasBox *box = sweep->box;
     for (int task = box->low[sweep->across] + begin; task < box->low[sweep->across] + end; task++)
         for (int first = box->low[0]; first < box->high[0]; first += SWEEP_RUN) {
@@ -104,6 +106,7 @@ static float advect_row(const GasPass *pass, size_t c, int count, int busy[GAS_B
 
 static void advect_look(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
     for (int k = begin; k < end; k++) {
         GasBox *box = pass->plan->plane_busy[k];
@@ -143,6 +146,7 @@ static void advect_boxes(GasPass *pass, int parts) {
 /// Half the share of a difference that a face evens out: D dt/cell^2/2.
 static void advect_mixing(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *const *u = (const float *const *)&pass->from->field[GAS_VELOCITY];
@@ -169,6 +173,7 @@ static void advect_mixing(void *context, int begin, int end) {
 /// (1 - L) u of the field of the pass, of which the velocity is carried.
 static void advect_to_momentum(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {
@@ -182,6 +187,7 @@ static void advect_to_momentum(void *context, int begin, int end) {
 
 static void advect_to_velocity(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
     for (int k = begin; k < end; k++)
         for (int j = 0; j < grid->n[1]; j++) {

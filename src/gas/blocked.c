@@ -1,11 +1,13 @@
 // What is in the gas's way: cells whose middle is inside a collider have no gas, and a sheet's cell of area A and
 // normal n covers A |n_d| of the faces across axis d nearest to it, shared among the four about it.
+#include "common/check.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
 
 static void blocked_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     for (int k = begin; k < end; k++)
@@ -58,6 +60,7 @@ static void blocked_by_sheets(const GasPass *pass) {
 /// From the share that is covered to the one that is open.
 static void blocked_open(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     for (int d = 0; d < 3; d++)

@@ -6,6 +6,7 @@
 // buoyancy, that makes flames lick and plumes sway:
 //
 //   du/dt = FORCE_UNREST |g| L/(1 - L) (2 noise(x/size, t/time) - 1)
+#include "common/check.h"
 #include "gas/gas_plan.h"
 
 #include "common/random.h"
@@ -30,6 +31,7 @@ static void force_unrest(const GasPass *pass, int d, int j, int k, float strengt
 
 static void force_planes(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     Float3 g = float3_load(plan->settings.gravity), up = float3_unit(g);

@@ -6,6 +6,7 @@
 //   meet     sheets are warmed, and cool the gas; their air is reported to the dynamics (gas_sheets.c)
 //   force    buoyancy, swirl (force.c)
 //   project  a pressure makes the flow's divergence that of the expansion, past sheets and colliders (project.c)
+#include "common/check.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -24,6 +25,7 @@ void gas_planes(const GasPass *pass, const GasGrid *grid, SingeTaskFn *run) {
 /// Notes per plane whether anything is left in it.
 static void gas_look(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasGrid *grid = &pass->plan->grid;
     for (int k = begin; k < end; k++) {
         const float *L = pass->to->field[GAS_LIGHTNESS], *fuel = pass->to->field[GAS_FUEL],

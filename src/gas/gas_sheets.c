@@ -20,6 +20,7 @@
 //
 // The air that drags at a particle is the gas's own speed times the share of the faces about it that is open: past a
 // whole sheet the gas flows along it, and only flakes and edges are in its way.
+#include "common/check.h"
 #include "common/real.h"
 #include "gas/gas_plan.h"
 
@@ -32,6 +33,7 @@ static const float SHEET_CP = 1005;         ///< J/(kg K)
 
 static void sheets_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= pass->shell->cell_count);
     const Shell *shell = pass->shell;
     const float(*x)[4] = (const float(*)[4])pass->state->dynamics->position;
     for (int c = begin; c < end; c++) {
@@ -44,6 +46,7 @@ static void sheets_cells(void *context, int begin, int end) {
 
 static void sheets_corners(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= pass->shell->vertex_count);
     const Shell *shell = pass->shell;
     for (int v = begin; v < end; v++) {
         Float3 sum = {0, 0, 0};
@@ -170,6 +173,7 @@ static float sheets_lightness(const GasPlan *plan, const float *L, const float p
 
 static void sheets_meet(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= pass->plan->particles);
     const GasPlan *plan = pass->plan;
     const Matter *matter = &pass->shell->matter;
     float ambient = plan->settings.ambient_temperature, g0 = plan->settings.def.conductance, position[3];

@@ -1,4 +1,5 @@
 // What readers see: the cells without their ghosts, in the units of SingeGas.
+#include "common/check.h"
 #include "gas/gas_plan.h"
 
 typedef struct Show {
@@ -8,6 +9,7 @@ typedef struct Show {
 
 static void show_planes(void *context, int begin, int end) {
     const Show *show = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = show->pass->plan;
     const GasGrid *grid = &plan->grid;
     float *const *field = show->turn->field, ambient = plan->settings.ambient_temperature;

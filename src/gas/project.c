@@ -11,6 +11,7 @@
 // Beyond the border p = 0, half a cell away. A cell's velocity changes by the mean of its faces' changes, so that
 // it loses little to the averaging (as FLIP does for particles), and takes a small part of the faces' own mean, for
 // what is too short to be seen by faces at all.
+#include "common/check.h"
 #include "gas/gas_plan.h"
 
 #include <string.h>
@@ -26,6 +27,7 @@ static inline float project_face(const float *u, size_t c, size_t beyond, bool f
 /// Faces' speeds before the pressure, and their weights.
 static void project_faces(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *L = pass->to->field[GAS_LIGHTNESS];
@@ -50,6 +52,7 @@ static void project_faces(void *context, int begin, int end) {
 
 static void project_rhs(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     float *rhs = plan->level[0].rhs, scale = plan->cell / pass->dt;
@@ -69,6 +72,7 @@ static void project_rhs(void *context, int begin, int end) {
 /// Velocities of cells after the pressure.
 static void project_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];
@@ -93,6 +97,7 @@ static void project_cells(void *context, int begin, int end) {
 /// Speeds through faces after the pressure.
 static void project_through(void *context, int begin, int end) {
     const GasPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const GasPlan *plan = pass->plan;
     const GasGrid *grid = &plan->grid;
     const float *p = pass->to->field[GAS_PRESSURE];

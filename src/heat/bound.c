@@ -12,6 +12,7 @@
 // the umbrella, which does not keep heat, it is counted as made.
 #include <math.h>
 
+#include "common/check.h"
 #include "common/random.h"
 #include "heat/heat_plan.h"
 
@@ -45,6 +46,7 @@ static double bound_mean(const HeatPass *pass, uint32_t i) {
 
 static void bound_means(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     const float *capacity = pass->shell->matter.capacity;
     for (int block = begin; block < end; block++) {
@@ -66,6 +68,7 @@ static void bound_means(void *context, int begin, int end) {
 
 static void bound_shares(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     double towards = pass->share > 0 ? (double)pass->max : (double)pass->min, share = fabs(pass->share);
     uint32_t low = (uint32_t)pass->state->step, high = (uint32_t)(pass->state->step >> 32);

@@ -24,6 +24,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/check.h"
 #include "common/random.h"
 #include "heat/heat_plan.h"
 
@@ -81,6 +82,7 @@ static void conduct_start_group(const HeatPass *pass, uint32_t group, double sum
 /// Residual, right-hand side, and the range of T*.
 static void conduct_start(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double *sums = plan->partial[block];
@@ -96,6 +98,7 @@ static void conduct_start(void *context, int begin, int end) {
 /// The new direction, one ring of groups farther than before.
 static void conduct_direction(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     const uint8_t *before = plan->rest.awake[!pass->turn];
     uint8_t *awake = plan->rest.awake[pass->turn];
@@ -126,6 +129,7 @@ static void conduct_product_group(const HeatPass *pass, uint32_t group, double *
 
 static void conduct_product(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double sum = 0;
@@ -139,6 +143,7 @@ static void conduct_product(void *context, int begin, int end) {
 
 static void conduct_advance(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double sum = 0;
@@ -156,6 +161,7 @@ static void conduct_advance(void *context, int begin, int end) {
 
 static void conduct_settle(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (uint32_t g = heat_group_first(begin); g < heat_group_end(plan, end - 1); g++) {
         if (!plan->rest.awake[pass->turn][g]) continue;
@@ -190,6 +196,7 @@ static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *m
 
 static void conduct_finish(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double made = 0;

@@ -21,6 +21,7 @@
 // capacity C of the particle, as the enthalpy C (T - Ta) that is stored.
 #include <math.h>
 
+#include "common/check.h"
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
@@ -123,6 +124,7 @@ static void heat_exchange_group(const HeatPass *pass, uint32_t group, double led
 
 static void heat_exchange(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = pass->plan;
     for (int block = begin; block < end; block++) {
         double *ledger = plan->partial[block];
@@ -135,6 +137,7 @@ static void heat_exchange(void *context, int begin, int end) {
 /// Takes the new temperatures over where anything may have changed.
 static void heat_take_over(void *context, int begin, int end) {
     const HeatPass *pass = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const HeatPlan *plan = pass->plan;
     float *restrict temperature = pass->heat->temperature, *restrict peak = pass->heat->temperature_peak;
     const float *restrict next = plan->next;

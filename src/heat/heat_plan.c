@@ -1,4 +1,5 @@
 // Memory of the stage.
+#include "common/check.h"
 #include "heat/heat_plan.h"
 
 /// More is an error in the material: on cells of a millimetre its front would be a nanometre thick.
@@ -117,6 +118,7 @@ static void plan_rebuild(HeatPlan *plan, const Shell *shell) {
 
 /// Around a vertex that was split, or is new: what the cells there conduct.
 static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     uint32_t ordinary = shell->springs[SINGE_BLUE].count - shell->edge_spare_count;
     heat_operator_torn_vertex(plan, shell, vertex);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
@@ -131,6 +133,7 @@ static void follow_operator(HeatPlan *plan, const Shell *shell, uint32_t vertex)
 
 /// The rows of all particles around it. False where one has no room.
 static bool follow_rows(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
         for (int k = 0; k < 4; k++)
             if (!heat_matrix_row(plan, shell, shell->cells[shell->fan[f]][k], plan->scratch)) return false;
@@ -140,6 +143,7 @@ static bool follow_rows(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
 }
 
 static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
         for (int k = 0; k < 4; k++)
             heat_rest_update(plan, shell->cells[shell->fan[f]][k] / HEAT_GROUP, plan->scratch);

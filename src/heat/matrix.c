@@ -2,6 +2,7 @@
 // entry loses its value when its spring does, and nothing of the springs need be kept.
 #include <string.h>
 
+#include "common/check.h"
 #include "heat/heat_plan.h"
 
 /// Counts the entries of every row in `length`, or fills them in where `fill` is set: where tears have given a vertex
@@ -29,6 +30,7 @@ static void matrix_scatter(HeatPlan *plan, const Shell *shell, uint32_t *length,
 
 /// Room for the springs of a cell that conduct nothing till a tear changes what it gives them.
 static void matrix_reserve_cell(const HeatPlan *plan, const Shell *shell, uint32_t cell, uint32_t *length) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const float *blue = plan->conductance + plan->spring_first[SINGE_BLUE];
     const float *yellow = plan->conductance + plan->spring_first[SINGE_YELLOW];

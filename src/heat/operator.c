@@ -35,6 +35,7 @@
 //   area: corners hold yellow springs too. See heat_conduct for what the ledger makes of that.
 #include <math.h>
 
+#include "common/check.h"
 #include "heat/heat_plan.h"
 
 static double operator_triangle(Float3 a, Float3 b, Float3 c, Float3 normal) {
@@ -43,6 +44,8 @@ static double operator_triangle(Float3 a, Float3 b, Float3 c, Float3 normal) {
 
 /// Diffusivity of a spring with F and r, m2/s.
 static float operator_spring(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const Matter *matter = &shell->matter;
     uint32_t sheet = matter->sheet[ends[0]];
@@ -69,6 +72,7 @@ static double operator_less(double weight, double leak, float diffusivity) {
 /// The power of two that a cell is as wide as, m: what divides by it is the same to the bit, and its products fit a
 /// float, however large or small the cell is.
 static int operator_scale(const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const float *first = shell->rest_position[shell->cells[cell][0]];
     float widest = 0;
     for (int k = 1; k < 4; k++)
@@ -78,6 +82,7 @@ static int operator_scale(const Shell *shell, uint32_t cell) {
 }
 
 static void operator_corners(const Shell *shell, uint32_t cell, int scale, Float3 x[4]) {
+    SINGE_ASSERT(cell < shell->cell_count);
     for (int k = 0; k < 4; k++) {
         const float *position = shell->rest_position[shell->cells[cell][k]];
         x[k] = float3(ldexpf(position[0], -scale), ldexpf(position[1], -scale), ldexpf(position[2], -scale));
@@ -86,6 +91,7 @@ static void operator_corners(const Shell *shell, uint32_t cell, int scale, Float
 
 /// Linear elements' weights of a cell; false where it cannot do with them alone.
 static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], double w[6]) {
+    SINGE_ASSERT(cell < shell->cell_count);
     operator_corners(shell, cell, operator_scale(shell, cell), x);
     bool good = heat_cell_linear(x, w);
     for (int k = 0; k < 6; k++) good &= w[k] >= 0;
@@ -94,6 +100,7 @@ static bool operator_linear(const Shell *shell, uint32_t cell, Float3 x[4], doub
 
 /// Weights of a cell's sides and diagonals.
 static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     double across[4] = {0}, there[6];
     Float3 x[4], y[4];
@@ -110,6 +117,8 @@ static void operator_weights(const Shell *shell, uint32_t cell, double w[6]) {
 
 /// What a cell whose side has the weight gives to the spring along it.
 static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t cell, int side, double weight) {
+    SINGE_ASSERT(cell < shell->cell_count);
+    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t centre = shell_centre(shell, cell);
     double lean = (double)operator_rate(plan, shell, centre, centre) / 32, area = (double)shell->matter.area[centre];
     float diffusivity = operator_spring(plan, shell, SINGE_BLUE, shell->cell_springs[cell].blue[side]);
@@ -118,6 +127,8 @@ static float operator_side(const HeatPlan *plan, const Shell *shell, uint32_t ce
 
 /// Two-point flux through the side that two cells share: its weight, without diffusivity and F.
 static double operator_flux(const Shell *shell, uint32_t cell, int side, uint32_t other) {
+    SINGE_ASSERT(cell < shell->cell_count);
+    SINGE_ASSERT(side >= 0 && side < 4);
     Float3 x[4], y[4];
     int scale = operator_scale(shell, cell);
     operator_corners(shell, cell, scale, x);
@@ -131,6 +142,7 @@ static double operator_flux(const Shell *shell, uint32_t cell, int side, uint32_
 
 /// The geometry of one cell of the surface operator, without diffusivity and F.
 static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
     float *conductance = plan->conductance;
@@ -156,6 +168,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
 /// The red springs of a cell: nothing of the diffusivity. A corner's share is half of the two triangles at it
 /// that meet in the cell's middle, or a quarter where a corner is turned inwards.
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     uint32_t centre = shell_centre(shell, cell);
     float area = shell->matter.area[centre];
     Float3 x[4];
@@ -176,6 +189,7 @@ static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell)
 }
 
 static void operator_umbrella(HeatPlan *plan, const Shell *shell, uint32_t sheet) {
+    SINGE_ASSERT(sheet < shell->sheet_count);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         const SpringSet *set = &shell->springs[c];
         for (uint32_t k = 0; k < set->count; k++) {
@@ -191,6 +205,8 @@ static void operator_umbrella(HeatPlan *plan, const Shell *shell, uint32_t sheet
 /// A weight times alpha F. What two cells give is 0 or more, but for what mixing one of them takes from the other.
 static float operator_conductance(const HeatPlan *plan, const Shell *shell, SingeColour colour, uint32_t spring,
                                   float weight) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(spring < shell->springs[colour].count);
     return weight > 0 ? weight * operator_spring(plan, shell, colour, spring) : 0;
 }
 
@@ -224,10 +240,12 @@ void heat_operator(HeatPlan *plan, const Shell *shell) {
 }
 
 void heat_operator_torn_vertex(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     plan->measure[vertex] = shell->matter.area[vertex] * field_at(shell->matter.capacity_ratio, vertex);
 }
 
 void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     const uint32_t *first = plan->spring_first;
     double w[6], there[6];
@@ -246,6 +264,7 @@ void heat_operator_torn_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) 
 }
 
 bool heat_operator_may_change(const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     double w[6];
     Float3 x[4];
     return !operator_linear(shell, cell, x, w);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/check.h"
 #include "heat/heat_plan.h"
 
 // --- making one ---------------------------------------------------------------------------------------
@@ -184,6 +185,7 @@ static inline float source_falloff(float distance, float radius, float falloff) 
 
 static void source_ball_task(void *context, int begin, int end) {
     const SourceJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     const SingeSourceDef *def = &job->source->def;
     float reach = def->radius + def->falloff, square = reach * reach;
@@ -218,6 +220,7 @@ static float source_strength(const Source *source, double time) {
 
 static void source_texture_task(void *context, int begin, int end) {
     const SourceJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     for (int i = begin; i < end; i++)
         if (plan->alive[i]) plan->flux[i] += job->strength * job->source->texture[i];
@@ -266,6 +269,7 @@ static Float3 source_normal(const HeatPass *pass, uint32_t i) {
 /// thickness farther; it counts where both sides do. A sheet that stands on its edge touches with both.
 static void source_contact_task(void *context, int begin, int end) {
     const SourceJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     const SingeColliderDef *def = &job->collider->def;
     const Field thickness = job->pass->shell->matter.thickness;
@@ -295,6 +299,7 @@ static void source_contact(HeatPass *pass, const Collider *collider) {
 /// is given back that would bring it there.
 static void source_gas_task(void *context, int begin, int end) {
     const SourceJob *job = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     HeatPlan *plan = job->pass->plan;
     const GasState *gas = job->pass->state->gas;
     const float *temperature = job->pass->heat->temperature, ambient = plan->settings.ambient_temperature;

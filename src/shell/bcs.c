@@ -8,6 +8,7 @@
 // Which springs run on into which (the mates that strand.c follows): a green spring into the one across
 // the opposite side of the cell, a red one at the centre into that of the opposite corner, and at a vertex
 // each into the one opposite in the fan of cells, where there is one.
+#include "common/check.h"
 #include "shell/family.h"
 #include "shell/fibre.h"
 #include "shell/half_edge.h"
@@ -126,6 +127,7 @@ static void bcs_lay_sheets(Shell *shell, const SheetSource *sources) {
 
 /// Ends of springs in the order of the numbers that cell_springs holds before the strands are known.
 static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const uint32_t *corner = shell->cells[c], centre = shell_centre(shell, c);
@@ -149,6 +151,7 @@ static void list_ends(const HalfEdges *mesh, int colour, LooseSprings *loose) {
 /// The end at its vertex of the spring of `colour` that belongs to a half-edge: the edge itself, the red
 /// spring to the corner or the diagonal from it.
 static uint32_t end_at_vertex(const Shell *shell, int colour, uint32_t half) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const CellSprings *springs = &shell->cell_springs[half / 4];
     uint32_t i = half & 3, corner = shell->cells[half / 4][i], next = shell->cells[half / 4][(i + 1) & 3];
     if (colour == SINGE_RED) return 2 * springs->red[i] + 1;
@@ -166,6 +169,7 @@ static void join_fan(LooseSprings *loose, const uint32_t *ends, uint32_t count, 
 }
 
 static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *loose, uint32_t *ends) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
     for (uint32_t v = 0; v < shell->vertex_count; v++) {
         uint32_t half = mesh->fan_start[v], last = half, count = 0;
@@ -186,6 +190,7 @@ static void join_at_vertices(const HalfEdges *mesh, int colour, LooseSprings *lo
 }
 
 static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     const Shell *shell = mesh->shell;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const CellSprings *springs = &shell->cell_springs[c];
@@ -201,6 +206,7 @@ static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose
 
 /// From loose numbers to the numbers along strands.
 static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         CellSprings *springs = &shell->cell_springs[c];
         uint32_t *slot = colour == SINGE_RED     ? springs->red
@@ -214,6 +220,7 @@ static void renumber_cells(Shell *shell, int colour, const uint32_t *number) {
 
 static SingeResult spring_colour(Memory *memory, const HalfEdges *mesh, Shell *shell, int colour, uint32_t count,
                                  SingeError *error) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     LooseSprings loose = {.count = count};
     uint32_t *number = NULL, *ends = NULL;
     SingeResult result;

@@ -5,6 +5,7 @@
 //
 // which is cos 2(angle to the fibres) in the plane of the sheet, and less for a spring that leaves it. A spring of
 // two cells has the mean of both.
+#include "common/check.h"
 #include "common/real.h"
 #include "shell/fibre.h"
 
@@ -19,6 +20,7 @@ typedef struct FibreFrame {
 
 /// The direction in which u grows where v does not; the first side where there is none.
 static Float3 fibre_along_u(const Shell *shell, uint32_t cell, Float3 a, Float3 b) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     float da[2], db[2];
     for (int k = 0; k < 2; k++) {
@@ -32,6 +34,7 @@ static Float3 fibre_along_u(const Shell *shell, uint32_t cell, Float3 a, Float3 
 }
 
 static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     Float3 p[4];
     for (int i = 0; i < 4; i++) p[i] = float3_load(shell->rest_position[corner[i]]);
@@ -44,6 +47,8 @@ static FibreFrame fibre_frame(const Shell *shell, uint32_t cell) {
 
 /// Adds `share` of a cell's view of a spring.
 static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour, uint32_t spring, float share) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(spring < shell->springs[colour].count);
     SpringSet *set = &shell->springs[colour];
     const uint32_t *ends = set->ends[spring];
     Float3 d = float3_sub(float3_load(shell->rest_position[ends[1]]), float3_load(shell->rest_position[ends[0]]));
@@ -52,6 +57,7 @@ static void fibre_add(Shell *shell, const FibreFrame *frame, SingeColour colour,
 }
 
 static void fibre_cell(Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const CellSprings *springs = &shell->cell_springs[cell];
     FibreFrame frame = fibre_frame(shell, cell);
     for (int i = 0; i < 4; i++) {

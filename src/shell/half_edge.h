@@ -5,6 +5,7 @@
 #ifndef SHELL_HALF_EDGE_H
 #define SHELL_HALF_EDGE_H
 
+#include "common/check.h"
 #include "shell/shell.h"
 
 typedef struct HalfEdges {
@@ -32,11 +33,13 @@ static inline uint32_t half_edge_turn(const HalfEdges *mesh, uint32_t half) {
 
 /// The cell across side i of a cell that has one there.
 static inline uint32_t half_edge_across(const HalfEdges *mesh, uint32_t cell, int i) {
+    SINGE_ASSERT(cell < mesh->shell->cell_count);
     return mesh->twin[4 * cell + (uint32_t)i] / 4;
 }
 
 /// True where the cells around the vertex close into a circle.
 static inline bool half_edge_is_inside(const HalfEdges *mesh, uint32_t vertex) {
+    SINGE_ASSERT(vertex < mesh->shell->vertex_count);
     return mesh->fan_size[vertex] && mesh->twin[mesh->fan_start[vertex]] != SHELL_NONE;
 }
 

@@ -6,6 +6,7 @@
 #ifndef SHELL_SHELL_H
 #define SHELL_SHELL_H
 
+#include "common/check.h"
 #include "common/error.h"
 #include "shell/field.h"
 #include "singe/sim.h"
@@ -284,6 +285,7 @@ void state_copy(const Shell *shell, State *to, const State *from);
 
 /// True for a spare vertex, which no tear has used yet.
 static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
     return vertex - sheet->vertex_first >= sheet->vertex_count - sheet->spare_count + sheet->spare_used;
 }
@@ -291,17 +293,20 @@ static inline bool shell_is_spare(const Shell *shell, uint32_t vertex) {
 /// True for a vertex of a mesh, of the corner layer, also where no cell uses it; false for a cell's centre.
 static inline bool shell_is_corner(const Shell *shell, uint32_t particle) { return particle < shell->vertex_count; }
 static inline const float *shell_corner_uv(const Shell *shell, uint32_t cell, int i) {
+    SINGE_ASSERT(cell < shell->cell_count);
     return shell->corner_uv ? shell->corner_uv[cell][i] : shell->uv[shell->cells[cell][i]];
 }
 static inline uint32_t shell_centre(const Shell *shell, uint32_t cell) { return shell->vertex_count + cell; }
 
 /// Springs of a colour that are in strands: the first ones. Those after them are the spares of tears.
 static inline uint32_t shell_strand_springs(const Shell *shell, int colour) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return shell->springs[colour].count - (colour == SINGE_BLUE ? shell->edge_spare_count : 0);
 }
 
 /// The cell across side i, at the other end of the green spring; SHELL_NONE at the boundary.
 static inline uint32_t shell_neighbour(const Shell *shell, uint32_t cell, int i) {
+    SINGE_ASSERT(cell < shell->cell_count);
     uint32_t spring = shell->cell_springs[cell].green[i], centre = shell_centre(shell, cell);
     if (spring == SHELL_NONE) return SHELL_NONE;
     const uint32_t *ends = shell->springs[SINGE_GREEN].ends[spring];

@@ -1,3 +1,4 @@
+#include "common/check.h"
 #include "shell/split.h"
 
 #include "shell/matter.h"
@@ -10,6 +11,7 @@ static int side_before(int corner) { return corner; }
 static int side_after(int corner) { return (corner + 3) & 3; }
 
 void split_fan(const Shell *shell, uint32_t vertex, Fan *fan) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     uint32_t first = shell->fan_first[vertex], count = shell->fan_first[vertex + 1] - first;
     fan->count = count <= SPLIT_FAN ? (int)count : 0;
     for (int k = 0; k < fan->count; k++) {
@@ -73,6 +75,8 @@ bool split_is_possible(const Shell *shell, const Fan *fan, const ShellSplit *spl
 }
 
 static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t from, uint32_t to) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(spring < shell->springs[colour].count);
     uint32_t *ends = shell->springs[colour].ends[spring];
     for (int k = 0; k < 2; k++)
         if (ends[k] == from) ends[k] = to;
@@ -80,6 +84,9 @@ static void move_end(Shell *shell, SingeColour colour, uint32_t spring, uint32_t
 
 /// Parts two neighbours: `cell` goes to the spare, the other one, across `side`, stays.
 static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex) {
+    SINGE_ASSERT(cell < shell->cell_count);
+    SINGE_ASSERT(vertex < shell->vertex_count);
+    SINGE_ASSERT(side >= 0 && side < 4);
     uint32_t other = shell_neighbour(shell, cell, side);
     CellSprings *goer = &shell->cell_springs[cell], *stayer = &shell->cell_springs[other];
     SpringSet *blue = &shell->springs[SINGE_BLUE];

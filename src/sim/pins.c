@@ -1,5 +1,6 @@
 // Pins: added, moved and removed at any time. What is added before the commit waits for it as it was given, as the
 // textures of sources do, and is settled there.
+#include "common/check.h"
 #include "sim/objects.h"
 
 #include <math.h>
@@ -46,6 +47,7 @@ void sim_free_pin(SingeSim *sim, Pin *pin) {
 }
 
 static float pin_distance2(const Shell *shell, uint32_t particle, const float *point) {
+    SINGE_ASSERT(particle < shell->particle_count);
     Float3 d = float3_sub(float3_load(shell->rest_position[particle]), float3_load(point));
     return float3_dot(d, d);
 }
@@ -64,6 +66,7 @@ static uint32_t pin_nearest(const Shell *shell, const Sheet *sheet, const float 
 /// Whether a pin takes a particle; `nearest` are the points' nearest vertices.
 static bool pin_takes(const Shell *shell, const SingePinDef *def, const uint32_t *nearest, const uint8_t *listed,
                       uint32_t particle) {
+    SINGE_ASSERT(particle < shell->particle_count);
     if (listed[particle]) return true;
     if (shell_is_corner(shell, particle) && shell_is_spare(shell, particle)) return false;
     // centres lie a thickness off the mesh, where points are given

@@ -14,10 +14,12 @@
 // ways: to others they are not there, and they are drawn flat. A surface that may not leave a corner so far is moved
 // there with all points about it by the same vector: that keeps tangent planes, and with the whole way the patches go
 // through the corners.
+#include "common/check.h"
 #include "surface/surface_fine.h"
 
 
 static bool is_sound(const Fine *fine, uint32_t cell) {
+    SINGE_ASSERT(cell < fine->shell->cell_count);
     bool sound = fine->state->ablate.cell_flags[cell] & SINGE_ALIVE;
     for (int side = 0; side < 4 && sound; side++) sound = !fine_is_torn(fine, cell, side);
     return sound;
@@ -33,6 +35,7 @@ typedef struct Ring {
 } Ring;
 
 static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
+    SINGE_ASSERT(cell < fine->shell->cell_count);
     const uint32_t *at = fine->shell->cells[cell];
     for (int turn = 0; turn < 2; turn++) {
         uint32_t other = shell_neighbour(fine->shell, cell, turn ? (corner + 3) & 3 : corner);
@@ -43,6 +46,7 @@ static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring)
 }
 
 static Ring ring_of(const Fine *fine, uint32_t vertex) {
+    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     Ring ring = {0};
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
@@ -59,11 +63,13 @@ static Ring ring_of(const Fine *fine, uint32_t vertex) {
 
 static void find_sound(void *context, int begin, int end) {
     Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= fine->shell->cell_count);
     for (int c = begin; c < end; c++) fine->sound[c] = is_sound(fine, (uint32_t)c);
 }
 
 static void count_cells(void *context, int begin, int end) {
     Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int v = begin; v < end; v++) {
         Ring ring = ring_of(fine, (uint32_t)v);
         bool closed = ring.borders == 0 && ring.cells > 0;
@@ -74,6 +80,7 @@ static void count_cells(void *context, int begin, int end) {
 
 static void put_inner(void *context, int begin, int end) {
     Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (int c = begin; c < end; c++) {
         const uint32_t *at = fine->shell->cells[c];
         for (int i = 0; i < 4; i++) {
@@ -88,6 +95,7 @@ static void put_inner(void *context, int begin, int end) {
 
 /// The two points of side i of a cell, in the order of its corners.
 static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
+    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t end[2] = {shell->cells[cell][i], shell->cells[cell][(i + 1) & 3]};
     uint32_t other = shell_neighbour(shell, cell, i);
@@ -103,6 +111,7 @@ static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
 
 static void put_rails(void *context, int begin, int end) {
     Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     const Shell *shell = fine->shell;
     for (uint32_t c = (uint32_t)begin; c < (uint32_t)end; c++)
         for (int i = 0; i < 4; i++) {
@@ -118,6 +127,7 @@ static void put_rails(void *context, int begin, int end) {
 /// Where the patches meet at a vertex, and how they are moved there to stay within reach of it.
 static void put_limits(void *context, int begin, int end) {
     Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     for (uint32_t v = (uint32_t)begin; v < (uint32_t)end; v++) {
         Ring ring = ring_of(fine, v);
         Float3 x = corner_of(fine, v), limit = x, normal = float3_load(fine->normal[v]);
@@ -149,6 +159,7 @@ static const uint8_t net_locations[4][4][2] = {
     {{3, 3}, {2, 3}, {3, 2}, {2, 2}}, {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
 FinePatch fine_patch(const Fine *fine, uint32_t cell) {
+    SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
     const uint32_t (*ends)[2] = (const uint32_t (*)[2])shell->springs[SINGE_BLUE].ends;

@@ -17,6 +17,7 @@
 //
 // Tear edges lie at one position until they part. What is drawn of them is cut otherwise on either side, so their
 // corners are drawn back from each other, by a small share of a cell's side.
+#include "common/check.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -48,6 +49,7 @@ static float fade(float value, float low, float high) { return fmaxf(0, fminf((v
 
 /// Towards the centroid of the cells that a vertex has.
 static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
+    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
     Float3 location = float3_load(position[vertex]), sum = {0, 0, 0};
@@ -151,6 +153,7 @@ static void gather_shares(Fine *fine) {
 
 /// In how many parts the sides of a cell's triangles are drawn, to show how it is bent.
 static int parts_of(const Fine *fine, uint32_t cell) {
+    SINGE_ASSERT(cell < fine->shell->cell_count);
     const uint32_t *at = fine->shell->cells[cell];
     float turn = 0, freedom = 0;
     for (int i = 0; i < 4; i++) {

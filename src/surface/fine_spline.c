@@ -14,6 +14,7 @@
 // (Zwart 1973; Peters and Reif, The simplest subdivision scheme for smoothing polyhedra, 1997, for meshes that are not
 // regular: C1 but at their irregular vertices). All weights are positive: where no particle's mass grows, nor does S.
 // It is exact for linear fields on parallelograms, and its isolines have no corners where cells meet.
+#include "common/check.h"
 #include "surface/surface_fine.h"
 
 #include <string.h>
@@ -68,6 +69,7 @@ void fine_spline_cells(const Fine *fine, Spline *spline) {
 }
 
 void fine_spline_bounds(const Shell *shell, const Spline *spline, uint32_t cell, float *low, float *high) {
+    SINGE_ASSERT(cell < shell->cell_count);
     *low = INFINITY, *high = -INFINITY;
     for (int i = 0; i < 4; i++) { // the other coefficients are means of these
         float side = spline->edge[shell->cell_springs[cell].blue[i]], corner = spline->corner[shell->cells[cell][i]];
@@ -113,6 +115,7 @@ static FineLocation from_coordinates(uint32_t cell, float x, float y) {
 
 /// The side by which a cell's neighbour borders on spring `blue`.
 static int side_of(const Shell *shell, uint32_t cell, uint32_t blue) {
+    SINGE_ASSERT(cell < shell->cell_count);
     int side = 0;
     while (side < 3 && shell->cell_springs[cell].blue[side] != blue) side++;
     return side;

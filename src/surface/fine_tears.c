@@ -13,6 +13,7 @@
 // is torn off all around is drawn, too.
 //
 // Nothing is drawn outside the cells, so tear edges cross nothing that the cells do not.
+#include "common/check.h"
 #include "common/real.h"
 #include "surface/surface_fine.h"
 #include "common/random.h"
@@ -26,6 +27,7 @@ static const float TEAR_EDGE_STRENGTH = 0.6f, TEAR_EDGE_GAIN = 2.4f; ///< an oct
 static const float pi = 3.14159265f;
 
 static float angle_at(const Shell *shell, uint32_t cell, int corner) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *at = shell->cells[cell];
     Float3 p = float3_load(shell->rest_position[at[corner]]);
     Float3 a = float3_unit(float3_sub(float3_load(shell->rest_position[at[(corner + 1) & 3]]), p));
@@ -35,6 +37,7 @@ static float angle_at(const Shell *shell, uint32_t cell, int corner) {
 
 /// b of a vertex at a tear; marks its cells.
 static void tear_edge_vertex(Fine *fine, uint32_t vertex) {
+    SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
     const Spline *spline = &fine->splines[SPLINE_TEAR_EDGE];
     float angle = 0;

@@ -2,6 +2,7 @@
 // between its corners and its virtual centre; temperatures and rates follow their splines; the mass is what the level
 // was taken with. Of times to ignition, those of corners that have ignited count, by their weights. Where vertices are,
 // and their normals, fine_position.c says.
+#include "common/check.h"
 #include "surface/surface_fine.h"
 
 /// Of a triangle's corners: two particles, and the mean of four for the virtual centre.
@@ -58,6 +59,7 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
 
 static void fill_range(void *context, int begin, int end) {
     const Fine *fine = context;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     FinePatch patch;
     uint32_t cell = SHELL_NONE;
     for (int v = begin; v < end; v++) {

@@ -9,6 +9,7 @@
 // order: corners in the input's order, virtual centres, cuts. A cut that falls on its end inside is that
 // end, and polygons with fewer than three corners left vanish. Cuts keep away from ends, and quadrilaterals are cut
 // along the diagonal that makes the rounder triangles, so that none is as thin as its vertices are rounded.
+#include "common/check.h"
 #include "ablate/ablate_plan.h"
 #include "common/float3.h"
 
@@ -26,6 +27,8 @@ static void push(Polygon *polygon, uint32_t key) {
 
 /// Triangle `side` of a cell, clipped: it walks along the cell's side, to the virtual centre and back.
 static Polygon surface_clip(const AblatePlan *plan, const Shell *shell, uint32_t cell, int side) {
+    SINGE_ASSERT(cell < shell->cell_count);
+    SINGE_ASSERT(side >= 0 && side < 4);
     const CellSprings *springs = &shell->cell_springs[cell];
     int next = (side + 1) & 3;
     uint32_t corner[3] = {shell->cells[cell][side], shell->cells[cell][next], shell_centre(shell, cell)};

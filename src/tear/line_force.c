@@ -17,6 +17,7 @@
 // with the mean over all substeps of a step for N_step, whatever h; where a sheet lets go, N follows at once. And it is
 // averaged over a process zone of a fixed length: a share 1/8 of each neighbour and 1/2 of a cell's own spreads by
 // s^2/4 (variance, an axis) at a time, and so does the mean over the cells at a vertex.
+#include "common/check.h"
 #include "common/real.h"
 #include "tear/tear_plan.h"
 
@@ -30,6 +31,7 @@ static const float EDGE_STRETCH = 1.4f;
 enum { LINE_PASSES = 12 };
 
 float tear_strength(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     const Matter *matter = &shell->matter;
     float fresh = field_at(matter->strength, vertex), weakened = plan->weakened[matter->sheet[vertex]];
     float min = field_at(matter->mass_min, vertex), yield = field_at(matter->char_yield, vertex);
@@ -51,6 +53,7 @@ typedef struct Measure {
 
 /// The centroid of a cell's corners at rest: where its centre is, seen along the normal.
 static Float3 centroid(const Shell *shell, uint32_t cell) {
+    SINGE_ASSERT(cell < shell->cell_count);
     const uint32_t *corner = shell->cells[cell];
     const float(*rest)[4] = (const float(*)[4])shell->rest_position;
     Float3 a = float3_add(float3_load(rest[corner[0]]), float3_load(rest[corner[1]]));
@@ -58,6 +61,7 @@ static Float3 centroid(const Shell *shell, uint32_t cell) {
 }
 
 static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     const Shell *shell = job->shell;
     const CellSprings *springs = &shell->cell_springs[cell];
     const float *const *pull = job->pull;
@@ -79,6 +83,8 @@ static void measure_now(const Measure *job, uint32_t cell, Tensor now) {
 
 /// How long an edge or a diagonal is, over how long it is at rest.
 static float edge_stretch(const Shell *shell, const State *state, SingeColour colour, uint32_t spring) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(spring < shell->springs[colour].count);
     const uint32_t *ends = shell->springs[colour].ends[spring];
     const float(*position)[4] = (const float(*)[4])state->dynamics.position;
     float length = float3_length(float3_sub(float3_load(position[ends[0]]), float3_load(position[ends[1]])));
@@ -87,6 +93,7 @@ static float edge_stretch(const Shell *shell, const State *state, SingeColour co
 
 /// Something at a vertex has gone.
 static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
         if (!(state->ablate.cell_flags[shell->fan[k]] & SINGE_ALIVE)) return true;
     return false;
@@ -94,6 +101,7 @@ static bool gone_at(const Shell *shell, const State *state, uint32_t vertex) {
 
 /// Whether a tensor's size, which no principal value exceeds, reaches the strength of a corner.
 static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
+    SINGE_ASSERT(cell < job->shell->cell_count);
     float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
     const float safe = TEAR_HINGE * job->plan->safe;
     if (square < safe * safe) return false;
@@ -113,6 +121,7 @@ static bool measure_is_near(const Measure *job, uint32_t cell, const float *t) {
 
 static double measure_cells(void *task, int begin, int end) {
     const Measure *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     double near = 0;
     for (int c = begin; c < end; c++) {
         float *held = job->state->tear.line_force[c];
@@ -132,12 +141,14 @@ static double measure_cells(void *task, int begin, int end) {
 
 double tear_measure(TearPlan *plan, const Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT],
                     Pool *pool, float h) {
+    SINGE_ASSERT(h > 0);
     Measure job = {.plan = plan, .shell = shell, .state = state, .pull = pull, .keep = real_expf(-h / LINE_FILTER)};
     return pool_sum(pool, (int)shell->cell_count, measure_cells, &job, plan->partial);
 }
 
 static void smooth_cells(void *task, int begin, int end) {
     const Measure *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->shell->cell_count);
     const Tensor *from = (const Tensor *)job->plan->smooth[job->from];
     for (int c = begin; c < end; c++) {
         float *to = job->plan->smooth[!job->from][c], own = 1;
@@ -211,6 +222,7 @@ static float fan_stretch(const Shell *shell, const State *state, const Fan *fan)
 }
 
 TearPull tear_pull(const TearPlan *plan, const Shell *shell, const State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     TearPull pull = {0};
     Fan fan;
     if (!(state->ablate.particle_flags[vertex] & SINGE_ALIVE) || state->dynamics.pinned[vertex]) return pull;

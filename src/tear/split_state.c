@@ -1,4 +1,5 @@
 // What a split does to the State: the new particle is what the old one was, and the edges of a tear part a little.
+#include "common/check.h"
 #include "shell/cross.h"
 #include "tear/tear_plan.h"
 
@@ -27,11 +28,13 @@ static void copy_particle(State *state, uint32_t to, uint32_t from) {
 }
 
 static uint16_t split_alive(const State *state, SingeColour colour, uint32_t spring) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     return state->ablate.spring_flags[colour][spring] & SINGE_ALIVE;
 }
 
 /// Counts the springs that are left at a corner.
 static void count_degree(const Shell *shell, State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     uint16_t degree = 0;
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++) {
         uint32_t cell = shell->fan[k];
@@ -59,6 +62,7 @@ static void tear_edge_state(const Shell *shell, State *state, const TornEdge *to
 
 /// From a tear edge to the mean of its cells' corners.
 static Float3 tear_edge_displacement(const Shell *shell, const State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     Float3 sum = {0, 0, 0};
     uint32_t first = shell->fan_first[vertex], last = shell->fan_first[vertex + 1];
     for (uint32_t k = first; k < last; k++)

@@ -25,6 +25,7 @@
 // with its mass per area rho, and it stretches. Its own weight needs far less. But where it is held farther apart than
 // it reaches along itself, by more than paper stretches before it breaks, it must tear though it is stronger: its fresh
 // strengths are then lowered, all by one factor, so that the smallest is half of this.
+#include "common/check.h"
 #include "common/random.h"
 #include "tear/tear_plan.h"
 
@@ -41,6 +42,7 @@ static const float STRETCH_MAX = 1.03f; ///< paper breaks at 2 to 4 %
 static const float EDGE_MIN = 0.03f;
 
 float tear_carried(const Shell *shell, uint32_t index, float h) {
+    SINGE_ASSERT(h > 0);
     const Sheet *sheet = &shell->sheets[index];
     double mass = 0, area = 0;
     for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {
@@ -59,6 +61,7 @@ static float weakest(const Sheet *sheet, Field strength) {
 }
 
 SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPlan **out) {
+    SINGE_ASSERT(h > 0);
     TearPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;
@@ -114,6 +117,7 @@ static void mark_torn(TearPlan *plan, const Shell *shell) {
 
 /// Nothing that shares a cell with the vertex is nearer to tearing; of a vertex at a tear, nothing else there.
 static bool is_weakest(const TearPlan *plan, const Shell *shell, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
         for (int i = 0; i < 4; i++) {
             uint32_t other = shell->cells[shell->fan[k]][i];
@@ -173,6 +177,7 @@ static bool is_left(const State *state, const Fan *fan, int k) {
 
 static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                           uint32_t vertex, uint32_t end, Float3 normal) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     TearEdge edge = {.strength = INFINITY};
     edge.along = float3_unit(float3_sub(float3_load(shell->rest_position[end]), float3_load(shell->rest_position[vertex])));
     float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge.along)));
@@ -251,6 +256,7 @@ static uint32_t hinge_part(const State *state, const Fan *fan, const Turn *turn)
 /// Which cells of a vertex part from the others; 0 where no edge is pulled at enough.
 static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                             uint32_t vertex, const Fan *fan) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     Turn turn = turn_order(fan);
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
     const uint32_t hinge = hinge_part(state, fan, &turn);
@@ -279,6 +285,7 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
 /// The same, where something of both parts is left.
 static uint32_t choose_cells(const TearPlan *plan, const Shell *shell, const State *state, const TearPull *pull,
                              uint32_t vertex, const Fan *fan) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     uint32_t cells = choose_part(plan, shell, state, pull, vertex, fan);
     return cells && any_alive(state, fan, cells, true) && any_alive(state, fan, cells, false) ? cells : 0;
 }
@@ -292,6 +299,7 @@ typedef struct Ratios {
 /// How near each vertex is to tearing; what could tear along none of its edges does not come near.
 static void fill_ratios(void *task, int begin, int end) {
     const Ratios *job = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end && (uint32_t)end <= job->plan->vertex_count);
     for (int v = begin; v < end; v++) {
         TearPull pull = tear_pull(job->plan, job->shell, job->state, (uint32_t)v);
         Fan fan;
@@ -317,6 +325,7 @@ static void unload(State *state, const Fan *fan, Float3 across) {
 
 /// Parts what hangs together at a vertex alone.
 static void separate(Shell *shell, State *state, uint32_t vertex) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     for (;;) {
         Fan fan;
         SplitResult result;
@@ -332,6 +341,7 @@ static void separate(Shell *shell, State *state, uint32_t vertex) {
 
 /// Splits a vertex; true when it did. Two spare vertices are left for the ends of the edges that it tears.
 static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t vertex, bool *short_of_spares) {
+    SINGE_ASSERT(vertex < shell->vertex_count);
     TearPull pull = tear_pull(plan, shell, state, vertex);
     const Sheet *sheet = &shell->sheets[shell->matter.sheet[vertex]];
     Fan fan;
@@ -351,6 +361,7 @@ static bool tear_vertex(TearPlan *plan, Shell *shell, State *state, uint32_t ver
 
 uint32_t tear_step(TearPlan *plan, Shell *shell, State *state, const float *const pull[SINGE_COLOUR_COUNT], Pool *pool,
                    float h, bool *short_of_spares) {
+    SINGE_ASSERT(h > 0);
     uint32_t before = state->tear.split_count;
     *short_of_spares = false;
     if (tear_measure(plan, shell, state, pull, pool, h) == 0) return 0;

@@ -1,6 +1,7 @@
 // Projection of one colour: the groups of a family side by side, family after family. Families follow each other as
 // in block Gauss-Seidel; groups of a family share no particle, so that their order and the number of threads do not
 // matter.
+#include "common/check.h"
 #include "common/thread.h"
 #include "dynamics/stiffness.h"
 #include "dynamics/dynamics_plan.h"
@@ -18,6 +19,8 @@ static size_t keep_floats(const Strands *strands) {
 enum { STRAND_FLOPS = 51, STRAND_BYTES = 4 * 4 + 16 + 4 + 2 * 16 };
 
 static void strands_comply(const Shell *shell, SingeColour colour, float h, float regularisation, StrandSet *set) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(h > 0);
     const SpringSet *springs = &shell->springs[colour];
     Stiffness stiffness;
     stiffness_begin(shell, colour, h, regularisation, &stiffness);
@@ -34,6 +37,7 @@ static void strands_comply(const Shell *shell, SingeColour colour, float h, floa
 
 bool strands_create(Memory *memory, const Shell *shell, const SingeSolverDef *solver, float h, int room_count,
                     StrandSolve *solve, Strands *strands) {
+    SINGE_ASSERT(h > 0);
     *strands = (Strands){.solve = solve, .room_count = room_count};
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++) {
         StrandSet *set = &strands->sets[colour];
@@ -69,6 +73,7 @@ static int strands_enter(Strands *strands) {
 
 static void strands_range(void *task, int begin, int end) {
     Project *project = task;
+    SINGE_ASSERT(begin >= 0 && begin <= end);
     Strands *strands = project->strands;
     int room = strands_enter(strands);
     float *keep = strands->keep + keep_floats(strands) * (size_t)room;
@@ -79,6 +84,8 @@ static void strands_range(void *task, int begin, int end) {
 
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
                     DynamicsCounters *counters) {
+    SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
+    SINGE_ASSERT(h > 0);
     Strands *strands = &plan->strands;
     const StrandSet *set = &strands->sets[colour];
     Project project = {{set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)},

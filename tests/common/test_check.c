@@ -1,0 +1,50 @@
+// An assertion ends the program where assertions are on, and computes nothing where they are off.
+#include "support/support.h"
+
+#include "common/check.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int evaluated;
+
+static bool look(bool answer) {
+    evaluated++;
+    return answer;
+}
+
+static void a_broken_invariant_ends_the_program(void **state) {
+    (void)state;
+    pid_t child = fork();
+    if (child == 0) {
+        if (!freopen("/dev/null", "w", stderr)) _exit(2);
+        SINGE_ASSERT(look(false));
+        _exit(0);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+#ifdef SINGE_ASSERTIONS
+    assert_false(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+#else
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+#endif
+}
+
+static void what_holds_goes_on(void **state) {
+    (void)state;
+    evaluated = 0;
+    SINGE_ASSERT(look(true));
+#ifdef SINGE_ASSERTIONS
+    assert_int_equal(evaluated, 1);
+#else
+    assert_int_equal(evaluated, 0);
+#endif
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_broken_invariant_ends_the_program),
+                                       cmocka_unit_test(what_holds_goes_on)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
