@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/args.h"
+#include "cli/gas_detail.h"
 #include "cli/interrupt.h"
 #include "cli/lock.h"
 #include "cli/outputs.h"
@@ -29,7 +30,7 @@ typedef struct ConvertOptions {
     OutputSet formats;
     unsigned singles;      ///< of output_singles, a bit each
     SetList sets;
-    bool single, quiet;
+    bool single, gas, quiet;
 } ConvertOptions;
 
 static int single_named(const char *name, bool by_option) {
@@ -62,6 +63,7 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
         o->singles |= 1u << which;
         return true;
     }
+    if (!o->single && strcmp(name, "gas") == 0) return o->gas = true;
     which = o->single ? -1 : format_named(name);
     if (which >= 0) {
         o->formats |= 1u << which;
@@ -69,6 +71,7 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
     }
     char known[120];
     list_names(o->single, known, sizeof known);
+    if (!o->single) strcat(known, ", gas");
     args_complain(reader, "--to%s: expected one of %s, got '%s'", o->single ? " with --single" : "", known, shown(name).text);
     return false;
 }
@@ -126,19 +129,27 @@ static bool show_single(void *context, int frame) {
     return !interrupt_asked();
 }
 
-static SingeResult convert_singles(const Outputs *outputs, unsigned singles, Console *console, int last,
+static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions *o, Console *console, int last,
                                    bool *interrupted, SingeError *error) {
     SingeResult result = SINGE_OK;
     for (int i = 0; i < OUTPUT_SINGLE_COUNT && !result; i++) {
-        if (!(singles >> i & 1)) continue;
+        if (!(o->singles >> i & 1)) continue;
         SingleProgress progress = {console, console_clock(), last};
         result = outputs_write_single(outputs, i, last, show_single, &progress, error);
     }
+    SingleProgress progress = {console, console_clock(), last};
+    if (!result && o->gas) result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
     *interrupted = result && interrupt_asked();
     return *interrupted ? SINGE_OK : result;
 }
 
-static void print_results(const Outputs *outputs, unsigned singles) {
+static void print_results(const Outputs *outputs, const ConvertOptions *o) {
+    const unsigned singles = o->singles;
+    if (o->gas) {
+        char *path = gas_detail_folder(outputs->folder);
+        printf("%s/%s.0001.vdb\n", path, outputs->folder->name);
+        free(path);
+    }
     for (int i = 0; i < OUTPUT_SINGLE_COUNT; i++) {
         if (!(singles >> i & 1)) continue;
         char *path = folder_single(outputs->folder, i);
@@ -174,10 +185,10 @@ static ExitCode convert(const ConvertOptions *o, Console *console, const Job *jo
     if (!result) result = folder_create(folder, (FolderParts){.outputs = o->formats}, &error);
     interrupt_watch();
     if (!result && o->formats) result = convert_frames(&outputs, console, last, &interrupted, &error);
-    if (!result && !interrupted) result = convert_singles(&outputs, o->singles, console, last, &interrupted, &error);
+    if (!result && !interrupted) result = convert_singles(&outputs, o, console, last, &interrupted, &error);
     console_clear(console);
     if (result) console_result(console, &error);
-    else if (!interrupted && !o->quiet) print_results(&outputs, o->singles);
+    else if (!interrupted && !o->quiet) print_results(&outputs, o);
     outputs_close(&outputs);
     if (result) return result == SINGE_ERROR_FORMAT || result == SINGE_ERROR_MESH ? EXIT_INPUT : EXIT_FAILED;
     return interrupted ? EXIT_FAILED : EXIT_GOOD;

@@ -84,6 +84,15 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
     return result ? NULL : pictures->rgb;
 }
 
+SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time, int detail,
+                          float *smoke, float *flame, SingeError *error) {
+    interrupt_guard_begin();
+    SingeResult result = preview_set_gas(pictures->preview, gas, error);
+    if (!result) result = preview_bake_gas(pictures->preview, surface, time, detail, smoke, flame, error);
+    interrupt_guard_end();
+    return result;
+}
+
 SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     size_t count = (size_t)pictures->def.width * (size_t)pictures->def.height;
     PreviewLayers *l = &pictures->layers;

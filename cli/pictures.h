@@ -17,6 +17,10 @@ SINGE_NODISCARD SingeResult pictures_open(const Job *job, Pictures **pictures, S
 const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time,
                              SingeError *error);
 
+/// The gas on finer cells, as preview_bake_gas.
+SINGE_NODISCARD SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas,
+                                          double time, int detail, float *smoke, float *flame, SingeError *error);
+
 /// Has pictures_draw keep the layers of the frame, too, for pictures_write_layers.
 SINGE_NODISCARD SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error);
 

@@ -31,6 +31,13 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
     return NULL;
 }
 
+SingeResult pictures_bake(Pictures *pictures, const SingeSurface *surface, const SingeGas *gas, double time, int detail,
+                          float *smoke, float *flame, SingeError *error) {
+    (void)pictures, (void)surface, (void)gas, (void)time, (void)detail, (void)smoke, (void)flame;
+    *error = (SingeError){.code = SINGE_ERROR_STATE, .stage = "preview", .element = -1};
+    return SINGE_ERROR_STATE;
+}
+
 SingeResult pictures_keep_layers(Pictures *pictures, SingeError *error) {
     (void)pictures, (void)error;
     return SINGE_ERROR_STATE;

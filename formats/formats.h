@@ -152,6 +152,8 @@ SINGE_NODISCARD SingeResult gas_copy(const SingeGas *gas, SingeAllocator allocat
 void gas_free(Gas *gas);
 
 SINGE_NODISCARD SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeError *error);
+/// The same in 16-bit floats, for other programs: flame_share is a share of light, which no metadata scales.
+SINGE_NODISCARD SingeResult vdb_write_fine(const char *path, const Gas *gas, double time, SingeError *error);
 /// Reads what vdb_write_gas wrote, no other VDB files; free with gas_free. *time may be NULL. What gas_copy made comes
 /// back with the same bits.
 SINGE_NODISCARD SingeResult vdb_read_gas(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,

@@ -19,6 +19,7 @@ typedef struct Writer {
     Leaf *leaves;
     size_t leaf_count, node_count, block_count;
     float coolest;
+    bool half;      ///< values are 16-bit floats
     uint8_t *begin, *at;
 } Writer;
 
@@ -48,6 +49,38 @@ static void put_float(Writer *w, float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     put_u32(w, bits);
+}
+
+/// To the nearest 16-bit float, ties to the even one.
+static uint16_t to_half(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    const uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
+    bits &= 0x7fffffffu;
+    if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest there is
+    if (bits < 0x38800000u) { // below 2^-14 they are multiples of 2^-24
+        float magnitude;
+        memcpy(&magnitude, &bits, sizeof magnitude);
+        return sign | (uint16_t)nearbyintf(magnitude * 0x1p24f);
+    }
+    bits += 0xfffu + (bits >> 13 & 1);
+    return sign | (uint16_t)((bits - 0x38000000u) >> 13);
+}
+
+static float from_half(uint16_t half) {
+    const int exponent = half >> 10 & 31, fraction = half & 1023;
+    const float magnitude = exponent ? ldexpf((float)(1024 + fraction), exponent - 25) : ldexpf((float)fraction, -24);
+    return half & 0x8000 ? -magnitude : magnitude;
+}
+
+static void put_value(Writer *w, float value) {
+    if (!w->half) {
+        put_float(w, value);
+        return;
+    }
+    const uint16_t half = to_half(value);
+    const uint8_t bytes[2] = {(uint8_t)half, (uint8_t)(half >> 8)};
+    put_bytes(w, bytes, 2);
 }
 
 static void put_double(Writer *w, double value) {
@@ -90,12 +123,12 @@ static void put_header(Writer *w, double time) {
     put_u32(w, VDB_LIBRARY_MINOR);
     put_bytes(w, "\1", 1);
     put_bytes(w, "00000000-0000-0000-0000-000000000000", VDB_ID); // the same gas gives the same bytes
-    put_u32(w, 5);
+    put_u32(w, w->half ? 4 : 5);
     put_text(w, "creator", "Singe " SINGE_VERSION);
     put_triple(w, "size", w->gas->view.size);
     put_number(w, "time", time);
     put_number(w, VDB_EXTINCTION, (double)GAS_EXTINCTION);
-    put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
+    if (!w->half) put_number(w, VDB_FLAME_UNIT, (double)GAS_FLAME_UNIT);
     put_u32(w, VDB_FIELDS + 1);
 }
 
@@ -114,7 +147,13 @@ static void put_grid_metadata(Writer *w, const char *name, bool vector) {
         }
         cells += volume;
     }
-    put_u32(w, w->leaf_count ? 6 : 4);
+    put_u32(w, (w->leaf_count ? 6u : 4u) + w->half);
+    if (w->half) {
+        put_string(w, "is_saved_as_half_float");
+        put_string(w, "bool");
+        put_u32(w, 1);
+        put_bytes(w, "\1", 1);
+    }
     put_text(w, "name", name);
     if (vector) put_text(w, "vector_type", "contravariant relative");
     else put_text(w, "class", "fog volume");
@@ -166,7 +205,8 @@ static uint8_t *put_node(Writer *w, size_t mask_bytes) {
 
 static void put_topology(Writer *w, const VdbFieldInfo *field) {
     put_u32(w, 1); // buffers a leaf
-    for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? w->coolest : 0);
+    const float still = w->half ? from_half(to_half(w->coolest)) : w->coolest; // the background, a whole float anyway
+    for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? still : 0);
     put_u32(w, 0); // tiles
     put_u32(w, w->leaf_count > 0);
     if (!w->leaf_count) return;
@@ -199,7 +239,7 @@ static void put_buffers(Writer *w, VdbField field) {
             if (!vdb_write_bit(mask, n)) continue;
             size_t cell = gas_index(gas, b[0] * GAS_BLOCK + (n >> 6), b[1] * GAS_BLOCK + (n >> 3 & 7),
                                     b[2] * GAS_BLOCK + (n & 7));
-            for (uint32_t k = 0; k < width; k++) put_float(w, values[cell * width + k]);
+            for (uint32_t k = 0; k < width; k++) put_value(w, values[cell * width + k]);
         }
     }
 }
@@ -207,7 +247,9 @@ static void put_buffers(Writer *w, VdbField field) {
 /// A grid with its tree, or, where `parent` is named, one that shares the parent's.
 static void put_grid(Writer *w, const char *name, VdbField field, const char *parent) {
     put_string(w, name);
-    put_string(w, vdb_fields[field].type);
+    char type[64];
+    snprintf(type, sizeof type, "%s%s", vdb_fields[field].type, w->half ? "_HalfFloat" : "");
+    put_string(w, type);
     put_string(w, parent);
     uint8_t *locations = w->at;
     w->at += 24;
@@ -272,12 +314,12 @@ static SingeResult write_file(Writer *w, const char *path, double time, SingeErr
     return result;
 }
 
-SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeError *error) {
+static SingeResult write_gas(const char *path, const Gas *gas, double time, bool half, SingeError *error) {
     if (!isfinite(time))
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: the time is not finite", short_name(path));
     if (!gas_cells(&gas->view) || !gas_shape_is_good(&gas->view))
         return refuse(error, SINGE_ERROR_ARGUMENT, "gas", -1, "%s: no gas, or too much", short_name(path));
-    Writer writer = {.gas = gas, .coolest = gas_coolest(&gas->view), .block_count = 1};
+    Writer writer = {.gas = gas, .half = half, .coolest = gas_coolest(&gas->view), .block_count = 1};
     for (int c = 0; c < 3; c++) writer.block_count *= (gas->view.size[c] + GAS_BLOCK - 1) / GAS_BLOCK;
     writer.leaves = store_new(gas->allocator, writer.block_count, sizeof *writer.leaves);
     if (!writer.leaves) return refuse_memory(error, "gas", path);
@@ -285,4 +327,12 @@ SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeEr
     SingeResult result = write_file(&writer, path, time, error);
     store_free(gas->allocator, writer.leaves, writer.block_count, sizeof *writer.leaves);
     return result;
+}
+
+SingeResult vdb_write_gas(const char *path, const Gas *gas, double time, SingeError *error) {
+    return write_gas(path, gas, time, false, error);
+}
+
+SingeResult vdb_write_fine(const char *path, const Gas *gas, double time, SingeError *error) {
+    return write_gas(path, gas, time, true, error);
 }

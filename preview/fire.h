@@ -97,6 +97,8 @@ void fire_fill_colours(Preview *preview);
 /// Light of a full flame, radiance a metre, for the lamps that stand for it, and how much of it a cell gives.
 Float3 fire_emission(const Preview *preview);
 float fire_share(const FireCell *cell);
+/// The same for other programs: light of flame alone, a share of the brightest there is, and 1/m of smoke.
+void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke);
 Matter fire_matter(const Preview *preview, Float3 p, int what);
 
 // fire_march.c

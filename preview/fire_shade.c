@@ -196,3 +196,12 @@ Matter fire_matter(const Preview *preview, Float3 p, int what) {
     m.dense += cell.smoke;
     return m;
 }
+
+void fire_look(const Preview *preview, Float3 p, float *flame, float *smoke) {
+    const Fire *fire = &preview->fire;
+    Float3 light = {0, 0, 0};
+    float opaque = 0;
+    const float most = SOOT_DENSE * float3_luminance(fire->colours[FIRE_COLOURS - 1]);
+    const FireCell cell = fire_sample(fire, p, FIRE_FLAME | FIRE_SMOKE, &light, &opaque);
+    *flame = float3_luminance(light) / most, *smoke = maxf(cell.smoke, 0);
+}

@@ -88,6 +88,12 @@ SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewSh
 /// Replaces the gas (it changes from frame to frame), of which flame, smoke and velocity are looked at; what is needed
 /// is copied. NULL or one of size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
+enum { PREVIEW_BAKE_MOST = 4 };
+/// The gas that was set, on cells `detail` times as fine along each side, with the tongues and streaks that pictures add
+/// by noise; the surface is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest: extinction
+/// in 1/m, and the flame's light as a share of the brightest there is (118 times that of white paper a metre).
+SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail,
+                                             float *smoke, float *flame, SingeError *error);
 /// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives what
 /// flickers. The picture depends neither on the number of threads nor on the frames drawn before. Triangles of a piece
 /// share their vertices: by that its borders are known.

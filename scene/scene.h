@@ -205,6 +205,7 @@ typedef struct SceneOutput {
     OutputSet formats;
     bool events;      ///< events.csv
     int texture_size; ///< pixels
+    int gas_detail;   ///< finer cells along a side, of gas that is converted
 } SceneOutput;
 
 /// A key or a word that the scene still calls by the name it had before this release.

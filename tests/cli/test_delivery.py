@@ -10,7 +10,7 @@ import zipfile
 import zlib
 
 import exr
-from support import Case, HAS_EXR
+from support import Case, HAS_EXR, HAS_PREVIEW
 
 
 def ply(path):
@@ -306,11 +306,42 @@ class Delivery(Case):
         os.remove(self.path("print.png"))
         self.singe("convert", self.path("o"), "--to", "usdz", "--quiet", expect=2)
 
+    # ---- gas
+
+    @unittest.skipUnless(HAS_PREVIEW, "built without the preview")
+    def test_gas(self):
+        """Finer cells in 16-bit floats; the run's own files stay as they are."""
+        self.scene = self.write_scene(frames=4)
+        self.run_scene("o", "--quiet", "--set", "pace=16")
+        with open(self.path("o", "gas", "tiny.0004.vdb"), "rb") as file:
+            coarse = file.read()
+        out, _ = self.singe("convert", self.path("o"), "--to", "gas")
+        self.assertEqual(out.strip(), self.path("o", "gas_detail", "tiny.0001.vdb"))
+        found = {}
+        for detail in (1, 2, 2, 4):
+            self.singe("convert", self.path("o"), "--to", "gas", "--quiet", "--set", "output.gas_detail=%d" % detail)
+            with open(self.path("o", "gas_detail", "tiny.0004.vdb"), "rb") as file:
+                fine = file.read()
+            self.assertEqual(fine.count(b"_HalfFloat"), 5)
+            at, = (i + 17 for i in [fine.index(b"size\x05\0\0\0vec3i")])
+            size, = [struct.unpack_from("<3I", fine, at)]
+            was = struct.unpack_from("<3I", coarse, coarse.index(b"size\x05\0\0\0vec3i") + 17)
+            self.assertEqual(size, tuple(detail * n for n in was))
+            self.assertIn(found.setdefault(detail, fine), (fine,))
+        self.assertLess(len(found[2]), len(found[4]))
+        self.assertEqual(len(os.listdir(self.path("o", "gas_detail"))), 4)
+        with open(self.path("o", "gas", "tiny.0004.vdb"), "rb") as file:
+            self.assertEqual(file.read(), coarse)
+        self.assertIn("gas_detail must be 1 to 4", self.singe("convert", self.path("o"), "--to", "gas", "--set",
+                                                              "output.gas_detail=5", expect=2)[1])
+        self.burn("none", "--frames", "2")
+        self.assertIn("has no gas", self.singe("convert", self.path("none"), "--to", "gas", expect=1)[1])
+
     def test_refusals(self):
         self.burn("o", "--frames", "2")
         self.assertIn("expected one of usd, usdz, glb, vat",
                       self.singe("convert", self.path("o"), "--to", "vtp", "--single", expect=2)[1])
-        self.assertIn("expected one of usd, vtp, glb, textures, usdz, vat",
+        self.assertIn("expected one of usd, vtp, glb, textures, usdz, vat, gas",
                       self.singe("convert", self.path("o"), "--to", "abc", expect=2)[1])
         self.assertIn("out of range", self.singe("convert", self.path("o"), "--to", "vtp", "--set",
                                                  "output.texture_size=3", expect=2)[1])

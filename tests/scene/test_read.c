@@ -36,7 +36,7 @@ static const char full[] =
     "probes:\n"
     "  - {kind: uv, at: [0.25, 0.5], sheet: sheet2, name: \"a, b\"}\n"
     "  - {kind: point, at: [1 cm, 0, 1], sheet: 0}\n"
-    "output: {formats: [vtp], events: yes, texture_size: 64}\n"
+    "output: {formats: [vtp], events: yes, texture_size: 64, gas_detail: 4}\n"
     "wind: {velocity: [1, 0, 0], gust: 0.5, seed: 4294967295}\n"
     "solver: {substeps: 7, order: [yellow, blue, green, red], regularisation: {red: 0.5}, height_min: 0}\n"
     "gas: {cell_size: 12 mm, conductance: 12, radiated: 25 %}\n"
