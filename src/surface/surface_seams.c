@@ -101,7 +101,7 @@ static float cell_uv_size(const Shell *shell, uint32_t cell) {
 
 /// The copy of a vertex that has this uv and number; made where there is none.
 static uint32_t copy_with(Seams *seams, uint32_t vertex, const float uv[2], float same, int32_t source) {
-    SINGE_ASSERT(vertex < seams->shell->vertex_count);
+    SINGE_ASSERT(vertex < seams->surface->vertex_count);
     SingeSurface *surface = seams->surface;
     uint32_t last = vertex;
     if (!seams->claimed[vertex]) {

@@ -143,6 +143,9 @@ class Example(Case):
         self.assertGreaterEqual(median("curl_p90_deg"), 60)
         self.assertGreaterEqual(median("rim_4_7_slope_p50_deg"), 20)
         self.assertTrue(0.45 <= area <= 0.75)
+        # folds are drawn smoothly: .56 to .69 here, and 1.6 and 1.9 on the torus and the ball, whose folds are crushed
+        self.say["folds"] = f"{median('fold_angle_deg'):.2f} degrees below three cells"
+        self.assertLessEqual(median("fold_angle_deg"), 1)
 
     def leaf(self, frame):
         """m2 at rest of black char that has no fuel left, on the piece that has most of it."""
