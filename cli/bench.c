@@ -1,5 +1,4 @@
 // singe bench MEASUREMENT: what the solver costs and how well it holds, measured on this machine.
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -97,14 +96,7 @@ static void bench_help(void) {
     printf("\n  singe bench MEASUREMENT --help   its options\n");
 }
 
-static ExitCode write_csv(Console *console, const char *path, const BenchTable *table) {
-    FILE *file = streams_create(path);
-    if (file) table_write_csv(table, file);
-    bool failed = !file || ferror(file);
-    if (file && fclose(file)) failed = true;
-    if (failed) console_error(console, "cannot write %s: %s", path, strerror(errno));
-    return failed ? EXIT_FAILED : EXIT_GOOD;
-}
+static void print_csv(FILE *file, const void *context) { table_write_csv(context, file); }
 
 /// A refused argument is the user's, all else went wrong on the way.
 static ExitCode exit_code(SingeResult result) { return result == SINGE_ERROR_ARGUMENT ? EXIT_INPUT : EXIT_FAILED; }
@@ -122,7 +114,7 @@ static ExitCode bench_measure(int m, const BenchRequest *request) {
         code = exit_code(result);
     }
     if (!result && request->json) table_write_json(&table, stdout);
-    if (!result && request->csv) code = write_csv(&console, request->csv, &table);
+    if (!result && request->csv) code = streams_write(&console, request->csv, print_csv, &table);
     table_free(&table);
     return code;
 }

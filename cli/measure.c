@@ -6,7 +6,6 @@
 //   j = v(t) - (x(t + dt) - x(t - dt))/(2 dt)
 //
 // A smooth motion of frequency f leaves (2 pi f dt)^2/6 of its speed in j: 1 % at a hertz and 24 frames a second.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -342,16 +341,10 @@ static void write_row(FILE *file, const Measure *measure, int index) {
     fputc('\n', file);
 }
 
-static ExitCode write_csv(Measure *measure) {
-    FILE *file = streams_create(measure->csv);
-    if (file) {
-        write_header(file);
-        for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);
-    }
-    bool failed = !file || ferror(file);
-    if (file && fclose(file)) failed = true;
-    if (failed) console_error(&measure->console, "cannot write %s: %s", measure->csv, strerror(errno));
-    return failed ? EXIT_FAILED : EXIT_GOOD;
+static void print_csv(FILE *file, const void *context) {
+    const Measure *measure = context;
+    write_header(file);
+    for (int i = 0; i <= measure->last - measure->first; i++) write_row(file, measure, i);
 }
 
 static ExitCode measure_all(Measure *measure) {
@@ -369,7 +362,7 @@ static ExitCode measure_all(Measure *measure) {
         code = result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
     } else {
         print_summary(measure);
-        if (measure->csv) code = write_csv(measure);
+        if (measure->csv) code = streams_write(&measure->console, measure->csv, print_csv, measure);
     }
     for (int k = 0; k < 3; k++) moment_free(&measure->moments[k]);
     free(measure->rows);

@@ -1,5 +1,4 @@
 // singe verify: reads a cache again and counts what a good one has none of, frame by frame.
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -180,23 +179,17 @@ static uint64_t print_table(const Verify *verify) {
     return all;
 }
 
-static ExitCode write_csv(Verify *verify) {
-    FILE *file = streams_create(verify->csv);
-    if (file) {
-        fputs("frame,vertices,triangles", file);
-        for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
-        fputs(",near_crossings,folded_edges,initial_crossings\n", file);
-        for (int i = 0; i < verify->done; i++) {
-            const Row *row = &verify->rows[i];
-            fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
-            for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%" PRIu64, row->count[f]);
-            fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 "\n", row->near, row->folded, row->from_start);
-        }
+static void print_csv(FILE *file, const void *context) {
+    const Verify *verify = context;
+    fputs("frame,vertices,triangles", file);
+    for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%s", faults[f].key);
+    fputs(",near_crossings,folded_edges,initial_crossings\n", file);
+    for (int i = 0; i < verify->done; i++) {
+        const Row *row = &verify->rows[i];
+        fprintf(file, "%d,%" PRIu32 ",%" PRIu32, verify->first + i, row->vertices, row->triangles);
+        for (int f = 0; f < FAULT_COUNT; f++) fprintf(file, ",%" PRIu64, row->count[f]);
+        fprintf(file, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 "\n", row->near, row->folded, row->from_start);
     }
-    bool failed = !file || ferror(file);
-    if (file && fclose(file)) failed = true;
-    if (failed) console_error(&verify->console, "cannot write %s: %s", verify->csv, strerror(errno));
-    return failed ? EXIT_FAILED : EXIT_GOOD;
 }
 
 /// A second is waited for before progress is shown.
@@ -227,7 +220,7 @@ static ExitCode verify_all(Verify *verify) {
         return result == SINGE_ERROR_MEMORY ? EXIT_FAILED : EXIT_INPUT;
     }
     ExitCode code = print_table(verify) ? EXIT_FAILED : EXIT_GOOD;
-    if (verify->csv && write_csv(verify)) code = EXIT_FAILED;
+    if (verify->csv && streams_write(&verify->console, verify->csv, print_csv, verify)) code = EXIT_FAILED;
     if (verify->done == frames) return code;
     console_error(&verify->console, "interrupted: frames %d-%d are not verified", verify->first + verify->done,
                   verify->last);
