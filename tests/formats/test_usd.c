@@ -279,6 +279,17 @@ static double time_used(double *system) {
     return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
 }
 
+/// Seconds of a fixed piece of work, eight million multiplications that follow each other: how fast the machine is now.
+static double yardstick(void) {
+    double system;
+    const double begun = time_used(&system);
+    volatile uint64_t start = 14695981039346656037u;
+    uint64_t hash = start;
+    for (uint32_t i = 0; i < 8000000; i++) hash = (hash ^ i) * 1099511628211u;
+    start = hash;
+    return time_used(&system) - begun;
+}
+
 /// At 25,000 vertices a frame takes at most 5 ms of the program's time and 75 % of the bytes of the PLY.
 static void is_fast_and_small(void **state) {
     (void)state;
@@ -287,11 +298,13 @@ static void is_fast_and_small(void **state) {
     Bytes ply;
     make_sheet(&s, 158, 1);
     enum { FRAMES = 20, TIMES = 20 };
-    double system[2], ply_system[2], mean = 1;
+    const double usual = 5.5e-3; // s of the yardstick on an idle Zen 3 core; the bar grows where it takes longer
+    double system[2], ply_system[2], mean = 1, yard = 1;
     for (int times = 0; times < TIMES && mean > 4e-3; times++) { // the least of some: others use the machine, too
         const double own = time_used(&system[0]);
         for (int i = 0; i < FRAMES; i++) assert_int_equal(write_sheet(&s, 1, NULL, &error), SINGE_OK);
         mean = fmin(mean, (time_used(&system[1]) - own) / FRAMES);
+        yard = fmin(yard, yardstick());
     }
     const double begun = time_used(&ply_system[0]);
     for (int i = 0; i < FRAMES; i++) assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
@@ -301,12 +314,14 @@ static void is_fast_and_small(void **state) {
     assert_int_equal(file_read(path, (SingeAllocator){0}, &ply, &error), SINGE_OK);
     unlink(path);
     const double share = (double)usd.size / (double)ply.size;
-    printf("%u vertices: %.2f ms a frame (bar 5) and %.2f of the system, PLY %.2f and %.2f; %.0f %% of its bytes (bar 75)\n",
-           s.vertex_count, 1e3 * mean, 1e3 * (system[1] - system[0]) / FRAMES, 1e3 * ply_mean,
+    const double bar = 5e-3 * fmax(1, yard / usual);
+    printf("%u vertices: %.2f ms a frame (bar %.2f, yardstick %.2f) and %.2f of the system, PLY %.2f and %.2f; %.0f %% of "
+           "its bytes (bar 75)\n",
+           s.vertex_count, 1e3 * mean, 1e3 * bar, 1e3 * yard, 1e3 * (system[1] - system[0]) / FRAMES, 1e3 * ply_mean,
            1e3 * (ply_system[1] - ply_system[0]) / FRAMES, 100 * share);
     assert_true(share <= 0.75);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__OPTIMIZE__)
-    assert_true(mean <= 5e-3);
+    assert_true(mean <= bar);
 #endif
     bytes_free(&usd), bytes_free(&ply);
     singe_surface_free(&s);
