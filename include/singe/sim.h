@@ -120,16 +120,17 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_material(SingeSim *sim, Sing
 /// SINGE_ERROR_STATE before the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
 
-/// As many steps as fit in `seconds` (0 to 1e6) and what calls before have left; the rest, less than a step, is kept for
-/// the next call and saved. `steps_max` bounds the steps of a call, 0 is any number: whole steps beyond are dropped, so
-/// that a host that falls behind slows down. *steps (may be NULL) is how many were made. A rest that lacks less than a
-/// hundredth of a step counts as one. The first call allocates room
-/// for events, which singe_sim_events then gives for all steps of the call. A step that fails ends it as
-/// singe_sim_step does: those before it are done.
+/// Makes as many steps as fit in `seconds` (0 to 1e6) plus the remainder of earlier calls. What is left, less than one
+/// step, is the new remainder; snapshots have it. A remainder within 1 % of a step counts as a step. At most `steps_max`
+/// steps are made (0: any number) and whole steps beyond them are dropped, so that a host that falls behind slows down.
+/// *steps (may be NULL) is the number of steps made. The first call allocates room for events; singe_sim_events then has
+/// those of all steps of the call. A step that fails ends the call as in singe_sim_step; the steps before it stay, and
+/// the time that is left stays in the remainder.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
                                                         uint32_t *steps);
 
-/// s, of the last call, less than a step: how far a renderer may extrapolate by the velocities.
+/// The remainder of the last singe_sim_advance, s: how far a renderer may extrapolate by the velocities. Less than one
+/// step, unless that call failed.
 SINGE_API double singe_sim_remainder(const SingeSim *sim);
 
 /// Flags of a particle, spring or cell.

@@ -151,8 +151,8 @@ typedef struct SingeColliderDef {
     uint32_t path_count;      ///< 0: it stands still at `position` and `rotation`
     const SingePoseKey *path; ///< [path_count] of its own frame
     SingeContactSides sides;  ///< of a sheet in contact that exchange heat
-    /// mesh and deforming: closed, each edge shared by two triangles that are counter-clockwise from outside and do not pass through
-    /// others; vertices at the very same place are one. One that is inside out is turned
+    /// mesh and deforming: closed; each edge is shared by two triangles, counter-clockwise from outside, that do not pass
+    /// through others. Vertices at the same position are one. A mesh that is inside out is turned
     uint32_t vertex_count;
     const float *vertices;     ///< [3 * vertex_count] m, each within 1e4
     uint32_t triangle_count;   ///< at least 4
