@@ -161,7 +161,7 @@ static ExitCode fill(Queue *queue) {
     int failed = 0;
     SingeError error;
     if (report_page_close(queue->report, &failed, &error)) code = fail(&error);
-    printf("\n%s/index.html: %s\n", queue->request->folder, failed ? "measures fail" : "all measures hold");
+    printf("\n%s/index.html: %s\n", queue->request->folder, code ? "not complete" : failed ? "measures fail" : "all measures hold");
     return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
 }
 

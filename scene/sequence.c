@@ -9,6 +9,7 @@
 #include "scene/sequence.h"
 
 #include "formats/store.h"
+#include "scene/foot.h"
 #include "scene/solid.h"
 
 #include <math.h>
@@ -39,7 +40,7 @@ static char *sequence_path(const SceneMotion *motion, int frame) {
     return made;
 }
 
-/// Positions of a frame, scaled, with z up.
+/// Turns a frame of y up to z up.
 static void sequence_place(const SceneMotion *motion, float *positions, uint32_t count) {
     for (uint32_t v = 0; motion->up == SCENE_UP_Y && v < count; v++) {
         float *p = positions + 3 * (size_t)v, y = p[1];
@@ -135,35 +136,6 @@ void sequence_free(SceneSequence *sequence) {
 
 // ---- bonds
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// Weights of the point of a triangle nearest to p, which is on it, an edge or a corner: the least of the three edges'
-/// and, where it is inside, the plane's. Returns the distance's square.
-static double foot_of(const double v[3][3], const double p[3], double weights[3]) {
-    double ab[3], ac[3], ap[3], best = INFINITY;
-    for (int k = 0; k < 3; k++) ab[k] = v[1][k] - v[0][k], ac[k] = v[2][k] - v[0][k], ap[k] = p[k] - v[0][k];
-    const double bb = dot(ab, ab), cc = dot(ac, ac), bc = dot(ab, ac), area = bb * cc - bc * bc;
-    const double s = (cc * dot(ab, ap) - bc * dot(ac, ap)) / area, t = (bb * dot(ac, ap) - bc * dot(ab, ap)) / area;
-    double tried[4][3] = {{1 - s - t, s, t}};
-    const bool inside = area > 0 && s >= 0 && t >= 0 && s + t <= 1;
-    for (int e = 0; e < 3; e++) {
-        double along[3], from[3];
-        for (int k = 0; k < 3; k++) along[k] = v[(e + 1) % 3][k] - v[e][k], from[k] = p[k] - v[e][k];
-        const double length = dot(along, along), share = length > 0 ? dot(along, from) / length : 0;
-        const double u = fmin(fmax(share, 0), 1);
-        tried[e + 1][e] = 1 - u, tried[e + 1][(e + 1) % 3] = u, tried[e + 1][(e + 2) % 3] = 0;
-    }
-    for (int i = inside ? 0 : 1; i < (inside ? 1 : 4); i++) {
-        double away[3];
-        for (int k = 0; k < 3; k++)
-            away[k] = p[k] - tried[i][0] * v[0][k] - tried[i][1] * v[1][k] - tried[i][2] * v[2][k];
-        if (!(dot(away, away) < best)) continue;
-        best = dot(away, away);
-        memcpy(weights, tried[i], sizeof tried[i]);
-    }
-    return best;
-}
-
 static void corners_of(const PreviewSolid *frame, uint32_t triangle, double v[3][3]) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
@@ -175,7 +147,7 @@ static void axes_of(const double v[3][3], double e[3][3]) {
     for (int k = 0; k < 3; k++) e[0][k] = side[k] = v[1][k] - v[0][k], other[k] = v[2][k] - v[0][k];
     for (int k = 0; k < 3; k++) e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
     for (int i = 0; i < 3; i += 2) {
-        const double length = sqrt(dot(e[i], e[i]));
+        const double length = sqrt(foot_dot(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // one without extent has none
     }
     for (int k = 0; k < 3; k++) e[1][k] = e[2][(k + 1) % 3] * e[0][(k + 2) % 3] - e[2][(k + 2) % 3] * e[0][(k + 1) % 3];
@@ -186,7 +158,7 @@ static void bond(const PreviewSolid *frame, const float position[4], SceneBond *
     double v[3][3], e[3][3], weights[3], best = INFINITY, away[3];
     for (uint32_t t = 0; t < frame->triangle_count; t++) {
         corners_of(frame, t, v);
-        const double square = foot_of((const double(*)[3])v, p, weights);
+        const double square = foot_on_triangle(p, (const double(*)[3])v, weights);
         if (!(square < best)) continue;
         best = square;
         made->triangle = t;
@@ -196,7 +168,7 @@ static void bond(const PreviewSolid *frame, const float position[4], SceneBond *
     axes_of((const double(*)[3])v, e);
     for (int k = 0; k < 3; k++)
         away[k] = p[k] - made->weights[0] * v[0][k] - made->weights[1] * v[1][k] - made->weights[2] * v[2][k];
-    for (int i = 0; i < 3; i++) made->away[i] = dot(away, e[i]);
+    for (int i = 0; i < 3; i++) made->away[i] = foot_dot(away, e[i]);
 }
 
 /// Bonds a pin's particles, where they are at rest, to the first frame.

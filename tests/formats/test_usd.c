@@ -306,6 +306,7 @@ static void is_fast_and_small(void **state) {
         mean = fmin(mean, (time_used(&system[1]) - own) / FRAMES);
         yard = fmin(yard, yardstick());
     }
+    for (int times = 0; times < TIMES && yard > usual; times++) yard = fmin(yard, yardstick());
     const double begun = time_used(&ply_system[0]);
     for (int i = 0; i < FRAMES; i++) assert_int_equal(ply_write_surface(path, &s, 1.5, &error), SINGE_OK);
     const double ply_mean = (time_used(&ply_system[1]) - begun) / FRAMES;
