@@ -10,10 +10,12 @@
 
 enum { FACE_SIZE = 1 + 3 * 4 };
 
+// clang-format off
 static const char *const names[CACHE_COLUMNS] = {
     "x", "y", "z", "nx", "ny", "nz", "s", "t", "vx", "vy", "vz", "rest_x", "rest_y", "rest_z", "temperature",
     "temperature_peak", "mass", "burn_rate", "char_fraction", "ash_fraction", "burnt", "time_ignited", "piece_id",
     "vertex_id", "sheet"};
+// clang-format on
 
 const char *cache_column_name(int column) { return names[column]; }
 bool cache_column_is_integer(int column) { return column >= CACHE_PIECE; }

@@ -6,17 +6,25 @@
 
 /// The properties that docs/formats.md promises, in its order.
 enum {
-    CACHE_X, CACHE_NORMAL = 3, CACHE_UV = 6, CACHE_VELOCITY = 8, CACHE_REST = 11, CACHE_TEMPERATURE = 14,
-    CACHE_PIECE = 22, CACHE_VERTEX, CACHE_SHEET, CACHE_COLUMNS
+    CACHE_X,
+    CACHE_NORMAL = 3,
+    CACHE_UV = 6,
+    CACHE_VELOCITY = 8,
+    CACHE_REST = 11,
+    CACHE_TEMPERATURE = 14,
+    CACHE_PIECE = 22,
+    CACHE_VERTEX,
+    CACHE_SHEET,
+    CACHE_COLUMNS
 };
 
 typedef struct CacheFrame {
-    double time;                 ///< s, NaN where the header does not say
+    double time; ///< s, NaN where the header does not say
     uint32_t vertex_count, triangle_count;
-    bool there[CACHE_COLUMNS];   ///< a property of that name and type
-    float (*position)[3];        ///< [vertex_count]
-    float (*rest)[3];            ///< [vertex_count], 0 where there are none
-    uint32_t (*triangles)[3];    ///< [triangle_count] as in the file: they may be out of range
+    bool there[CACHE_COLUMNS]; ///< a property of that name and type
+    float (*position)[3];      ///< [vertex_count]
+    float (*rest)[3];          ///< [vertex_count], 0 where there are none
+    uint32_t (*triangles)[3];  ///< [triangle_count] as in the file: they may be out of range
     Bytes bytes;
     size_t row, offset[CACHE_COLUMNS]; ///< bytes of a vertex, and where in it a property is
     const uint8_t *rows;

@@ -7,10 +7,10 @@
 #include <stdint.h>
 
 typedef struct CrossingList {
-    size_t count;            ///< pairs
-    uint32_t (*pairs)[2];    ///< [count] the lower number first, in ascending order
+    size_t count;         ///< pairs
+    uint32_t (*pairs)[2]; ///< [count] the lower number first, in ascending order
     size_t capacity;
-    uint64_t tested;         ///< pairs whose boxes met
+    uint64_t tested; ///< pairs whose boxes met
 } CrossingList;
 
 /// Finds the pairs that cross among triangles of finite corners that are not on a line: by triangle_pair.h or hinges.h.

@@ -256,7 +256,8 @@ static void check_edge(const CacheFrame *frame, const Side *sides, uint32_t coun
     if (shortest > findings->stretch * longest)
         findings_add(findings, FAULT_STRETCHED, "edge %u-%u of triangle %u is %.4g mm long, %.4g mm at rest", low, high,
                      sides->triangle, 1e3 * length, 1e3 * rest);
-    if (count == 2 && has_rest(frame, &sides[1]) && findings_bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
+    if (count == 2 && has_rest(frame, &sides[1]) &&
+        findings_bend(frame->position, &sides[0], &sides[1]) < fold_cosine &&
         findings_bend(frame->rest, &sides[0], &sides[1]) > 0)
         findings->folded++;
 }

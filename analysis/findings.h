@@ -23,15 +23,15 @@ typedef enum Fault {
 typedef struct Findings {
     void (*report)(void *context, bool fault, const char *message); ///< of a fault, or of what else there is to say
     void *context;
-    const char *file;         ///< the frame's path, for messages
-    double stretch;           ///< edges longer than this many times their length at rest count
+    const char *file; ///< the frame's path, for messages
+    double stretch;   ///< edges longer than this many times their length at rest count
     uint64_t count[FAULT_COUNT];
-    uint64_t near;            ///< of the crossings, those of triangles side by side at rest
-    bool begins;              ///< this is the first frame of the run: what crosses in it crosses from the start
-    Initial initial;          ///< what did, to be freed
-    uint64_t from_start;      ///< crossings of what did; no fault
-    uint64_t folded;          ///< edges whose triangles lie on one another; no fault
-    int reported[FAULT_COUNT];    ///< messages so far
+    uint64_t near;             ///< of the crossings, those of triangles side by side at rest
+    bool begins;               ///< this is the first frame of the run: what crosses in it crosses from the start
+    Initial initial;           ///< what did, to be freed
+    uint64_t from_start;       ///< crossings of what did; no fault
+    uint64_t folded;           ///< edges whose triangles lie on one another; no fault
+    int reported[FAULT_COUNT]; ///< messages so far
 } Findings;
 
 /// Counts a fault, and reports it when it is one of the first of its kind.

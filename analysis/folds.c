@@ -2,7 +2,8 @@
 // in silhouette. Along a fold little should change within a few cells, so that what does is measured, of the unit
 // normal N over the sheet at rest (rest_raster.h), in cells of the mesh, c long:
 //
-//   folds   where N, smoothed by a Gaussian of one c, turns by more than 10 degrees in c; their direction is that in which
+//   folds   where N, smoothed by a Gaussian of one c, turns by more than 10 degrees in c; their direction is that in
+//   which
 //           it turns least (the matrix J of wrinkles.c)
 //   N'      N on a line of 6 c along the fold, 8 samples a cell, less its mean under a Hann window of 3 c
 //

@@ -32,7 +32,7 @@ typedef struct Side {
     const float *at[2]; ///< the edge's ends in ascending order of their places
     uint32_t ends[2];   ///< their vertices
     uint32_t triangle;
-    uint8_t corner;     ///< where the edge begins in it
+    uint8_t corner; ///< where the edge begins in it
 } Side;
 
 static int compare_points(const float a[3], const float b[3]) {

@@ -25,7 +25,8 @@ static InitialTriangle position_of(const CacheFrame *frame, uint32_t triangle) {
     memcpy(&entry.sheet, &bits, sizeof entry.sheet);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) entry.at[k] += frame->rest[t[i]][k] / 3;
-        entry.reach = fmaxf(entry.reach, reach_of_side * initial_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
+        entry.reach =
+            fmaxf(entry.reach, reach_of_side * initial_distance(frame->rest[t[i]], frame->rest[t[(i + 1) % 3]]));
     }
     return entry;
 }

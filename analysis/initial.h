@@ -7,15 +7,15 @@
 #include "singe/sim.h"
 
 typedef struct InitialTriangle {
-    float at[3];   ///< m, the triangle's middle at rest
-    float reach;   ///< m
+    float at[3]; ///< m, the triangle's middle at rest
+    float reach; ///< m
     int32_t sheet;
 } InitialTriangle;
 
 typedef struct Initial {
     InitialTriangle *triangles; ///< in ascending order of x
     size_t count;
-    float reach;          ///< m, the largest
+    float reach; ///< m, the largest
 } Initial;
 
 /// Takes the triangles of pairs that cross. False when out of memory. Free it, after failure too.

@@ -165,8 +165,8 @@ void rest_raster_free(RestRaster *raster) {
 enum { REACH_MAX = 64 };
 
 /// One pass along rows (step 1) or columns (step width) of `count` lines of `length` pixels.
-static void rest_raster_blur(const float *from, float *to, int lines, int line_step, int length, int step, const float *kernel,
-                 int reach) {
+static void rest_raster_blur(const float *from, float *to, int lines, int line_step, int length, int step,
+                             const float *kernel, int reach) {
     for (int line = 0; line < lines; line++)
         for (int i = 0; i < length; i++) {
             const float *at = from + (size_t)line * line_step + (size_t)i * step;

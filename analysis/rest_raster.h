@@ -8,12 +8,12 @@
 
 typedef struct RestRaster {
     int width, height;
-    double spacing;      ///< m, of pixels
-    double turn;         ///< rad, of the raster's axes against the direction of growing u on the sheet
-    float *cover;        ///< 1 where the sheet is drawn, 0 elsewhere
-    float *normal[3];    ///< unit, that of the drawn sheet
-    float *burn;         ///< 0 fresh to 1 ash
-    float *unlit;        ///< 1 where it has never ignited
+    double spacing;   ///< m, of pixels
+    double turn;      ///< rad, of the raster's axes against the direction of growing u on the sheet
+    float *cover;     ///< 1 where the sheet is drawn, 0 elsewhere
+    float *normal[3]; ///< unit, that of the drawn sheet
+    float *burn;      ///< 0 fresh to 1 ash
+    float *unlit;     ///< 1 where it has never ignited
 } RestRaster;
 
 /// Draws a sheet of the surface at a spacing of pixels in m. The sheet is laid into the plane that fits its rest

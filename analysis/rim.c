@@ -120,7 +120,7 @@ static bool find_plane(Piece *piece) {
 
 typedef struct Sample {
     double rest[3], position[3], normal[3]; ///< m, m, unit
-    double rest_area, area, mass;        ///< m2, m2, fraction
+    double rest_area, area, mass;           ///< m2, m2, fraction
 } Sample;
 
 /// What lies 10 mm inland, to be compared with the rim once its normals are known.
@@ -183,8 +183,8 @@ static int samples_along(const SingeSurface *surface, const uint32_t *t) {
     for (int i = 0; i < 3; i++) {
         double square = 0;
         for (int k = 0; k < 3; k++)
-            square += pow((double)surface->rest_position[t[i]][k] - (double)surface->rest_position[t[(i + 1) % 3]][k],
-                          2);
+            square +=
+                pow((double)surface->rest_position[t[i]][k] - (double)surface->rest_position[t[(i + 1) % 3]][k], 2);
         longest = fmax(longest, sqrt(square));
     }
     double count = ceil(longest / sample_spacing);
@@ -268,8 +268,7 @@ double rim_percentile(const double histogram[RIM_ANGLES], double share) {
     if (!(total > 0)) return (double)NAN;
     for (int a = 0; a < RIM_ANGLES; a++) {
         below += histogram[a];
-        if (below >= share * total)
-            return (a + 1 - (below - share * total) / histogram[a]) * 180 / RIM_ANGLES;
+        if (below >= share * total) return (a + 1 - (below - share * total) / histogram[a]) * 180 / RIM_ANGLES;
     }
     return 180;
 }

@@ -14,17 +14,17 @@ extern const double rim_band_limits[RIM_BANDS + 1];
 
 /// Sums over one band. All but `area` are weighted by the area at rest.
 typedef struct RimBand {
-    double rest_area, area;    ///< m2, at rest and now
-    double mass;               ///< m2, mass fraction times area
-    double height;             ///< m3, above the plane that the sheet began in
-    double slope[RIM_ANGLES];  ///< m2, by the angle between the normal and that plane's
+    double rest_area, area;   ///< m2, at rest and now
+    double mass;              ///< m2, mass fraction times area
+    double height;            ///< m3, above the plane that the sheet began in
+    double slope[RIM_ANGLES]; ///< m2, by the angle between the normal and that plane's
 } RimBand;
 
 /// Sums over a frame, or over many.
 typedef struct Rim {
     RimBand band[RIM_BANDS];
-    double curl[RIM_ANGLES];   ///< m2, by the angle between the normals at the rim and 10 mm inland
-    double curl_max;           ///< degrees
+    double curl[RIM_ANGLES]; ///< m2, by the angle between the normals at the rim and 10 mm inland
+    double curl_max;         ///< degrees
 } Rim;
 
 /// Adds a frame's: of its largest piece, where that has a burnt edge. False when out of memory.

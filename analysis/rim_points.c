@@ -201,7 +201,8 @@ static void look_at_ring(const RimPoints *points, const double *position, const 
                 size_t c = cell_at(points, at);
                 for (uint32_t i = points->first[c]; i < points->first[c + 1]; i++) {
                     const double *point = points->position[points->order[i]];
-                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]}, found = rim_points_dot(d, d);
+                    double d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]},
+                           found = rim_points_dot(d, d);
                     if (found < *square) *square = found, *nearest = points->order[i];
                 }
             }

@@ -10,13 +10,13 @@
 /// Points in a grid. An empty one has count 0.
 typedef struct RimPoints {
     size_t count;
-    double (*position)[3];    ///< m, at rest
+    double (*position)[3]; ///< m, at rest
     double (*near)[3];     ///< normals of what is near the rim, summed by the caller for the nearest point
     double (*normal)[3];   ///< unit, of the rim; 0 where it is not known
     double low[3], cell;   ///< m, of the grid
     int size[3];
-    uint32_t *first;       ///< [cells + 1] of `order`
-    uint32_t *order;       ///< points by their cell
+    uint32_t *first; ///< [cells + 1] of `order`
+    uint32_t *order; ///< points by their cell
 } RimPoints;
 
 /// Points every quarter of a millimetre along the piece's open edges that have burnt; none where there are none. False

@@ -52,7 +52,8 @@ int singular_values(const double *matrix, size_t rows, size_t columns, double *v
             for (size_t j = i + 1; j < count; j++)
                 if (singular_turn(vectors + i * length, vectors + j * length, length, floor)) turned = true;
     }
-    for (size_t i = 0; i < count; i++) values[i] = sqrt(singular_dot(vectors + i * length, vectors + i * length, length));
+    for (size_t i = 0; i < count; i++)
+        values[i] = sqrt(singular_dot(vectors + i * length, vectors + i * length, length));
     qsort(values, count, sizeof *values, descending);
     free(vectors);
     return 0;

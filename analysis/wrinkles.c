@@ -91,8 +91,7 @@ static void add_roughness(const RestRaster *raster, Work *work, Wrinkles *wrinkl
         if (!(raster->cover[p] > 0) || work->weight[p] < covered_min) continue;
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow((double)work->rough[k][p] - (double)work->smooth[k][p], 2);
-        if (work->distance[p] <= around_burnt)
-            wrinkles->burnt_power += square * area, wrinkles->burnt_area += area;
+        if (work->distance[p] <= around_burnt) wrinkles->burnt_power += square * area, wrinkles->burnt_area += area;
         else if (work->distance[p] >= far_from_burnt && raster->unlit[p] > 0)
             wrinkles->unburnt_power += square * area, wrinkles->unburnt_area += area;
     }

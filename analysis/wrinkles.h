@@ -11,10 +11,10 @@ enum { WRINKLE_BINS = 24 };
 
 /// Sums over a frame, or over many.
 typedef struct Wrinkles {
-    double crease[WRINKLE_BINS];         ///< area times bend, m2/m
-    double axis, diagonal;               ///< the same within 11.25 degrees of the sheet's axes and of their diagonals
-    double burnt_power, burnt_area;      ///< rad2 m2 and m2: the normal's angle in wavelengths of 3 to 15 mm
-    double unburnt_power, unburnt_area;  ///< the same where nothing has burnt far and wide
+    double crease[WRINKLE_BINS];        ///< area times bend, m2/m
+    double axis, diagonal;              ///< the same within 11.25 degrees of the sheet's axes and of their diagonals
+    double burnt_power, burnt_area;     ///< rad2 m2 and m2: the normal's angle in wavelengths of 3 to 15 mm
+    double unburnt_power, unburnt_area; ///< the same where nothing has burnt far and wide
 } Wrinkles;
 
 /// Adds a frame's. False when out of memory.

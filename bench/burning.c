@@ -2,10 +2,10 @@
 
 #include "bench/hung_sheet.h"
 
-#define TRY(call)                      \
-    do {                               \
-        SingeResult result_ = (call);  \
-        if (result_) return result_;   \
+#define TRY(call)                     \
+    do {                              \
+        SingeResult result_ = (call); \
+        if (result_) return result_;  \
     } while (0)
 
 static SingeResult add_colliders(SingeSim *sim) {
@@ -44,8 +44,8 @@ static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, doub
     return add_colliders(sim);
 }
 
-SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs,
-                          float pace, SingeSim **sim, SingeError *error) {
+SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs, float pace,
+                          SingeSim **sim, SingeError *error) {
     BenchSetup setup = sheet_setup(options, BENCH_SWING, 20);
     SingeSimDef def = singe_default_sim();
     def.thread_count = options->threads, def.instructions = options->instructions, def.solver = setup.solver;

@@ -6,7 +6,7 @@
 #include "bench/options.h"
 
 /// Makes and commits it; `pace` is the fire's. On failure *sim is NULL.
-SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs,
-                          float pace, SingeSim **sim, SingeError *error);
+SingeResult burning_build(const BenchOptions *options, const SingeAllocator *allocator, double springs, float pace,
+                          SingeSim **sim, SingeError *error);
 
 #endif

@@ -90,9 +90,10 @@ SingeResult curves_draw(const Curves *curves, const char *path, SingeError *erro
     const Frame frame = frame_around(curves);
     FILE *file = fopen(path, "w");
     if (file) {
-        fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" height=\"%d\" "
-                      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
-                      "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n",
+        fprintf(file,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" height=\"%d\" "
+                "font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
+                "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n",
                 WIDTH, HEIGHT, WIDTH, HEIGHT, WIDTH, HEIGHT);
         draw_grid(file, &frame);
         for (int c = 0; c < curves->count; c++) draw_curve(file, &frame, &curves->list[c], c);

@@ -75,8 +75,8 @@ static void name_curve(char *name, size_t size, char **fields, const Columns *co
     snprintf(name, size, "%s%s%s%s%.*s", solver, *solver ? ", " : "", threads, word, length > 40 ? 40 : length, base);
 }
 
-static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Columns *columns, const char *path,
-                            int line, SingeError *error) {
+static SingeResult read_row(Curves *curves, int first, char **fields, int count, const Columns *columns,
+                            const char *path, int line, SingeError *error) {
     char *springs_end, *ms_end, name[80];
     if (columns->springs >= count || columns->ms >= count || columns->solver >= count || columns->threads >= count)
         return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "has fewer fields than the heading");
@@ -103,8 +103,8 @@ static SingeResult read_lines(Curves *curves, FILE *file, const char *path, Sing
             if (result) return result;
             continue;
         }
-        columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"), curves_read_find(fields, count, "solver"),
-                        curves_read_find(fields, count, "threads")};
+        columns = (Columns){curves_read_find(fields, count, "springs"), curves_read_find(fields, count, "step_ms"),
+                            curves_read_find(fields, count, "solver"), curves_read_find(fields, count, "threads")};
         if (columns.springs < 0 || columns.ms < 0)
             return curves_read_fail(error, SINGE_ERROR_FORMAT, path, line, "needs columns springs and step_ms");
     }

@@ -10,21 +10,21 @@ static volatile float start = 1.01f, kept; // volatile: a compiler that knew whe
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 
-#define FMA_KERNEL(name, features, type, set1, fmadd, store, lanes)                               \
-    __attribute__((target(features))) static double name(long rounds) {                           \
-        type x[CHAINS], m = set1(factor), a = set1(addend), sum = set1(0.0f);                     \
-        float out[lanes];                                                                         \
-        for (int c = 0; c < CHAINS; c++) x[c] = set1(start + 0.01f * (float)c);                   \
-        for (long round = 0; round < rounds; round += 4) { /* four between two looks at the counter */\
-            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                            \
-            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                            \
-            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                            \
-            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                            \
-        }                                                                                         \
-        for (int c = 0; c < CHAINS; c++) sum = fmadd(sum, m, x[c]);                               \
-        store(out, sum);                                                                          \
-        kept = out[0];                                                                            \
-        return 2.0 * CHAINS * (lanes) * (double)rounds;                                           \
+#define FMA_KERNEL(name, features, type, set1, fmadd, store, lanes)                                    \
+    __attribute__((target(features))) static double name(long rounds) {                                \
+        type x[CHAINS], m = set1(factor), a = set1(addend), sum = set1(0.0f);                          \
+        float out[lanes];                                                                              \
+        for (int c = 0; c < CHAINS; c++) x[c] = set1(start + 0.01f * (float)c);                        \
+        for (long round = 0; round < rounds; round += 4) { /* four between two looks at the counter */ \
+            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                                 \
+            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                                 \
+            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                                 \
+            for (int c = 0; c < CHAINS; c++) x[c] = fmadd(x[c], m, a);                                 \
+        }                                                                                              \
+        for (int c = 0; c < CHAINS; c++) sum = fmadd(sum, m, x[c]);                                    \
+        store(out, sum);                                                                               \
+        kept = out[0];                                                                                 \
+        return 2.0 * CHAINS * (lanes) * (double)rounds;                                                \
     }
 
 FMA_KERNEL(fma_512, "avx512f", __m512, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_storeu_ps, 16)

@@ -7,8 +7,14 @@ static const float size = 1; // m
 
 BenchSetup sheet_setup(const BenchOptions *options, BenchState state, int steps) {
     BenchSetup setup = {
-        .state = state, .cells = 100, .pins = 2, .thickness = 1e-3f, .shrink = 0.8f, .threads = options->threads,
-        .time_step = 1.0f / (float)(BENCH_FPS * steps), .instructions = options->instructions,
+        .state = state,
+        .cells = 100,
+        .pins = 2,
+        .thickness = 1e-3f,
+        .shrink = 0.8f,
+        .threads = options->threads,
+        .time_step = 1.0f / (float)(BENCH_FPS * steps),
+        .instructions = options->instructions,
     };
     singe_init_solver_method(&setup.solver, sizeof setup.solver, options->solver);
     setup.rigid = options->solver != SINGE_SOLVER_STRAND;

@@ -6,14 +6,14 @@
 
 typedef struct BenchSetup {
     BenchState state;
-    int cells;        ///< a side
-    int pins;         ///< corners held, 1 or 2
-    float thickness;  ///< m
-    float time_step;  ///< s
-    float shrink;     ///< what the lengths end at in BENCH_SHRINK
-    float damping;    ///< 1/s
-    float approach;   ///< m that the second patch moves towards the first within half a second (BENCH_HANG)
-    bool rigid;       ///< springs do not give, as in eq 16: no compliance
+    int cells;       ///< a side
+    int pins;        ///< corners held, 1 or 2
+    float thickness; ///< m
+    float time_step; ///< s
+    float shrink;    ///< what the lengths end at in BENCH_SHRINK
+    float damping;   ///< 1/s
+    float approach;  ///< m that the second patch moves towards the first within half a second (BENCH_HANG)
+    bool rigid;      ///< springs do not give, as in eq 16: no compliance
     int threads;
     SingeInstructions instructions;
     SingeSolverDef solver;

@@ -7,10 +7,10 @@
 
 enum { CELLS = 32, ROW = CELLS + 1, WARM_UP = 60, MEASURED = 20 };
 
-#define TRY(call)                      \
-    do {                               \
-        SingeResult result_ = (call);  \
-        if (result_) return result_;   \
+#define TRY(call)                     \
+    do {                              \
+        SingeResult result_ = (call); \
+        if (result_) return result_;  \
     } while (0)
 
 static SingeResult add_sheet(SingeSim *sim, SingeSheetId *id) {
@@ -84,8 +84,9 @@ int main(void) {
     if (!result) result = steps(sim);
     SingeStats stats = singe_sim_stats(sim);
     if (result) fprintf(stderr, "singe_bench_instructions: %s\n", singe_sim_error(sim)->message);
-    else printf("steps %d\nsprings %llu, %.2f %% burnt\n", MEASURED, (unsigned long long)stats.springs,
-                100 * stats.burnt_fraction);
+    else
+        printf("steps %d\nsprings %llu, %.2f %% burnt\n", MEASURED, (unsigned long long)stats.springs,
+               100 * stats.burnt_fraction);
     singe_sim_destroy(sim);
     return result != SINGE_OK;
 }

@@ -49,7 +49,8 @@ typedef struct Comparison {
 
 static const char *state_name(BenchState state) { return state == BENCH_SWING ? "swing" : "shrink"; }
 
-static SingeResult compare_follow(const Comparison *c, const BenchSetup *setup, int frames, double budget, Outcome *outcome) {
+static SingeResult compare_follow(const Comparison *c, const BenchSetup *setup, int frames, double budget,
+                                  Outcome *outcome) {
     Trajectory *t = trajectory_run(setup, frames, STEPS, budget, c->error);
     if (!t) return c->error->code;
     *outcome = (Outcome){.frames = t->frames, .step_ms = t->dynamics_ms / STEPS, .fall = t->fall_end};
@@ -74,7 +75,7 @@ static const char *verdict(const Outcome *ours, const Outcome *paper) {
 }
 
 static SingeResult compare_add(const Comparison *c, const BenchSetup *setup, double springs, const Outcome *outcome,
-                       const Outcome *paper) {
+                               const Outcome *paper) {
     const SingeSolverDef *solver = &setup->solver;
     BenchValue row[COLUMNS] = {
         [KIND] = bench_text("trajectory"),
@@ -120,8 +121,10 @@ static SingeResult trajectories(const Comparison *c, BenchState state, double sp
         if (!result && no_more(&ours.all, &paper.all)) best_all = fmax(best_all, paper.step_ms / ours.step_ms);
     }
     if (!result && c->table->text)
-        fprintf(c->table->text, "%s, %.0f springs: %.1f times as fast at no more error of edges, %.1f at no more of all"
-                " springs (0: never)\n", state_name(state), springs, best_edges, best_all);
+        fprintf(c->table->text,
+                "%s, %.0f springs: %.1f times as fast at no more error of edges, %.1f at no more of all"
+                " springs (0: never)\n",
+                state_name(state), springs, best_edges, best_all);
     return result;
 }
 
@@ -143,10 +146,19 @@ static SingeResult full(const Comparison *c, double springs, SingeSolverMethod m
     singe_sim_destroy(sim);
     const BenchValue none = {.number = {NAN, NAN, NAN}};
     BenchValue row[COLUMNS] = {
-        [KIND] = bench_text("full"), [STATE] = bench_text("swing"), [SPRINGS] = bench_number(springs),
-        [SOLVER] = bench_text(options_solver_name(method)), [SUBSTEPS] = bench_number(1),
-        [PROJECTIONS] = bench_number(7), [FRAMES] = none, [MS] = bench_number(ms), [BLUE] = none, [ALL] = none,
-        [FALL] = none, [RATIO] = bench_number(*paper_ms / ms), [LESS] = bench_text("-"),
+        [KIND] = bench_text("full"),
+        [STATE] = bench_text("swing"),
+        [SPRINGS] = bench_number(springs),
+        [SOLVER] = bench_text(options_solver_name(method)),
+        [SUBSTEPS] = bench_number(1),
+        [PROJECTIONS] = bench_number(7),
+        [FRAMES] = none,
+        [MS] = bench_number(ms),
+        [BLUE] = none,
+        [ALL] = none,
+        [FALL] = none,
+        [RATIO] = bench_number(*paper_ms / ms),
+        [LESS] = bench_text("-"),
     };
     if (!result && !table_add(c->table, row)) result = SINGE_ERROR_MEMORY;
     return result;

@@ -8,11 +8,24 @@
 #include "bench/strain.h"
 #include "bench/timing.h"
 
-
-
 enum {
-    SPRINGS, SOLVER, THREADS, STEP_MEDIAN, STEP_MIN, PROJECTION_MEDIAN, PROJECTION_MIN, SWEEPS, NS, GFLOPS,
-    GFLOPS_SHARE, GB, GB_SHARE, MEMORY, BLUE, ALL, COLUMNS
+    SPRINGS,
+    SOLVER,
+    THREADS,
+    STEP_MEDIAN,
+    STEP_MIN,
+    PROJECTION_MEDIAN,
+    PROJECTION_MIN,
+    SWEEPS,
+    NS,
+    GFLOPS,
+    GFLOPS_SHARE,
+    GB,
+    GB_SHARE,
+    MEMORY,
+    BLUE,
+    ALL,
+    COLUMNS
 };
 
 static const BenchColumn columns[COLUMNS] = {
@@ -75,7 +88,7 @@ static SingeResult add_row(BenchTable *table, const BenchSetup *setup, const Pea
 }
 
 static SingeResult dynamics_measure(const BenchOptions *options, BenchSetup *setup, double springs, const Peaks *peaks,
-                           BenchTable *table, SingeError *error) {
+                                    BenchTable *table, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
     setup->cells = options_cells(springs);

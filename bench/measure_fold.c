@@ -22,9 +22,9 @@ static const double fold_time = 0.6, hold_time = 0.3, free_time = 2;
 enum { SIDE, BENT, CELL, STEP, LEFT, EXPECTED, ELASTIC, INVERTED, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [SIDE] = {"towards", NULL, 8, NULL},          [BENT] = {"bent_deg", "%.0f", 8, NULL},
-    [CELL] = {"cell_mm", "%.3g", 8, NULL},        [STEP] = {"h_ms", "%.3g", 6, NULL},
-    [LEFT] = {"left_deg", "%.1f", 8, NULL},       [EXPECTED] = {"expected_deg", "%.1f", 12, NULL},
+    [SIDE] = {"towards", NULL, 8, NULL},           [BENT] = {"bent_deg", "%.0f", 8, NULL},
+    [CELL] = {"cell_mm", "%.3g", 8, NULL},         [STEP] = {"h_ms", "%.3g", 6, NULL},
+    [LEFT] = {"left_deg", "%.1f", 8, NULL},        [EXPECTED] = {"expected_deg", "%.1f", 12, NULL},
     [ELASTIC] = {"elastic_deg", "%.1f", 11, NULL}, [INVERTED] = {"inverted", "%.0f", 8, NULL},
 };
 
@@ -33,7 +33,7 @@ typedef struct Fold {
     double cell, step;
     int threads;
     bool creases;
-    double left;  ///< deg, in the direction of the fold
+    double left; ///< deg, in the direction of the fold
     double inverted;
 } Fold;
 
@@ -145,16 +145,20 @@ SingeResult bench_fold(const BenchOptions *options, BenchTable *table, SingeErro
     for (int i = 0; i < 2 * 2 * 4 && !result; i++) {
         const int setting = i % 4, towards = i / 4 % 2, bend = i / 8;
         if (options->quick && setting == 3) continue;
-        Fold fold = {.angle = (towards ? 1 : -1) * bends[bend] * pi / 180, .cell = cells[setting],
-                     .step = 1 / steps[setting]};
+        Fold fold = {
+            .angle = (towards ? 1 : -1) * bends[bend] * pi / 180, .cell = cells[setting], .step = 1 / steps[setting]};
         result = fold_run(options, &fold, false, error);
         double elastic = fold.left;
         if (!result) result = fold_run(options, &fold, true, error);
         BenchValue row[COLUMNS] = {
-            [SIDE] = bench_text(towards ? "centres" : "corners"), [BENT] = bench_number(bends[bend]),
-            [CELL] = bench_number(1e3 * fold.cell),               [STEP] = bench_number(1e3 * fold.step),
-            [LEFT] = bench_number(fold.left),                     [EXPECTED] = bench_number(expected(fold.angle)),
-            [ELASTIC] = bench_number(elastic),                    [INVERTED] = bench_number(fold.inverted),
+            [SIDE] = bench_text(towards ? "centres" : "corners"),
+            [BENT] = bench_number(bends[bend]),
+            [CELL] = bench_number(1e3 * fold.cell),
+            [STEP] = bench_number(1e3 * fold.step),
+            [LEFT] = bench_number(fold.left),
+            [EXPECTED] = bench_number(expected(fold.angle)),
+            [ELASTIC] = bench_number(elastic),
+            [INVERTED] = bench_number(fold.inverted),
         };
         if (!result && !table_add(table, row)) result = SINGE_ERROR_MEMORY;
     }

@@ -5,7 +5,18 @@
 #include <math.h>
 
 enum {
-    MATERIAL, GRAMMAGE, DIRECTION, CELL, STEP, THICKENING, SPEED, CHANGE, HOTTEST, RESIDUE, BASIS, FINDING,
+    MATERIAL,
+    GRAMMAGE,
+    DIRECTION,
+    CELL,
+    STEP,
+    THICKENING,
+    SPEED,
+    CHANGE,
+    HOTTEST,
+    RESIDUE,
+    BASIS,
+    FINDING,
     FRONT_COLUMNS
 };
 
@@ -74,8 +85,7 @@ typedef struct FrontKnown {
 static const char *finding(const BenchMaterial *material, FrontDirection direction, const StripResult *result,
                            const FrontKnown *known) {
     if (result->speed <= 0) return "goes out";
-    if (direction == FRONT_DOWN)
-        return fabs(result->speed / known->level - 1) <= 0.25 ? "near level" : "off level";
+    if (direction == FRONT_DOWN) return fabs(result->speed / known->level - 1) <= 0.25 ? "near level" : "off level";
     if (direction == FRONT_UP) return result->speed >= 4 * known->down ? "climbs" : "hardly climbs";
     if (!holds(result->speed, material->speed)) return result->speed < (double)material->speed[0] ? "slower" : "faster";
     if (!holds(result->hottest, material->temperature))
@@ -84,7 +94,6 @@ static const char *finding(const BenchMaterial *material, FrontDirection directi
         return result->residue < (double)material->residue[0] ? "less left" : "more left";
     return material->speed[1] > 0 ? "as sources say" : "no source";
 }
-
 
 static void fill_row(BenchValue *row, const BenchMaterial *material, FrontDirection direction, const StripSetup *setup,
                      const StripResult *result, const FrontKnown *known) {

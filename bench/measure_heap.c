@@ -8,14 +8,34 @@
 #include "bench/numbers.h"
 
 enum { STEPS = 20, ROOM = 4096 };
-static const float side = 1;                   // m
+static const float side = 1;                    // m
 static const float sphere = 0.12f, lift = 0.3f; // m
 static const float ball = 0.1f;                 // m, radius of the closed mesh
 static const double seconds = 3, collapse_seconds = 0.3;
 
 enum {
-    CELLS, SPRINGS, THREADS, FRAME_MEDIAN, FRAME_MAX, STEP_MEAN, HEAT, BURN, ABLATE, DYNAMICS, PROJECTION, CONTACT,
-    CONTACT_STEP, SEARCHES, PAIRS, PUSHES, STOPS, UNRESOLVED, STRAIN, INVERTED, SPEED, COLUMNS
+    CELLS,
+    SPRINGS,
+    THREADS,
+    FRAME_MEDIAN,
+    FRAME_MAX,
+    STEP_MEAN,
+    HEAT,
+    BURN,
+    ABLATE,
+    DYNAMICS,
+    PROJECTION,
+    CONTACT,
+    CONTACT_STEP,
+    SEARCHES,
+    PAIRS,
+    PUSHES,
+    STOPS,
+    UNRESOLVED,
+    STRAIN,
+    INVERTED,
+    SPEED,
+    COLUMNS
 };
 
 static const BenchColumn columns[COLUMNS] = {
@@ -143,7 +163,7 @@ static SingeResult heap_build(const BenchOptions *options, int cells, bool close
 }
 
 static void heap_fill(BenchValue *row, const BenchOptions *options, const SingeSim *sim, int cells, double *frame_ms,
-                 int frames) {
+                      int frames) {
     SingeTimers t = singe_sim_timers(sim);
     SingeCounts counts = singe_sim_counts(sim);
     SingeStats stats = singe_sim_stats(sim);
@@ -173,7 +193,8 @@ static void heap_fill(BenchValue *row, const BenchOptions *options, const SingeS
     row[SPEED] = bench_number(stats.speed_rms_unburnt);
 }
 
-static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table, SingeError *error) {
+static SingeResult heap_measure(const BenchOptions *options, int cells, bool closed, BenchTable *table,
+                                SingeError *error) {
     SingeSim *sim;
     double frame_ms[ROOM];
     double time = options->time > 0 ? options->time : closed ? collapse_seconds : seconds;

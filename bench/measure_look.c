@@ -129,7 +129,7 @@ static void read_wrinkles(Look *look, const SingeView *view, int cells, double l
 }
 
 static SingeResult look_observe(const BenchOptions *options, BenchSetup setup, BenchState state, Look *look,
-                           SingeError *error) {
+                                SingeError *error) {
     SingeSim *sim = NULL;
     double seconds = options->time > 0 ? options->time : options->quick ? 0.5 : 3;
     setup.state = state;

@@ -84,6 +84,7 @@ SingeResult bench_memory(const BenchOptions *options, BenchTable *table, SingeEr
     BenchList springs = bench_list(&options->springs, 5, (const double[]){1e3, 4e3, 16e3, 1e5, 1e6});
     SingeResult result = SINGE_OK;
     *table = table_begin("memory", columns, COLUMNS, table->text);
-    for (int i = 0; i < springs.count && !result; i++) result = memory_measure(options, springs.values[i], table, error);
+    for (int i = 0; i < springs.count && !result; i++)
+        result = memory_measure(options, springs.values[i], table, error);
     return result;
 }

@@ -14,8 +14,8 @@
 #include "bench/trajectory.h"
 
 typedef enum Triangles { QUADS, MOVED, ORDERED, TURNS, RANDOM, SHUFFLED, EQUILATERAL, DELAUNAY, TRIANGLES } Triangles;
-static const char *const names[TRIANGLES] = {"quads", "moved-quads", "ordered", "turns", "random", "shuffled",
-                                             "equilateral", "delaunay"};
+static const char *const names[TRIANGLES] = {"quads",  "moved-quads", "ordered",     "turns",
+                                             "random", "shuffled",    "equilateral", "delaunay"};
 
 enum { SUBSTEPS = 60 };
 
@@ -71,8 +71,8 @@ static void plane_vertices(Plane *plane, Triangles kind, uint32_t n, uint32_t *s
 
 static void plane_triangles(Plane *plane, Triangles kind, uint32_t n, uint32_t *state) {
     for (uint32_t c = 0; c < n * n; c++) {
-        uint32_t i = c % n, j = c / n, at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1,
-                                               (j + 1) * (n + 1) + i};
+        uint32_t i = c % n, j = c / n,
+                 at[4] = {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i};
         bool other = kind == TURNS ? (i + j) & 1 : kind == EQUILATERAL ? !(j & 1) : random_next(state) & 1;
         uint32_t turn = kind != ORDERED && other;
         const uint32_t first[3] = {at[turn], at[turn + 1], at[turn + 2]};
@@ -92,7 +92,7 @@ static int compare_sides(const void *a, const void *b) { return memcmp(a, b, 2 *
 
 static bool find_twins(Plane *plane) {
     const uint32_t sides = 3 * plane->triangle_count;
-    uint32_t (*side)[3] = malloc(sides * sizeof *side);
+    uint32_t(*side)[3] = malloc(sides * sizeof *side);
     if (!side) return false;
     for (uint32_t h = 0; h < sides; h++) {
         uint32_t a = *corner_of(plane, h), b = *corner_of(plane, mesh_next3(h));
@@ -116,7 +116,8 @@ static bool in_circle(const float *a, const float *b, const float *c, const floa
         m[i][2] = m[i][0] * m[i][0] + m[i][1] * m[i][1];
     }
     return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) > 1e-18;
+               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) >
+           1e-18;
 }
 
 static void mesh_join_halves(Plane *plane, uint32_t h, uint32_t twin) {
@@ -135,7 +136,8 @@ static bool flip(Plane *plane, uint32_t h) {
     const uint32_t first[3] = {c, a, d}, second[3] = {d, b, c};
     memcpy(plane->corner[t / 3], first, sizeof first);
     memcpy(plane->corner[s / 3], second, sizeof second);
-    mesh_join_halves(plane, t, outer[0]), mesh_join_halves(plane, t + 1, outer[1]), mesh_join_halves(plane, s, outer[2]), mesh_join_halves(plane, s + 1, outer[3]);
+    mesh_join_halves(plane, t, outer[0]), mesh_join_halves(plane, t + 1, outer[1]),
+        mesh_join_halves(plane, s, outer[2]), mesh_join_halves(plane, s + 1, outer[3]);
     mesh_join_halves(plane, t + 2, s + 2);
     return true;
 }
@@ -153,13 +155,14 @@ static bool make_delaunay(Plane *plane) {
 /// Numbers vertices and triangles at random.
 static bool shuffle(Plane *plane, uint32_t *state) {
     uint32_t *to = malloc(plane->vertex_count * sizeof *to);
-    float (*position)[3] = malloc(plane->vertex_count * sizeof *position);
+    float(*position)[3] = malloc(plane->vertex_count * sizeof *position);
     if (to && position) {
         for (uint32_t v = 0; v < plane->vertex_count; v++) {
             uint32_t other = random_next(state) % (v + 1);
             to[v] = to[other], to[other] = v;
         }
-        for (uint32_t v = 0; v < plane->vertex_count; v++) memcpy(position[to[v]], plane->position[v], sizeof *position);
+        for (uint32_t v = 0; v < plane->vertex_count; v++)
+            memcpy(position[to[v]], plane->position[v], sizeof *position);
         memcpy(plane->position, position, plane->vertex_count * sizeof *position);
         for (uint32_t t = 0; t < plane->triangle_count; t++) {
             uint32_t other = random_next(state) % (t + 1), corner[3];
@@ -195,8 +198,11 @@ static SingeResult make_quads(const Plane *plane, MeshQuads quads, Mesh *mesh, M
     uint32_t *first = malloc(((size_t)plane->triangle_count + 1) * sizeof *first);
     if (!first) return SINGE_ERROR_MEMORY;
     for (uint32_t t = 0; t <= plane->triangle_count; t++) first[t] = 3 * t;
-    const Polygons polygons = {.vertex_count = plane->vertex_count, .face_count = plane->triangle_count,
-                               .corner_count = 3 * plane->triangle_count, .positions = plane->position[0], .first = first,
+    const Polygons polygons = {.vertex_count = plane->vertex_count,
+                               .face_count = plane->triangle_count,
+                               .corner_count = 3 * plane->triangle_count,
+                               .positions = plane->position[0],
+                               .first = first,
                                .corners = plane->corner[0]};
     options.quads = quads;
     SingeResult result = mesh_make("bench", &polygons, &options, (SingeAllocator){0}, mesh, report, error);
@@ -228,7 +234,9 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, 
                     const MeshReport *report, const Trajectory *t) {
     BenchValue row[COLUMNS] = {
         [NAME] = bench_text(names[kind]),
-        [BECOME] = bench_text(kind <= MOVED ? "-" : quads == MESH_QUADS_SPLIT ? "split" : "pair"),
+        [BECOME] = bench_text(kind <= MOVED               ? "-"
+                              : quads == MESH_QUADS_SPLIT ? "split"
+                                                          : "pair"),
         [TRI] = bench_number(report->triangles),
         [CELLS] = bench_number(mesh->cell_count),
         [HALVED] = bench_number(report->count[MESH_HALVED]),
@@ -245,7 +253,7 @@ static bool add_row(BenchTable *table, const BenchSetup *setup, Triangles kind, 
 }
 
 static SingeResult mesh_measure(BenchSetup setup, Triangles kind, MeshQuads quads, int frames, BenchTable *table,
-                           SingeError *error) {
+                                SingeError *error) {
     Plane plane;
     Mesh mesh = {0};
     MeshReport report = {0};

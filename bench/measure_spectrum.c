@@ -25,12 +25,9 @@ static const double width = 0.288, shortest = 0.003; // m: the sheet, the first 
 enum { WAVE, POWER, COLUMNS = POWER + SETTINGS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [WAVE] = {"wavelength_mm", "%.1f", 13, NULL},
-    [POWER] = {"base", "%.4f", 8, NULL},
-    [POWER + 1] = {"h_x_2", "%.4f", 8, NULL},
-    [POWER + 2] = {"h_div_2", "%.4f", 8, NULL},
-    [POWER + 3] = {"s_div_2", "%.4f", 8, NULL},
-    [POWER + 4] = {"t_x_2", "%.4f", 8, NULL},
+    [WAVE] = {"wavelength_mm", "%.1f", 13, NULL}, [POWER] = {"base", "%.4f", 8, NULL},
+    [POWER + 1] = {"h_x_2", "%.4f", 8, NULL},     [POWER + 2] = {"h_div_2", "%.4f", 8, NULL},
+    [POWER + 3] = {"s_div_2", "%.4f", 8, NULL},   [POWER + 4] = {"t_x_2", "%.4f", 8, NULL},
 };
 
 static const struct {
@@ -117,8 +114,8 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     def.thread_count = options->threads, def.instructions = options->instructions, def.pace = 4;
     def.solver.substeps = options->substeps; // 0: as many as stiffness needs
     def.time_step *= (float)step;
-    sheet.material.temperature = (SingeParam){.value = 293, .to = 1100, .field = SINGE_FIELD_ATTRIBUTE,
-                                              .attribute = "hot"};
+    sheet.material.temperature =
+        (SingeParam){.value = 293, .to = 1100, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "hot"};
     sheet.material.thickening = 2.07f; // that of cells of 2 mm
     sheet.material.shrink_front.noise.seed += 16 * seed, sheet.material.shrink_back.noise.seed += 16 * seed;
     sheet.material.damping = singe_param(3);
@@ -153,8 +150,8 @@ static bool read_line(const SingeView *view, const Strip *strip, double z, doubl
         const float *p = view->position[j * row + c], *q = view->position[j * row + c + 1];
         const float *r = view->position[(j + 1) * row + c], *s = view->position[(j + 1) * row + c + 1];
         for (int a = 0; a < 3; a++)
-            point[a] = (1 - f) * ((1 - g) * (double)p[a] + g * (double)q[a]) +
-                       f * ((1 - g) * (double)r[a] + g * (double)s[a]);
+            point[a] =
+                (1 - f) * ((1 - g) * (double)p[a] + g * (double)q[a]) + f * ((1 - g) * (double)r[a] + g * (double)s[a]);
         double d[3] = {point[0] - before[0], point[1] - before[1], point[2] - before[2]};
         if (i > 0) angle[i - 1] = atan2(d[1], sqrt(d[0] * d[0] + d[2] * d[2]));
         for (int a = 0; a < 3; a++) before[a] = point[a];
@@ -201,7 +198,7 @@ static void read_lines(const SingeView *view, const Strip *strip, Spectrum *spec
 }
 
 static SingeResult spectrum_observe(const BenchOptions *options, int setting, uint32_t seed, Spectrum *spectrum,
-                           SingeError *error) {
+                                    SingeError *error) {
     const double cells = settings[setting].cells, step = settings[setting].step;
     const Strip strip = {(int)(ACROSS * cells), (int)(UP * cells), width / (ACROSS * cells)};
     const double seconds = options->time > 0 ? options->time : options->quick ? 0.2 : 1.6;

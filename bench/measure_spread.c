@@ -7,12 +7,9 @@
 enum { DIRECTION, CELL, GAS_CELL, SPEED, OVER_LEVEL, OVER_DOWN, SPREAD_COLUMNS };
 
 static const BenchColumn spread_columns[SPREAD_COLUMNS] = {
-    [DIRECTION] = {"direction", NULL, 9, NULL},
-    [CELL] = {"cell_mm", "%.2g", 7, NULL},
-    [GAS_CELL] = {"gas_cell_mm", "%.2g", 11, NULL},
-    [SPEED] = {"speed_mm_s", "%.3g", 10, NULL},
-    [OVER_LEVEL] = {"over_level", "%.2f", 10, NULL},
-    [OVER_DOWN] = {"over_down", "%.2f", 9, NULL},
+    [DIRECTION] = {"direction", NULL, 9, NULL},      [CELL] = {"cell_mm", "%.2g", 7, NULL},
+    [GAS_CELL] = {"gas_cell_mm", "%.2g", 11, NULL},  [SPEED] = {"speed_mm_s", "%.3g", 10, NULL},
+    [OVER_LEVEL] = {"over_level", "%.2f", 10, NULL}, [OVER_DOWN] = {"over_down", "%.2f", 9, NULL},
 };
 
 /// In m; a gas cell of 0: without gas.

@@ -28,18 +28,12 @@ static const double gravity = 9.81, speed_limit = 100, reach_limit = 1.5, gyrati
 enum { STATE, CELLS, RATIO, STEP, RESULT, STRAIN, P99, SPEED, ENERGY, REACH, GYRATION, FOLDED, INVERTED, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [STATE] = {"state", NULL, 6, NULL},
-    [CELLS] = {"cells", "%.0f", 5, NULL},
-    [RATIO] = {"t_over_s", "%.3g", 8, NULL},
-    [STEP] = {"h_ms", "%.3g", 5, NULL},
-    [RESULT] = {"result", NULL, 9, NULL},
-    [STRAIN] = {"max_strain_pct", "%.3g", 14, NULL},
-    [P99] = {"p99_pct", "%.3g", 8, NULL},
-    [SPEED] = {"speed", "%.3g", 7, NULL},
-    [ENERGY] = {"energy_gain", "%.3g", 11, NULL},
-    [REACH] = {"reach", "%.3f", 7, NULL},
-    [GYRATION] = {"gyration", "%.2f", 8, NULL},
-    [FOLDED] = {"folded", "%.2f", 6, NULL},
+    [STATE] = {"state", NULL, 6, NULL},           [CELLS] = {"cells", "%.0f", 5, NULL},
+    [RATIO] = {"t_over_s", "%.3g", 8, NULL},      [STEP] = {"h_ms", "%.3g", 5, NULL},
+    [RESULT] = {"result", NULL, 9, NULL},         [STRAIN] = {"max_strain_pct", "%.3g", 14, NULL},
+    [P99] = {"p99_pct", "%.3g", 8, NULL},         [SPEED] = {"speed", "%.3g", 7, NULL},
+    [ENERGY] = {"energy_gain", "%.3g", 11, NULL}, [REACH] = {"reach", "%.3f", 7, NULL},
+    [GYRATION] = {"gyration", "%.2f", 8, NULL},   [FOLDED] = {"folded", "%.2f", 6, NULL},
     [INVERTED] = {"inverted", "%.0f", 8, NULL},
 };
 
@@ -48,7 +42,7 @@ typedef struct Case {
     double t_over_s, seconds;
     bool finite;
     double speed, energy_gain, reach, gyration, folded; ///< the greatest, and the last two at the end
-    double inverted; ///< cells, the most after any step
+    double inverted;                                    ///< cells, the most after any step
     BenchValue strain;
     SingeResult failed; ///< could not be built
     SingeError error;
@@ -168,7 +162,8 @@ SingeResult bench_stability(const BenchOptions *options, BenchTable *table, Sing
               "of the edges.\n",
               table->text);
     stability_fill(&cases, options);
-    workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), stability_run, done, &cases);
+    workers_run(cases.count, options->threads > 1 ? options->threads : machine_processors(), stability_run, done,
+                &cases);
     for (int i = 0; i < cases.count && !result; i++)
         if (cases.list[i].failed) result = cases.list[i].failed, *error = cases.list[i].error;
     if (!result && cases.full_table) result = SINGE_ERROR_MEMORY;

@@ -8,29 +8,37 @@
 enum { WARM_UP = 40 };
 
 enum {
-    SPRINGS, SOLVER, LIMIT, THREADS, STEP_MEDIAN, STEP_MIN, HEAT, BURN, ABLATE, DYNAMICS, GAS, PROJECTION, NS,
-    ITERATIONS, CONTACTS, BURNT, MEMORY, YARDSTICK, STEP_COLUMNS
+    SPRINGS,
+    SOLVER,
+    LIMIT,
+    THREADS,
+    STEP_MEDIAN,
+    STEP_MIN,
+    HEAT,
+    BURN,
+    ABLATE,
+    DYNAMICS,
+    GAS,
+    PROJECTION,
+    NS,
+    ITERATIONS,
+    CONTACTS,
+    BURNT,
+    MEMORY,
+    YARDSTICK,
+    STEP_COLUMNS
 };
 
 static const BenchColumn step_columns[STEP_COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [SOLVER] = {"solver", NULL, 11, NULL},
-    [LIMIT] = {"curvature_max", "%.0f", 13, NULL},
-    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
-    [HEAT] = {"heat_ms", "%.4g", 8, NULL},
-    [BURN] = {"burn_ms", "%.4g", 8, NULL},
-    [ABLATE] = {"ablate_ms", "%.4g", 9, NULL},
-    [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
-    [GAS] = {"gas_ms", "%.4g", 8, NULL},
-    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
-    [NS] = {"ns_spring", "%.2f", 9, NULL},
-    [ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
-    [CONTACTS] = {"contacts", "%.0f", 8, NULL},
-    [BURNT] = {"burnt_pct", "%.2f", 9, NULL},
-    [MEMORY] = {"bytes_spring", "%.1f", 12, NULL},
-    [YARDSTICK] = {"yardstick_ms", "%.2f", 12, NULL},
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},      [SOLVER] = {"solver", NULL, 11, NULL},
+    [LIMIT] = {"curvature_max", "%.0f", 13, NULL}, [THREADS] = {"threads", "%.0f", 7, NULL},
+    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},  [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
+    [HEAT] = {"heat_ms", "%.4g", 8, NULL},         [BURN] = {"burn_ms", "%.4g", 8, NULL},
+    [ABLATE] = {"ablate_ms", "%.4g", 9, NULL},     [DYNAMICS] = {"dynamics_ms", "%.4g", 11, NULL},
+    [GAS] = {"gas_ms", "%.4g", 8, NULL},           [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
+    [NS] = {"ns_spring", "%.2f", 9, NULL},         [ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
+    [CONTACTS] = {"contacts", "%.0f", 8, NULL},    [BURNT] = {"burnt_pct", "%.2f", 9, NULL},
+    [MEMORY] = {"bytes_spring", "%.1f", 12, NULL}, [YARDSTICK] = {"yardstick_ms", "%.2f", 12, NULL},
 };
 
 static void fill_step(BenchValue *row, const BenchOptions *options, const SingeSim *sim, const Timing *timing) {
@@ -58,12 +66,9 @@ static void fill_step(BenchValue *row, const BenchOptions *options, const SingeS
 enum { STAGE_SPRINGS, STAGE_THREADS, STAGE_MEDIAN, STAGE_MIN, STAGE_NS, STAGE_ITERATIONS, STAGE_GONE, STAGE_COLUMNS };
 
 static const BenchColumn stage_columns[STAGE_COLUMNS] = {
-    [STAGE_SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [STAGE_THREADS] = {"threads", "%.0f", 7, NULL},
-    [STAGE_MEDIAN] = {"stage_ms", "%.4g", 9, NULL},
-    [STAGE_MIN] = {"min_ms", "%.4g", 9, NULL},
-    [STAGE_NS] = {"ns_spring", "%.3f", 9, NULL},
-    [STAGE_ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
+    [STAGE_SPRINGS] = {"springs", "%.0f", 8, NULL},    [STAGE_THREADS] = {"threads", "%.0f", 7, NULL},
+    [STAGE_MEDIAN] = {"stage_ms", "%.4g", 9, NULL},    [STAGE_MIN] = {"min_ms", "%.4g", 9, NULL},
+    [STAGE_NS] = {"ns_spring", "%.3f", 9, NULL},       [STAGE_ITERATIONS] = {"heat_iterations", "%.1f", 15, NULL},
     [STAGE_GONE] = {"springs_gone", "%.0f", 12, NULL},
 };
 
@@ -81,12 +86,16 @@ static void fill_stage(BenchValue *row, int stage, const BenchOptions *options, 
 
 /// Holds the step against the limit of the reference machine, where a slower machine has as much more time as the
 /// yardstick takes longer there.
-static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table, SingeError *error) {
+static SingeResult stages_judge(const BenchOptions *options, const Timing *timing, BenchTable *table,
+                                SingeError *error) {
     double step = timing_median(timing, TIMED_SCALED), limit = options->limit_ms;
     double slowness = fmax(1, timing_median(timing, TIMED_YARDSTICK) / timing_yardstick_reference());
     if (limit <= 0) return SINGE_OK;
-    if (table->text) fprintf(table->text, "%.2f ms at the reference machine's pace (this one is %.2f times slower); "
-                             "limit %.4g ms\n", step, slowness, limit);
+    if (table->text)
+        fprintf(table->text,
+                "%.2f ms at the reference machine's pace (this one is %.2f times slower); "
+                "limit %.4g ms\n",
+                step, slowness, limit);
     if (step <= limit) return SINGE_OK;
     *error = (SingeError){.code = SINGE_ERROR_LIMIT, .element = -1};
     snprintf(error->message, sizeof error->message,
@@ -96,7 +105,7 @@ static SingeResult stages_judge(const BenchOptions *options, const Timing *timin
 
 /// `stage` is one of the stages, or TIMED_STEP for a row of them all.
 static SingeResult stages_measure(const BenchOptions *options, int stage, double springs, Yardstick *yardstick,
-                           BenchTable *table, SingeError *error) {
+                                  BenchTable *table, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
     BenchValue row[STEP_COLUMNS] = {0};

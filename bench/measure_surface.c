@@ -11,14 +11,10 @@ static const float fire_pace = 20; // so that much has gone after so many steps
 enum { SPRINGS, THREADS, DETAIL, TRIANGLES, FINE, VERTICES, MEDIAN, CPU, CACHE, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [THREADS] = {"threads", "%.0f", 7, NULL},
-    [DETAIL] = {"detail_mm", "%.2f", 9, NULL},
-    [TRIANGLES] = {"triangles", "%.0f", 9, NULL},
-    [FINE] = {"fine_pct", "%.1f", 8, NULL},
-    [VERTICES] = {"vertices", "%.0f", 8, NULL},
-    [MEDIAN] = {"surface_ms", "%.3g", 10, NULL},
-    [CPU] = {"cpu_ms", "%.3g", 8, NULL},
+    [SPRINGS] = {"springs", "%.0f", 8, NULL},    [THREADS] = {"threads", "%.0f", 7, NULL},
+    [DETAIL] = {"detail_mm", "%.2f", 9, NULL},   [TRIANGLES] = {"triangles", "%.0f", 9, NULL},
+    [FINE] = {"fine_pct", "%.1f", 8, NULL},      [VERTICES] = {"vertices", "%.0f", 8, NULL},
+    [MEDIAN] = {"surface_ms", "%.3g", 10, NULL}, [CPU] = {"cpu_ms", "%.3g", 8, NULL},
     [CACHE] = {"cache_mb", "%.2f", 8, NULL},
 };
 

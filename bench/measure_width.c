@@ -9,14 +9,10 @@
 enum { INSTRUCTIONS, SPRINGS, STEP_MEDIAN, STEP_MIN, PROJECTION, NS, RATIO, BYTES, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [INSTRUCTIONS] = {"instructions", NULL, 12, NULL},
-    [SPRINGS] = {"springs", "%.0f", 8, NULL},
-    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},
-    [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
-    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL},
-    [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
-    [RATIO] = {"plain_over_this", "%.2f", 15, NULL},
-    [BYTES] = {"bytes", NULL, 8, NULL},
+    [INSTRUCTIONS] = {"instructions", NULL, 12, NULL},  [SPRINGS] = {"springs", "%.0f", 8, NULL},
+    [STEP_MEDIAN] = {"step_ms", "%.4g", 8, NULL},       [STEP_MIN] = {"min_ms", "%.4g", 8, NULL},
+    [PROJECTION] = {"projection_ms", "%.4g", 13, NULL}, [NS] = {"ns_spring_sweep", "%.2f", 15, NULL},
+    [RATIO] = {"plain_over_this", "%.2f", 15, NULL},    [BYTES] = {"bytes", NULL, 8, NULL},
 };
 
 /// What the plain run came to, which the others are held against.
@@ -63,8 +59,8 @@ static SingeResult add_absent(BenchTable *table, const BenchSetup *setup) {
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
-static SingeResult width_measure(const BenchOptions *options, const BenchSetup *setup, BenchTable *table, Reference *plain,
-                           SingeError *error) {
+static SingeResult width_measure(const BenchOptions *options, const BenchSetup *setup, BenchTable *table,
+                                 Reference *plain, SingeError *error) {
     SingeSim *sim;
     Timing timing = {0};
     SingeResult result = sheet_build(setup, &sim, error);

@@ -27,10 +27,10 @@ typedef enum BenchOutline { BENCH_ALL_OUTLINES, BENCH_SQUARE, BENCH_DISC } Bench
 typedef struct BenchMaterial {
     const char *name;
     SingeMaterialDef def;
-    bool calibrated;    ///< it was made to agree with them
-    float speed[2];     ///< m/s of a front that runs level
+    bool calibrated;      ///< it was made to agree with them
+    float speed[2];       ///< m/s of a front that runs level
     float temperature[2]; ///< K, hottest
-    float residue[2];   ///< share of the mass
+    float residue[2];     ///< share of the mass
 } BenchMaterial;
 
 typedef struct BenchOptions {
@@ -40,19 +40,19 @@ typedef struct BenchOptions {
     BenchList curvature; ///< 1/m, limits of it; 0: none
     BenchList seeds;     ///< of noise
     BenchOutline outline;
-    bool creases;        ///< sharp bends stay
-    bool contact;        ///< with themselves
+    bool creases; ///< sharp bends stay
+    bool contact; ///< with themselves
     BenchState state;
     SingeSolverMethod solver;
     SingeInstructions instructions;
-    int pins;            ///< 1 or 2 corners
-    int steps;           ///< per frame, or steps to time
+    int pins;  ///< 1 or 2 corners
+    int steps; ///< per frame, or steps to time
     int substeps, projections;
     int threads;
-    double time;         ///< s
-    double smoothing;    ///< 1/s; below 0: the measurement's default
-    double detail;       ///< m, of the drawn surface; 0: cells as they are
-    double limit_ms;     ///< 0: none
+    double time;      ///< s
+    double smoothing; ///< 1/s; below 0: the measurement's default
+    double detail;    ///< m, of the drawn surface; 0: cells as they are
+    double limit_ms;  ///< 0: none
     bool quick;
     int material_count;
     const BenchMaterial *materials;

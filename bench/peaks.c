@@ -17,7 +17,7 @@ enum { TRIALS = 5, THREADS_MAX = 64 };
 static const double smallest = 24 * 1024; // bytes; the last of the sizes is 4^7 times that, 384 MB
 
 typedef struct Worker {
-    double seconds; ///< a trial
+    double seconds;  ///< a trial
     size_t elements; ///< of each of three arrays; 0: multiply-adds instead
     float *arrays;
     double rate; ///< operations or bytes a second, best trial
@@ -28,15 +28,15 @@ typedef struct Worker {
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-static void triad(float *restrict a, const float *restrict b, const float *restrict c, size_t count) {
+static void
+triad(float *restrict a, const float *restrict b, const float *restrict c, size_t count) {
     for (size_t i = 0; i < count; i++) a[i] = b[i] + 0.5f * c[i];
 }
 
 static double peaks_work(const Worker *worker, long rounds) {
     if (!worker->elements) return fma_run(1000 * rounds);
     const size_t n = worker->elements;
-    for (long round = 0; round < rounds; round++)
-        triad(worker->arrays, worker->arrays + n, worker->arrays + 2 * n, n);
+    for (long round = 0; round < rounds; round++) triad(worker->arrays, worker->arrays + n, worker->arrays + 2 * n, n);
     return 12.0 * (double)n * (double)rounds;
 }
 
@@ -67,8 +67,7 @@ static double run_threads(int threads, size_t elements, double seconds) {
         if (elements) workers[t].arrays = aligned_alloc(64, 3 * elements * sizeof(float));
         if (elements && !workers[t].arrays) good = false;
     }
-    for (int t = 1; good && t < threads; t++)
-        started[t] = pthread_create(&ids[t], NULL, worker_run, &workers[t]) == 0;
+    for (int t = 1; good && t < threads; t++) started[t] = pthread_create(&ids[t], NULL, worker_run, &workers[t]) == 0;
     if (good) worker_run(&workers[0]);
     for (int t = 0; t < threads; t++) {
         if (started[t]) pthread_join(ids[t], NULL);
@@ -100,9 +99,9 @@ double peaks_stream(const Peaks *peaks, double bytes) {
 }
 
 void peaks_tell(const Peaks *peaks, BenchTable *table) {
-    static const char *const names[PEAKS_SIZES] = {
-        "stream_24k_gb_s", "stream_96k_gb_s", "stream_384k_gb_s", "stream_1536k_gb_s",
-        "stream_6m_gb_s",  "stream_24m_gb_s", "stream_96m_gb_s",  "stream_384m_gb_s"};
+    static const char *const names[PEAKS_SIZES] = {"stream_24k_gb_s",   "stream_96k_gb_s", "stream_384k_gb_s",
+                                                   "stream_1536k_gb_s", "stream_6m_gb_s",  "stream_24m_gb_s",
+                                                   "stream_96m_gb_s",   "stream_384m_gb_s"};
     table_fact(table, "fma_gflops", peaks->gflops);
     for (int i = 0; i < peaks->count; i++) table_fact(table, names[i], peaks->gb_s[i]);
 }

@@ -9,9 +9,9 @@
 enum { PEAKS_SIZES = 8 };
 
 typedef struct Peaks {
-    double gflops;                ///< single precision; a fused multiply-add is two operations
-    double bytes[PEAKS_SIZES];    ///< working set a thread, ascending
-    double gb_s[PEAKS_SIZES];     ///< of the triad a = b + s c at that working set, a read or a write counted once
+    double gflops;             ///< single precision; a fused multiply-add is two operations
+    double bytes[PEAKS_SIZES]; ///< working set a thread, ascending
+    double gb_s[PEAKS_SIZES];  ///< of the triad a = b + s c at that working set, a read or a write counted once
     int count;
 } Peaks;
 

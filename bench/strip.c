@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double strip_lit = 0.02; // m
+static const double strip_lit = 0.02;                  // m
 static const double gate_first = 0.4, gate_last = 0.9; // of the length, between which the front is looked at
 
 typedef struct Strip {
@@ -16,9 +16,16 @@ typedef struct Strip {
 } Strip;
 
 StripSetup strip_setup(const SingeMaterialDef *material) {
-    return (StripSetup){.material = *material, .cell = 1e-3f, .time_step = singe_default_sim().time_step,
-                        .length = 0.12f, .width = 3e-3f, .gravity = {0, 0, -9.81f}, .pace = 1, .threads = 1,
-                        .patience = 20000, .work_max = 1000000};
+    return (StripSetup){.material = *material,
+                        .cell = 1e-3f,
+                        .time_step = singe_default_sim().time_step,
+                        .length = 0.12f,
+                        .width = 3e-3f,
+                        .gravity = {0, 0, -9.81f},
+                        .pace = 1,
+                        .threads = 1,
+                        .patience = 20000,
+                        .work_max = 1000000};
 }
 
 static bool strip_mesh(Strip *strip, const StripSetup *setup) {
@@ -48,14 +55,35 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
 /// A strip has neither uv nor the mesh's attributes, and one speed: the middle of what varies.
 static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     SingeMaterialDef material = *from;
-    SingeParam *params[] = {
-        &material.grammage, &material.specific_heat, &material.thickness, &material.diffusivity,
-        &material.layer_exchange, &material.convection, &material.emissivity, &material.loss_mass_floor,
-        &material.ignition_temperature, &material.heat_of_combustion, &material.heat_share, &material.mass_rate,
-        &material.rate_ceiling, &material.ash_exponent, &material.mass_min, &material.mass_loss, &material.ash_density,
-        &material.shrink_front, &material.shrink_back, &material.char_weight, &material.drag, &material.damping,
-        &material.crease_radius, &material.crease_share, &material.strength, &material.char_strength,
-        &material.pre_exponential, &material.activation_energy, &material.curvature_max};
+    SingeParam *params[] = {&material.grammage,
+                            &material.specific_heat,
+                            &material.thickness,
+                            &material.diffusivity,
+                            &material.layer_exchange,
+                            &material.convection,
+                            &material.emissivity,
+                            &material.loss_mass_floor,
+                            &material.ignition_temperature,
+                            &material.heat_of_combustion,
+                            &material.heat_share,
+                            &material.mass_rate,
+                            &material.rate_ceiling,
+                            &material.ash_exponent,
+                            &material.mass_min,
+                            &material.mass_loss,
+                            &material.ash_density,
+                            &material.shrink_front,
+                            &material.shrink_back,
+                            &material.char_weight,
+                            &material.drag,
+                            &material.damping,
+                            &material.crease_radius,
+                            &material.crease_share,
+                            &material.strength,
+                            &material.char_strength,
+                            &material.pre_exponential,
+                            &material.activation_energy,
+                            &material.curvature_max};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
     // char glows in patches, and the hottest of them counts
@@ -67,8 +95,10 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
     const SingeParam cold = material.temperature;
-    material.temperature = (SingeParam){.value = cold.field ? 0.5f * (cold.value + cold.to) : cold.value, .to = 1100,
-                                        .field = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
+    material.temperature = (SingeParam){.value = cold.field ? 0.5f * (cold.value + cold.to) : cold.value,
+                                        .to = 1100,
+                                        .field = SINGE_FIELD_ATTRIBUTE,
+                                        .attribute = "lit"};
     return material;
 }
 

@@ -12,10 +12,10 @@ typedef struct StripSetup {
     float gravity[3];          ///< m/s2; the strip lies in the xy plane, and its front runs along x
     float pace;
     bool gas;
-    float gas_cell;            ///< m, 0: as it comes
+    float gas_cell; ///< m, 0: as it comes
     int threads;
-    int patience;              ///< steps without a new place reached, after which the fire has gone out
-    uint64_t work_max;        ///< steps, and iterations of their conduction, in all
+    int patience;      ///< steps without a new place reached, after which the fire has gone out
+    uint64_t work_max; ///< steps, and iterations of their conduction, in all
     /// Moves a vertex from its place on the grid; NULL: none.
     void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
 } StripSetup;

@@ -11,8 +11,8 @@ BenchTable table_begin(const char *command, const BenchColumn *columns, int colu
 }
 
 static void print_headings(const BenchTable *table) {
-    for (int c = 0; c < table->column_count; c++) fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width,
-                                                          table->columns[c].name);
+    for (int c = 0; c < table->column_count; c++)
+        fprintf(table->text, "%s%*s", c ? "  " : "", table->columns[c].width, table->columns[c].name);
     fputc('\n', table->text);
 }
 

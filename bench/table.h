@@ -29,7 +29,7 @@ typedef struct BenchFact {
 enum { BENCH_FACTS_MAX = 24 };
 
 typedef struct BenchTable {
-    const char *command;        ///< the measurement's name
+    const char *command; ///< the measurement's name
     const BenchColumn *columns;
     int column_count, row_count, capacity;
     BenchValue *values; ///< [row_count * column_count]

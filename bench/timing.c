@@ -32,7 +32,8 @@ static bool timing_allocate(Timing *timing, int steps) {
     return good;
 }
 
-static void timing_note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after, double yardstick_ms) {
+static void timing_note(Timing *timing, int step, const SingeTimers *before, const SingeTimers *after,
+                        double yardstick_ms) {
     double total = 0;
     for (int stage = 0; stage < SINGE_STAGE_COUNT; stage++) {
         timing->ms[stage][step] = 1e3 * (after->seconds[stage] - before->seconds[stage]);

@@ -12,7 +12,7 @@ typedef enum Timed {
     TIMED_STEP = SINGE_STAGE_COUNT, ///< all stages
     TIMED_PROJECTION,               ///< of the stage dynamics
     TIMED_YARDSTICK,
-    TIMED_SCALED,                   ///< the step as the reference machine would take it
+    TIMED_SCALED, ///< the step as the reference machine would take it
     TIMED_COUNT
 } Timed;
 

@@ -9,17 +9,17 @@
 enum { TRAJECTORY_MARKS = 3 };
 
 typedef struct Trajectory {
-    int frames;              ///< done
-    double *cpu_ms;          ///< [frames] a frame, all threads together, ascending at the end
+    int frames;     ///< done
+    double *cpu_ms; ///< [frames] a frame, all threads together, ascending at the end
     double cpu_median, cpu_mean;
-    double dynamics_ms;      ///< a frame's mean of the stage dynamics, by the wall's clock
-    double fall_end;         ///< m, rise of the centre of mass at the end
-    double fall[TRAJECTORY_MARKS]; ///< m, rise of the centre of mass since the start; NAN where not reached
-    double speed_max;        ///< m/s, the largest met at the end of any frame
+    double dynamics_ms;                ///< a frame's mean of the stage dynamics, by the wall's clock
+    double fall_end;                   ///< m, rise of the centre of mass at the end
+    double fall[TRAJECTORY_MARKS];     ///< m, rise of the centre of mass since the start; NAN where not reached
+    double speed_max;                  ///< m/s, the largest met at the end of any frame
     Strain strain[SINGE_COLOUR_COUNT]; ///< over all frames
-    double inverted;         ///< cells whose centre is not in front of their corners, the most after any step
-    double strand_length;    ///< mean, springs
-    bool diverged;           ///< a step failed, or a position or speed is not finite
+    double inverted;                   ///< cells whose centre is not in front of their corners, the most after any step
+    double strand_length;              ///< mean, springs
+    bool diverged;                     ///< a step failed, or a position or speed is not finite
 } Trajectory;
 
 /// Runs `frames` frames of `steps` steps, or fewer when `budget` seconds of the wall's clock are over. NULL and

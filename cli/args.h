@@ -27,8 +27,8 @@ typedef struct ArgReader {
     const ArgCommand *command;
     int argc, index;
     char **argv;
-    int letters;         ///< place within a group of one-letter switches
-    bool operands_only;  ///< after "--"
+    int letters;        ///< place within a group of one-letter switches
+    bool operands_only; ///< after "--"
     int operand_count;
 } ArgReader;
 

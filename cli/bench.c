@@ -17,8 +17,8 @@
 
 #define OUTPUT (BENCH_BIT(JSON) | BENCH_BIT(CSV))
 #define SOLVER (BENCH_BIT(SOLVER) | BENCH_BIT(INSTRUCTIONS) | BENCH_BIT(PROJECTIONS) | BENCH_BIT(SUBSTEPS))
-#define TRAJECTORY                                                                                               \
-    (BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(PINS) | BENCH_BIT(TIME) | BENCH_BIT(STEPS) |            \
+#define TRAJECTORY                                                                                    \
+    (BENCH_BIT(CELLS) | BENCH_BIT(THICKNESS) | BENCH_BIT(PINS) | BENCH_BIT(TIME) | BENCH_BIT(STEPS) | \
      BENCH_BIT(SMOOTHING) | BENCH_BIT(THREADS) | SOLVER | OUTPUT)
 #define SIZES (BENCH_BIT(SPRINGS) | BENCH_BIT(TIMED) | BENCH_BIT(THREADS) | OUTPUT)
 

@@ -77,8 +77,8 @@ static bool read_list(const Parser *parser, const char *text, double low, double
 }
 
 /// Finds a word among `count`; its index is the value.
-static bool read_word(const Parser *parser, const char *text, const char *const *words, int count,
-                      const char *expected, int *value) {
+static bool read_word(const Parser *parser, const char *text, const char *const *words, int count, const char *expected,
+                      int *value) {
     for (*value = 0; *value < count; ++*value)
         if (strcmp(words[*value], text) == 0) return true;
     return bench_args_refuse(parser, expected, text);

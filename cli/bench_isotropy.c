@@ -20,11 +20,16 @@ enum { MOMENTS = 6 };
 enum { OUTLINE, CELL, THICKNESS, LIMIT, CREASES, SEED, STRAIGHT, TURNED, EFFECT, MEAN, BEND, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [OUTLINE] = {"outline", NULL, 8, NULL},         [CELL] = {"cell_mm", "%.3g", 8, NULL},
-    [THICKNESS] = {"thickness_mm", "%.3g", 13, NULL}, [LIMIT] = {"curvature_max", "%.0f", 14, NULL},
-    [CREASES] = {"creases", NULL, 8, NULL},         [SEED] = {"seed", "%.0f", 5, NULL},
-    [STRAIGHT] = {"r_0", "%.3f", 7, NULL},          [TURNED] = {"r_45", "%.3f", 7, NULL},
-    [EFFECT] = {"effect", "%.3f", 7, NULL},         [MEAN] = {"mean", "%.3f", 7, NULL}, // of the seeds so far
+    [OUTLINE] = {"outline", NULL, 8, NULL},
+    [CELL] = {"cell_mm", "%.3g", 8, NULL},
+    [THICKNESS] = {"thickness_mm", "%.3g", 13, NULL},
+    [LIMIT] = {"curvature_max", "%.0f", 14, NULL},
+    [CREASES] = {"creases", NULL, 8, NULL},
+    [SEED] = {"seed", "%.0f", 5, NULL},
+    [STRAIGHT] = {"r_0", "%.3f", 7, NULL},
+    [TURNED] = {"r_45", "%.3f", 7, NULL},
+    [EFFECT] = {"effect", "%.3f", 7, NULL},
+    [MEAN] = {"mean", "%.3f", 7, NULL}, // of the seeds so far
     [BEND] = {"bend_per_m", "%.2f", 11, NULL},
 };
 
@@ -139,10 +144,15 @@ static SingeResult isotropy_compare(const Burn *burn, int index, BenchTable *tab
     *sum += 0.5 * log(r_0 / r_45);
     BenchValue row[COLUMNS] = {
         [OUTLINE] = bench_text(burn->disc ? "disc" : "square"),
-        [CELL] = bench_number(1e3 * size / burn->cells), [THICKNESS] = bench_number(1e3 * burn->thickness),
-        [LIMIT] = bench_number(burn->limit), [CREASES] = bench_text(burn->creases ? "yes" : "no"),
-        [SEED] = bench_number(burn->seed), [STRAIGHT] = bench_number(r_0), [TURNED] = bench_number(r_45),
-        [EFFECT] = bench_number(sqrt(r_0 / r_45)), [MEAN] = bench_number(exp(*sum / (index + 1))),
+        [CELL] = bench_number(1e3 * size / burn->cells),
+        [THICKNESS] = bench_number(1e3 * burn->thickness),
+        [LIMIT] = bench_number(burn->limit),
+        [CREASES] = bench_text(burn->creases ? "yes" : "no"),
+        [SEED] = bench_number(burn->seed),
+        [STRAIGHT] = bench_number(r_0),
+        [TURNED] = bench_number(r_45),
+        [EFFECT] = bench_number(sqrt(r_0 / r_45)),
+        [MEAN] = bench_number(exp(*sum / (index + 1))),
         [BEND] = bench_number(bend / (2 * MOMENTS * size * size)),
     };
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;

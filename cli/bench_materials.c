@@ -8,7 +8,8 @@
 #include "cli/text.h"
 
 BenchMaterial bench_material(const SceneMaterial *material) {
-    BenchMaterial bench = {.name = material->name ? material->name : "-", .def = material->def,
+    BenchMaterial bench = {.name = material->name ? material->name : "-",
+                           .def = material->def,
                            .calibrated = material->measured.given && material->measured.calibrated};
     memcpy(bench.speed, material->measured.speed, sizeof bench.speed);
     memcpy(bench.temperature, material->measured.temperature, sizeof bench.temperature);

@@ -18,17 +18,18 @@
 enum { FORMAT, VERTICES, USER, SYSTEM, BOTH, WALL, BYTES, OF_PLY, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [FORMAT] = {"format", NULL, 9, NULL},       [VERTICES] = {"vertices", "%.0f", 9, NULL},
-    [USER] = {"user_ms", "%.2f", 8, NULL},      [SYSTEM] = {"system_ms", "%.2f", 10, NULL},
-    [BOTH] = {"both_ms", "%.2f", 8, NULL},      [WALL] = {"wall_ms", "%.2f", 8, NULL},
-    [BYTES] = {"bytes", "%.0f", 9, NULL},       [OF_PLY] = {"of_ply_pct", "%.0f", 11, NULL},
+    [FORMAT] = {"format", NULL, 9, NULL},  [VERTICES] = {"vertices", "%.0f", 9, NULL},
+    [USER] = {"user_ms", "%.2f", 8, NULL}, [SYSTEM] = {"system_ms", "%.2f", 10, NULL},
+    [BOTH] = {"both_ms", "%.2f", 8, NULL}, [WALL] = {"wall_ms", "%.2f", 8, NULL},
+    [BYTES] = {"bytes", "%.0f", 9, NULL},  [OF_PLY] = {"of_ply_pct", "%.0f", 11, NULL},
 };
 
 enum { SIDE = 158, COUNT = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1), FRAMES = 20, REPEATS = 5 };
 
 typedef struct OutputBench {
     float position[COUNT][3], normal[COUNT][3], uv[COUNT][2], velocity[COUNT][3], rest[COUNT][3];
-    float temperature[COUNT], peak[COUNT], mass[COUNT], rate[COUNT], coal[COUNT], ash[COUNT], burn[COUNT], ignited[COUNT];
+    float temperature[COUNT], peak[COUNT], mass[COUNT], rate[COUNT], coal[COUNT], ash[COUNT], burn[COUNT],
+        ignited[COUNT];
     int32_t piece[COUNT], source[COUNT], sheet[COUNT];
     uint32_t triangles[FACES][3];
     SingeSurface surface;
@@ -54,7 +55,8 @@ static void output_vertex(OutputBench *b, uint32_t v, uint32_t *seed) {
     }
     b->uv[v][0] = x / (SIDE - 1), b->uv[v][1] = y / (SIDE - 1);
     b->temperature[v] = hot > 0 ? 400 + 800 * noise * hot : 293.15f, b->peak[v] = b->temperature[v] + hot;
-    b->mass[v] = 1 - 0.5f * hot * noise, b->rate[v] = hot * noise, b->coal[v] = 0.3f * hot, b->ash[v] = 0.1f * hot * noise;
+    b->mass[v] = 1 - 0.5f * hot * noise, b->rate[v] = hot * noise, b->coal[v] = 0.3f * hot,
+    b->ash[v] = 0.1f * hot * noise;
     b->burn[v] = 1 - b->mass[v], b->ignited[v] = hot > 0 ? 0.5f + noise : -1;
     b->piece[v] = hot > 0.9f ? 1 + (int32_t)(v % 7) : 0, b->source[v] = v % 5 ? (int32_t)v : -1, b->sheet[v] = 0;
 }
@@ -67,12 +69,25 @@ static void output_fill(OutputBench *b) {
             const uint32_t a = y * SIDE + x, two[2][3] = {{a, a + 1, a + SIDE + 1}, {a, a + SIDE + 1, a + SIDE}};
             memcpy(b->triangles[t], two, sizeof two);
         }
-    b->surface = (SingeSurface){
-        .vertex_count = COUNT, .triangle_count = FACES, .position = b->position, .normal = b->normal, .uv = b->uv,
-        .velocity = b->velocity, .rest_position = b->rest, .temperature = b->temperature, .temperature_peak = b->peak,
-        .mass = b->mass, .burn_rate = b->rate, .char_fraction = b->coal, .ash_fraction = b->ash, .burn = b->burn,
-        .time_ignited = b->ignited, .piece = b->piece, .source_vertex = b->source, .sheet = b->sheet,
-        .triangles = b->triangles};
+    b->surface = (SingeSurface){.vertex_count = COUNT,
+                                .triangle_count = FACES,
+                                .position = b->position,
+                                .normal = b->normal,
+                                .uv = b->uv,
+                                .velocity = b->velocity,
+                                .rest_position = b->rest,
+                                .temperature = b->temperature,
+                                .temperature_peak = b->peak,
+                                .mass = b->mass,
+                                .burn_rate = b->rate,
+                                .char_fraction = b->coal,
+                                .ash_fraction = b->ash,
+                                .burn = b->burn,
+                                .time_ignited = b->ignited,
+                                .piece = b->piece,
+                                .source_vertex = b->source,
+                                .sheet = b->sheet,
+                                .triangles = b->triangles};
 }
 
 static void *output_write(void *argument) {
@@ -116,11 +131,14 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
     *error = b->error;
     if (b->result) return b->result;
     if (b->format == OUTPUT_ply) *ply = size;
-    BenchValue row[COLUMNS] = {
-        [FORMAT] = bench_text(output_formats[b->format].name), [VERTICES] = bench_number(COUNT),
-        [USER] = bench_number(1e3 * least[0]), [SYSTEM] = bench_number(1e3 * least[1]),
-        [BOTH] = bench_number(1e3 * (least[0] + least[1])), [WALL] = bench_number(1e3 * least[2]),
-        [BYTES] = bench_number(size), [OF_PLY] = bench_number(100 * size / *ply)};
+    BenchValue row[COLUMNS] = {[FORMAT] = bench_text(output_formats[b->format].name),
+                               [VERTICES] = bench_number(COUNT),
+                               [USER] = bench_number(1e3 * least[0]),
+                               [SYSTEM] = bench_number(1e3 * least[1]),
+                               [BOTH] = bench_number(1e3 * (least[0] + least[1])),
+                               [WALL] = bench_number(1e3 * least[2]),
+                               [BYTES] = bench_number(size),
+                               [OF_PLY] = bench_number(100 * size / *ply)};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 
@@ -128,8 +146,10 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
     (void)options;
     static const float corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, uv[8] = {0, 0, 1, 0, 1, 1, 0, 1};
     static const uint32_t cell[4] = {0, 1, 2, 3};
-    const OutputSheet sheet = {.name = "sheet", .colour = {1, 1, 1},
-                               .mesh = {.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell}};
+    const OutputSheet sheet = {
+        .name = "sheet",
+        .colour = {1, 1, 1},
+        .mesh = {.vertex_count = 4, .cell_count = 1, .positions = corners, .uv = uv, .cells = cell}};
     const OutputScene scene = {.name = "bench", .fps = 24, .texture_size = 1024, .sheet_count = 1, .sheets = &sheet};
     *table = table_begin("output", columns, COLUMNS, table->text);
     OutputBench *b = calloc(1, sizeof *b);
@@ -138,7 +158,8 @@ SingeResult bench_output(const BenchOptions *options, BenchTable *table, SingeEr
     if (b) {
         output_fill(b);
         b->scene = &scene;
-        b->path = text_format("%s/singe-bench-%ld.tmp", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid());
+        b->path =
+            text_format("%s/singe-bench-%ld.tmp", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp", (long)getpid());
     }
     for (int i = 0; i < OUTPUT_COUNT && !result; i++) {
         if (i == OUTPUT_textures && !exr_available()) continue;

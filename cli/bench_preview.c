@@ -12,12 +12,9 @@
 enum { PICTURE, TRIANGLES, SAMPLES, SECONDS, MIN, WALL, COLUMNS };
 
 static const BenchColumn columns[COLUMNS] = {
-    [PICTURE] = {"picture", NULL, 8, NULL},
-    [TRIANGLES] = {"triangles", "%.0f", 10, NULL},
-    [SAMPLES] = {"samples", "%.0f", 8, NULL},
-    [SECONDS] = {"cpu_s", "%.3f", 8, NULL},
-    [MIN] = {"min_cpu_s", "%.3f", 12, NULL},
-    [WALL] = {"wall_s", "%.3f", 8, NULL},
+    [PICTURE] = {"picture", NULL, 8, NULL},   [TRIANGLES] = {"triangles", "%.0f", 10, NULL},
+    [SAMPLES] = {"samples", "%.0f", 8, NULL}, [SECONDS] = {"cpu_s", "%.3f", 8, NULL},
+    [MIN] = {"min_cpu_s", "%.3f", 12, NULL},  [WALL] = {"wall_s", "%.3f", 8, NULL},
 };
 
 enum { CELLS_X = 198, CELLS_Y = 280, ACROSS = CELLS_X + 1, REPEATS = 5 };
@@ -46,7 +43,8 @@ static void fill_vertex(SingeSurface *s, uint32_t i, float x, float y) {
     const float e = 1e-4f;
     float z = height_at(x, y), zx = (height_at(x + e, y) - z) / e, zy = (height_at(x, y + e) - z) / e;
     float length = sqrtf(1 + zx * zx + zy * zy), edge = from_edge(x, y);
-    float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)), ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
+    float burn = 0.95f * (1 - preview_bench_smooth(-0.25f * front, front, edge)),
+          ahead = fmaxf(edge - 0.0035f, 0) / 0.0042f;
     s->position[i][0] = s->rest_position[i][0] = x, s->position[i][1] = s->rest_position[i][1] = y;
     s->position[i][2] = z, s->rest_position[i][2] = 0;
     s->normal[i][0] = -zx / length, s->normal[i][1] = -zy / length, s->normal[i][2] = 1 / length;
@@ -105,9 +103,12 @@ static Flames *make_flames(void) {
     const float cell = 0.008f;
     Flames *f = calloc(1, sizeof *f);
     if (!f) return NULL;
-    f->gas = (SingeGas){.size = {GAS_X, GAS_Y, GAS_Z}, .cell = cell,
+    f->gas = (SingeGas){.size = {GAS_X, GAS_Y, GAS_Z},
+                        .cell = cell,
                         .origin = {-0.5f * GAS_X * cell, -0.5f * GAS_Y * cell, 0},
-                        .temperature = f->temperature, .smoke = f->smoke, .flame = f->flame,
+                        .temperature = f->temperature,
+                        .smoke = f->smoke,
+                        .flame = f->flame,
                         .velocity = (const float(*)[3])f->velocity};
     for (int i = 0; i < GAS_CELLS; i++) {
         float x = ((float)(i % GAS_X) + 0.5f) * cell + f->gas.origin[0];
@@ -135,7 +136,7 @@ static const Shot shots[] = {
 };
 
 static SingeResult preview_bench_measure(const BenchOptions *options, const Shot *shot, const SingeSurface *surface,
-                           BenchTable *table, SingeError *error) {
+                                         BenchTable *table, SingeError *error) {
     PreviewDef def = preview_default();
     def.width = 1280, def.height = 720, def.samples = 16, def.thread_count = options->threads;
     memcpy(def.camera.eye, shot->eye, sizeof shot->eye), memcpy(def.camera.target, shot->target, sizeof shot->target);
@@ -159,9 +160,9 @@ static SingeResult preview_bench_measure(const BenchOptions *options, const Shot
     if (result) return result;
     double seconds = numbers_median(cpu, REPEATS);
     BenchValue row[COLUMNS] = {
-        [PICTURE] = bench_text(shot->name), [TRIANGLES] = bench_number(surface->triangle_count),
+        [PICTURE] = bench_text(shot->name),    [TRIANGLES] = bench_number(surface->triangle_count),
         [SAMPLES] = bench_number(def.samples), [SECONDS] = bench_number(seconds),
-        [MIN] = bench_number(cpu[0]), [WALL] = bench_number(numbers_median(wall, REPEATS))};
+        [MIN] = bench_number(cpu[0]),          [WALL] = bench_number(numbers_median(wall, REPEATS))};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;
 }
 

@@ -96,8 +96,10 @@ static void report_meshes(const Job *job) {
 }
 
 static void report_shell(const SingeCounts *c) {
-    static const struct { const char *name; SingeColour colour; } rows[] = {
-        {"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
+    static const struct {
+        const char *name;
+        SingeColour colour;
+    } rows[] = {{"red", SINGE_RED}, {"green", SINGE_GREEN}, {"blue", SINGE_BLUE}, {"yellow", SINGE_YELLOW}};
     uint64_t springs = 0, strands = 0;
     for (int i = 0; i < SINGE_COLOUR_COUNT; i++) springs += c->springs[i], strands += c->strands[i];
     printf("particles     %" PRIu32 "\n", c->particles);
@@ -110,8 +112,8 @@ static void report_shell(const SingeCounts *c) {
     printf("memory        %.1f MB\n", 1e-6 * (double)c->memory);
 }
 
-/// Office paper takes 8,000 pieces of work (StripSetup.work_max), a third of a second in all; a fire that creeps by less
-/// than a cell in as many steps has gone out.
+/// Office paper takes 8,000 pieces of work (StripSetup.work_max), a third of a second in all; a fire that creeps by
+/// less than a cell in as many steps has gone out.
 enum { CHECK_MATERIALS = 4, CHECK_STRIP_WORK = 60000, CHECK_STRIP_PATIENCE = 4000 };
 static const float check_strip_length = 0.06f; ///< m, of which the first 2 cm are lit
 
@@ -119,7 +121,8 @@ static const float check_strip_length = 0.06f; ///< m, of which the first 2 cm a
 /// not burn, and no end where that cannot be known. Fails only without memory.
 static SingeResult front_of(const BenchMaterial *material, float step, StripResult *front, SingeError *error) {
     StripSetup setup = strip_setup(&material->def);
-    setup.length = check_strip_length, setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE, setup.work_max = CHECK_STRIP_WORK;
+    setup.length = check_strip_length, setup.time_step = step, setup.patience = CHECK_STRIP_PATIENCE,
+    setup.work_max = CHECK_STRIP_WORK;
     *front = (StripResult){.end = STRIP_UNKNOWN};
     SingeResult result = step < 10 ? strip_burn(&setup, front, error) : SINGE_ERROR_ARGUMENT;
     if (result || !(front->speed > 0)) front->speed = 0;

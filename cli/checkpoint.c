@@ -152,8 +152,11 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
         *error = (SingeError){.code = SINGE_ERROR_MEMORY, .stage = "checkpoint", .element = -1};
         return SINGE_ERROR_MEMORY;
     }
-    Trailer trailer = {.snapshot_size = size, .hash = hash, .frame = (uint64_t)progress.frame,
-                       .step = (uint64_t)progress.step, .totals = *totals};
+    Trailer trailer = {.snapshot_size = size,
+                       .hash = hash,
+                       .frame = (uint64_t)progress.frame,
+                       .step = (uint64_t)progress.step,
+                       .totals = *totals};
     memcpy(trailer.magic, checkpoint_magic, sizeof trailer.magic);
     trailer.checksum = hash_bytes(hash_bytes(hash_start, grown, size), &trailer, offsetof(Trailer, checksum));
     memcpy(grown + size, &trailer, sizeof trailer);
@@ -174,20 +177,20 @@ static SingeResult checkpoint_refuse(const Folder *folder, SingeResult code, con
 
 static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,
                                 Trailer *trailer, SingeError *error) {
-    if (bytes->size < sizeof *trailer) return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
+    if (bytes->size < sizeof *trailer)
+        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
         return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
-    if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX ||
-        trailer->step > INT_MAX)
+    if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX || trailer->step > INT_MAX)
         return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
     const Progress progress = {(int)trailer->frame, (int)trailer->step};
     if (trailer->hash.result != hash_so_far(hash.result, assets, progress))
-        return checkpoint_refuse(folder, SINGE_ERROR_STATE,
-                      "the checkpoint is of another scene (the scene, its --set or a file it names has changed)",
-                      error);
+        return checkpoint_refuse(
+            folder, SINGE_ERROR_STATE,
+            "the checkpoint is of another scene (the scene, its --set or a file it names has changed)", error);
     return SINGE_OK;
 }
 
@@ -203,7 +206,8 @@ SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, Scen
     if (!result) {
         SingeError inner = {0};
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
-        if (result) checkpoint_refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
+        if (result)
+            checkpoint_refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
         else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};
         checkpoint->totals = trailer.totals;
         checkpoint->other_looks = trailer.hash.looks != hash.looks;

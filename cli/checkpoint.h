@@ -15,8 +15,8 @@ typedef struct SceneHash {
 } SceneHash;
 
 /// The result's: the resolved scene without its number of frames and its preview, and the contents of every file that
-/// it names for anything but the preview: meshes and pictures of sheets, sources and colliders, as they are used. Moving
-/// meshes are held against a checkpoint frame by frame, up to where it is.
+/// it names for anything but the preview: meshes and pictures of sheets, sources and colliders, as they are used.
+/// Moving meshes are held against a checkpoint frame by frame, up to where it is.
 SINGE_NODISCARD SingeResult checkpoint_scene_hash(const Scene *scene, const SceneAssets *assets, SceneHash *hash,
                                                   SingeError *error);
 
@@ -36,8 +36,7 @@ SINGE_NODISCARD SingeResult checkpoint_take(SingeSim *sim, CheckpointBytes *take
 /// Writes what was taken, with where the run was then. What was taken is gone afterwards, also when this fails.
 SINGE_NODISCARD SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator allocator,
                                              CheckpointBytes *taken, Progress progress, SceneHash hash,
-                                             const SceneAssets *assets,
-                                             const Totals *totals, SingeError *error);
+                                             const SceneAssets *assets, const Totals *totals, SingeError *error);
 
 void checkpoint_drop(SingeSim *sim, CheckpointBytes *taken);
 

@@ -7,8 +7,8 @@
 #include "singe/base.h"
 
 typedef struct Console {
-    bool quiet;     ///< errors only
-    bool terminal;  ///< standard error is one
+    bool quiet;    ///< errors only
+    bool terminal; ///< standard error is one
     bool colour;
     bool line_open; ///< a progress line is on the screen
     double last;    ///< s, when progress was last shown

@@ -10,8 +10,12 @@ SingeResult contact_sheet_make(ContactSheet *sheet, int columns, int rows, int f
     int shortest = frame_width < frame_height ? frame_width : frame_height;
     if (shrink > shortest) shrink = shortest;
     if (shrink < 1) shrink = 1;
-    *sheet = (ContactSheet){.columns = columns, .rows = rows, .frame_width = frame_width, .frame_height = frame_height,
-                            .shrink = shrink, .width = columns * (frame_width / shrink),
+    *sheet = (ContactSheet){.columns = columns,
+                            .rows = rows,
+                            .frame_width = frame_width,
+                            .frame_height = frame_height,
+                            .shrink = shrink,
+                            .width = columns * (frame_width / shrink),
                             .height = rows * (frame_height / shrink)};
     sheet->rgb = calloc((size_t)sheet->width * 3, (size_t)sheet->height);
     if (sheet->rgb) return SINGE_OK;

@@ -20,7 +20,11 @@ static const ArgOption convert_options[OPT_COUNT] = {
 };
 
 static const ArgCommand convert_command = {
-    "convert", "DIR", "Writes the frames of a cache in other formats, beside it.", convert_options, OPT_COUNT,
+    "convert",
+    "DIR",
+    "Writes the frames of a cache in other formats, beside it.",
+    convert_options,
+    OPT_COUNT,
     "Frames that are there are written again. Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
 
 typedef struct ConvertOptions {
@@ -28,7 +32,7 @@ typedef struct ConvertOptions {
     const char *names[16]; ///< of --to
     int name_count;
     OutputSet formats;
-    unsigned singles;      ///< of output_singles, a bit each
+    unsigned singles; ///< of output_singles, a bit each
     SetList sets;
     bool single, gas, quiet;
 } ConvertOptions;
@@ -72,7 +76,8 @@ static bool add_format(const ArgReader *reader, const char *name, ConvertOptions
     char known[120];
     list_names(o->single, known, sizeof known);
     if (!o->single) strcat(known, ", gas");
-    args_complain(reader, "--to%s: expected one of %s, got '%s'", o->single ? " with --single" : "", known, shown(name).text);
+    args_complain(reader, "--to%s: expected one of %s, got '%s'", o->single ? " with --single" : "", known,
+                  shown(name).text);
     return false;
 }
 
@@ -138,7 +143,8 @@ static SingeResult convert_singles(const Outputs *outputs, const ConvertOptions 
         result = outputs_write_single(outputs, i, last, show_single, &progress, error);
     }
     SingleProgress progress = {console, console_clock(), last};
-    if (!result && o->gas) result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
+    if (!result && o->gas)
+        result = gas_detail_write(outputs->job, outputs->folder, last, show_single, &progress, error);
     *interrupted = result && interrupt_asked();
     return *interrupted ? SINGE_OK : result;
 }
@@ -158,8 +164,8 @@ static void print_results(const Outputs *outputs, const ConvertOptions *o) {
     }
     for (int i = 0; i < OUTPUT_COUNT; i++) {
         if (!output_has(outputs->formats, i)) continue;
-        char *path = output_formats[i].write_root ? folder_root(outputs->folder, i)
-                                                  : folder_output(outputs->folder, i, 1);
+        char *path =
+            output_formats[i].write_root ? folder_root(outputs->folder, i) : folder_output(outputs->folder, i, 1);
         printf("%s\n", path);
         free(path);
     }

@@ -82,7 +82,9 @@ SingeResult folder_make(const char *path, SingeError *error) {
 enum { INNER_FRAMES = OUTPUT_COUNT, INNER_GAS, INNER_EXR, INNER_COUNT };
 
 /// A folder's name, and how its files end.
-typedef struct Inner { const char *name, *ending; } Inner;
+typedef struct Inner {
+    const char *name, *ending;
+} Inner;
 
 static Inner inner(int which) {
     static const Inner others[] = {{"frames", ".png"}, {"gas", ".vdb"}, {"exr", ".exr"}};
@@ -308,7 +310,7 @@ ExitCode folder_span(const Folder *folder, Console *console, int *first, int *la
     }
     if (*first == 0) *first = lowest, *last = highest;
     if (*first >= lowest && *last <= highest) return EXIT_GOOD;
-    console_error(console, "frames %d-%d are asked for, but %s has %d-%d", *first, *last, folder->path,
-                  lowest, highest);
+    console_error(console, "frames %d-%d are asked for, but %s has %d-%d", *first, *last, folder->path, lowest,
+                  highest);
     return EXIT_INPUT;
 }

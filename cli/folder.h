@@ -12,15 +12,15 @@
 #include "singe/base.h"
 
 typedef struct Folder {
-    char *path;       ///< DIR, without a slash at its end
-    char *name;       ///< NAME
-    char *stats;      ///< DIR/stats.csv
-    char *events, *probes; ///< DIR/events.csv, DIR/probes.csv
-    char *record;     ///< DIR/run.json
-    char *checkpoint; ///< DIR/checkpoint.singe
-    char *video;      ///< DIR/preview.mp4
-    char *sheet;      ///< DIR/sheet.png
-    char *gif;        ///< DIR/preview.gif
+    char *path;                       ///< DIR, without a slash at its end
+    char *name;                       ///< NAME
+    char *stats;                      ///< DIR/stats.csv
+    char *events, *probes;            ///< DIR/events.csv, DIR/probes.csv
+    char *record;                     ///< DIR/run.json
+    char *checkpoint;                 ///< DIR/checkpoint.singe
+    char *video;                      ///< DIR/preview.mp4
+    char *sheet;                      ///< DIR/sheet.png
+    char *gif;                        ///< DIR/preview.gif
     char *cache_lock, *pictures_lock; ///< DIR/cache.lock, DIR/pictures.lock: while they are written
 } Folder;
 
@@ -55,9 +55,9 @@ char *folder_root(const Folder *folder, int format);
 /// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
-/// Removes what else an earlier run of the same name left (its frames, video, GIF, and tables that are not asked for), and nothing that is not named as
-/// such files are or lies behind a link. Adds to *removed. The folders that `parts` do not ask for go too when they are
-/// empty.
+/// Removes what else an earlier run of the same name left (its frames, video, GIF, and tables that are not asked for),
+/// and nothing that is not named as such files are or lies behind a link. Adds to *removed. The folders that `parts` do
+/// not ask for go too when they are empty.
 SINGE_NODISCARD SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error);
 
 /// Removes what a killed run left half written under temporary names.

@@ -43,8 +43,8 @@ SingeResult frame_read_surface(const Folder *folder, int number, Frame *frame, S
     char *path = folder_ply(folder, number);
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (!result)
-        result = ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &frame->surface, &frame->time,
-                                  error);
+        result =
+            ply_read_surface(path, bytes.data, bytes.size, (SingeAllocator){0}, &frame->surface, &frame->time, error);
     bytes_free(&bytes);
     free(path);
     return result;

@@ -34,8 +34,8 @@ static void interpolate(const SingeGas *coarse, int detail, Gas *fine) {
                 float warmth = 0, moved[3] = {0, 0, 0};
                 for (int k = 0; k < 8; k++) {
                     const size_t from = gas_index(coarse, x[k & 1], y[k >> 1 & 1], z[k >> 2]);
-                    const float weight = (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) *
-                                         (k >> 2 ? s[2] : 1 - s[2]);
+                    const float weight =
+                        (k & 1 ? s[0] : 1 - s[0]) * (k >> 1 & 1 ? s[1] : 1 - s[1]) * (k >> 2 ? s[2] : 1 - s[2]);
                     warmth += weight * coarse->temperature[from];
                     for (int d = 0; d < 3; d++) moved[d] += weight * coarse->velocity[from][d];
                 }

@@ -138,7 +138,7 @@ void job_note_long(const Job *job, Console *console, const char *doing) {
     const double substeps = solver->substeps > 10 ? solver->substeps : 10; // 0: a few
     const double cells = (double)scene_size(job->scene, &job->assets).cells;
     if (cells * 0.1 * substeps * solver->projections < 200e3) return; // from so many on a stage takes seconds
-    fflush(stdout); // what is printed comes before it
+    fflush(stdout);                                                   // what is printed comes before it
     console_note(console, "%s", doing);
 }
 

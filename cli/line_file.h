@@ -13,7 +13,8 @@ typedef struct LineFile {
     const char *path;
     int64_t size; ///< bytes of whole lines
 } LineFile;
-#define LINE_FILE_CLOSED {.fd = -1}
+#define LINE_FILE_CLOSED \
+    { .fd = -1 }
 
 /// Opens the file and changes nothing in it. A link, a pipe or a device in its place is refused. `path` is kept.
 SINGE_NODISCARD SingeResult lines_open(LineFile *file, const char *path, SingeError *error);

@@ -72,8 +72,7 @@ static SingeResult refuse_held(int fd, const char *path, const char *what, bool 
     return SINGE_ERROR_STATE;
 }
 
-SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, bool *kept,
-                      SingeError *error) {
+SingeResult lock_take(Lock *lock, const char *path, const char *what, bool shared, bool *kept, SingeError *error) {
     *lock = LOCK_NONE;
     *kept = true;
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {

@@ -8,7 +8,7 @@
 #include "singe/base.h"
 
 typedef struct Lock {
-    int fd;     ///< -1: not taken
+    int fd; ///< -1: not taken
     bool shared;
     char *path; ///< of the file that is locked
 } Lock;

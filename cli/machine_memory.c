@@ -37,12 +37,15 @@ static double group_limit(const char *path) {
     return bytes;
 }
 
-static double machine_lesser(double room, double limit) { return limit > 0 && (room <= 0 || limit < room) ? limit : room; }
+static double machine_lesser(double room, double limit) {
+    return limit > 0 && (room <= 0 || limit < room) ? limit : room;
+}
 
 double machine_memory(void) {
     double room = physical();
     struct rlimit limit;
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) room = machine_lesser(room, (double)limit.rlim_cur);
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        room = machine_lesser(room, (double)limit.rlim_cur);
     if (getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
         room = machine_lesser(room, (double)limit.rlim_cur);
     room = machine_lesser(room, group_limit("/sys/fs/cgroup/memory.max"));

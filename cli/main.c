@@ -51,7 +51,8 @@ int main(int argc, char **argv) {
     if (streams_open()) return EXIT_FAILED;
     if (argc < 2) {
         fputs("singe: error: needs a command: run, check, render, convert, measure, verify, bench, paper or validate\n"
-              "see: singe --help\n", stderr);
+              "see: singe --help\n",
+              stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

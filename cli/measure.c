@@ -34,13 +34,11 @@ static const ArgOption measure_options[OPT_COUNT] = {
 };
 
 static const ArgCommand measure_command = {
-    "measure", "DIR", "Measures what a cache looks like: creases, wrinkles, jitter, embers.", measure_options,
-    OPT_COUNT, "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
+    "measure",       "DIR",     "Measures what a cache looks like: creases, wrinkles, jitter, embers.",
+    measure_options, OPT_COUNT, "docs/cli.md says what the numbers are. Exit codes: 0 good, 1 failed, 2 bad input."};
 
 /// A number of every frame, and how it is summed up.
-typedef enum Number {
-    BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS
-} Number;
+typedef enum Number { BIAS, BEND, BURNT, UNBURNT, FOLD, CURL, CURL_STRONG, CURL_MAX, JITTER, EMBER, NUMBERS } Number;
 
 static const struct {
     const char *key, *title, *format;
@@ -61,7 +59,7 @@ static const struct {
 /// Vertices of the input mesh that have not burnt, in one frame.
 typedef struct Moment {
     double time;
-    uint32_t count;                     ///< room
+    uint32_t count; ///< room
     float (*position)[3], (*velocity)[3];
     bool *there;
 } Moment;
@@ -70,16 +68,16 @@ typedef struct Measure {
     Console console;
     Folder folder;
     const char *csv;
-    int first, last;          ///< frames; first 0: all
-    double (*rows)[NUMBERS];  ///< of every frame
+    int first, last;         ///< frames; first 0: all
+    double (*rows)[NUMBERS]; ///< of every frame
     double *times;
-    Rim *rims;                ///< of every frame
+    Rim *rims; ///< of every frame
     Wrinkles all;
     Folds all_folds;
     Rim all_rim;
-    Moment moments[3];        ///< this frame's at index frame mod 3
+    Moment moments[3]; ///< this frame's at index frame mod 3
     Job job;
-    Pictures *pictures;       ///< NULL where the program draws none
+    Pictures *pictures; ///< NULL where the program draws none
 } Measure;
 
 // ---- one frame
@@ -258,10 +256,8 @@ typedef enum RimNumber { RIM_AREA, RIM_MASS, RIM_SLOPE, RIM_SLOPE_STRONG, RIM_HE
 static const struct {
     const char *key, *title, *format;
 } rim_numbers[RIM_NUMBERS] = {
-    [RIM_AREA] = {"area", "area/rest", "%.3f"},
-    [RIM_MASS] = {"mass", "mass", "%.3f"},
-    [RIM_SLOPE] = {"slope_p50_deg", "slope p50", "%.1f"},
-    [RIM_SLOPE_STRONG] = {"slope_p90_deg", "slope p90", "%.1f"},
+    [RIM_AREA] = {"area", "area/rest", "%.3f"},           [RIM_MASS] = {"mass", "mass", "%.3f"},
+    [RIM_SLOPE] = {"slope_p50_deg", "slope p50", "%.1f"}, [RIM_SLOPE_STRONG] = {"slope_p90_deg", "slope p90", "%.1f"},
     [RIM_HEIGHT] = {"height_mm", "height mm", "%.2f"},
 };
 

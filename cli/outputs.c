@@ -38,16 +38,23 @@ static char *path_from(const char *folder, const char *file) {
 }
 
 static OutputMesh uncut(const Mesh *mesh) {
-    return (OutputMesh){.vertex_count = mesh->vertex_count, .cell_count = mesh->cell_count, .positions = mesh->positions,
-                        .uv = mesh->uv, .corner_uv = mesh->corner_uv, .cells = mesh->cells, .source = mesh->source,
-                        .became = mesh->became, .source_count = mesh->source_count};
+    return (OutputMesh){.vertex_count = mesh->vertex_count,
+                        .cell_count = mesh->cell_count,
+                        .positions = mesh->positions,
+                        .uv = mesh->uv,
+                        .corner_uv = mesh->corner_uv,
+                        .cells = mesh->cells,
+                        .source = mesh->source,
+                        .became = mesh->became,
+                        .source_count = mesh->source_count};
 }
 
 static void fill_sheet(const Outputs *outputs, uint32_t index) {
     const Job *job = outputs->job;
     const SceneSheet *sheet = &job->scene->sheets[index];
     if (sheet->picture.path) outputs->pictures[index] = path_from(outputs->folder->path, sheet->picture.path);
-    outputs->sheets[index] = (OutputSheet){.name = sheet->name, .picture = outputs->pictures[index],
+    outputs->sheets[index] = (OutputSheet){.name = sheet->name,
+                                           .picture = outputs->pictures[index],
                                            .image = job->assets.pictures[index],
                                            .mesh = uncut(&job->assets.meshes[index])};
     memcpy(outputs->sheets[index].colour, sheet->colour, sizeof sheet->colour);
@@ -63,12 +70,18 @@ SingeResult outputs_open(Outputs *outputs, const Job *job, const Folder *folder,
     if (!outputs->sheets || !outputs->pictures) return no_memory(error);
     for (uint32_t i = 0; i < scene->sheet_count; i++) fill_sheet(outputs, i);
     OutputScene *s = &outputs->scene;
-    *s = (OutputScene){.name = scene->name, .fps = scene->fps, .gas = gas,
-                       .texture_size = scene->output.texture_size, .sheet_count = scene->sheet_count,
-                       .sheets = outputs->sheets, .fov = preview->camera.fov,
+    *s = (OutputScene){.name = scene->name,
+                       .fps = scene->fps,
+                       .gas = gas,
+                       .texture_size = scene->output.texture_size,
+                       .sheet_count = scene->sheet_count,
+                       .sheets = outputs->sheets,
+                       .fov = preview->camera.fov,
                        .aspect = (float)preview->size[0] / (float)preview->size[1],
-                       .aperture = preview->camera.aperture, .focus = preview->camera.focus,
-                       .light_angle = preview->light_angle, .ground_height = preview->ground_height};
+                       .aperture = preview->camera.aperture,
+                       .focus = preview->camera.focus,
+                       .light_angle = preview->light_angle,
+                       .ground_height = preview->ground_height};
     memcpy(s->eye, preview->camera.eye, sizeof s->eye);
     memcpy(s->target, preview->camera.target, sizeof s->target);
     memcpy(s->up, preview->camera.up, sizeof s->up);
@@ -131,8 +144,11 @@ static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, Outp
         ever = poses[frame].visible = true;
         memcpy(poses[frame].position, now.position, sizeof now.position);
         memcpy(poses[frame].rotation, now.rotation, sizeof now.rotation);
-        *shape = (OutputShape){.kind = now.kind, .radius = now.radius, .height = now.height,
-                               .temperature = now.temperature, .poses = poses};
+        *shape = (OutputShape){.kind = now.kind,
+                               .radius = now.radius,
+                               .height = now.height,
+                               .temperature = now.temperature,
+                               .poses = poses};
         memcpy(shape->half_size, now.half_size, sizeof now.half_size);
         memcpy(shape->colour, now.colour, sizeof now.colour);
         if (!now.solid) continue;
@@ -199,8 +215,8 @@ static SingeResult read_next(void *context, int number, OutputFrame *view, Singe
     return result;
 }
 
-SingeResult outputs_write_single(const Outputs *outputs, int single, int frames, OutputsProgress *progress, void *context,
-                                 SingeError *error) {
+SingeResult outputs_write_single(const Outputs *outputs, int single, int frames, OutputsProgress *progress,
+                                 void *context, SingeError *error) {
     const OutputSingle *format = &output_singles[single];
     CacheReader reader = {.outputs = outputs, .progress = progress, .context = context};
     const OutputCache cache = {.frames = frames, .read = read_next, .context = &reader};

@@ -10,9 +10,9 @@ typedef struct Outputs {
     const Job *job;
     const Folder *folder;
     OutputSet formats;
-    OutputScene scene;   ///< of frames
+    OutputScene scene; ///< of frames
     OutputSheet *sheets;
-    char **pictures;     ///< [sheet_count] paths from the folder, or NULL
+    char **pictures; ///< [sheet_count] paths from the folder, or NULL
 } Outputs;
 
 /// The job and the folder must outlive it, and the folder must be there. `gas`: the frames have some.

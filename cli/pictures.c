@@ -79,7 +79,8 @@ const uint8_t *pictures_draw(Pictures *pictures, const SingeSurface *surface, co
     interrupt_guard_begin();
     SingeResult result = preview_set_shapes(pictures->preview, pictures->shapes, count, error);
     if (!result) result = preview_set_gas(pictures->preview, gas, error);
-    if (!result) result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);
+    if (!result)
+        result = preview_draw_layers(pictures->preview, surface, time, pictures->rgb, &pictures->layers, error);
     interrupt_guard_end();
     return result ? NULL : pictures->rgb;
 }
@@ -131,15 +132,24 @@ SingeResult pictures_write_layers(const Pictures *pictures, const char *path, Si
     uint32_t *sheet = count_ids(l->sheet, (size_t)width * (size_t)height);
     uint32_t *piece = count_ids(l->piece, (size_t)width * (size_t)height);
     const ExrChannel channels[] = {
-        {"R", EXR_KIND_HALF, &l->beauty[0][0], 3}, {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
-        {"B", EXR_KIND_HALF, &l->beauty[0][2], 3}, {"Z", EXR_KIND_FLOAT, l->depth, 1},
-        {"glow.R", EXR_KIND_HALF, &l->glow[0][0], 3}, {"glow.G", EXR_KIND_HALF, &l->glow[0][1], 3},
-        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3}, {"fire.R", EXR_KIND_HALF, &l->fire[0][0], 4},
-        {"fire.G", EXR_KIND_HALF, &l->fire[0][1], 4}, {"fire.B", EXR_KIND_HALF, &l->fire[0][2], 4},
-        {"fire.A", EXR_KIND_HALF, &l->fire[0][3], 4}, {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
-        {"normal.Y", EXR_KIND_HALF, &l->normal[0][1], 3}, {"normal.Z", EXR_KIND_HALF, &l->normal[0][2], 3},
-        {"temperature.K", EXR_KIND_FLOAT, l->temperature, 1}, {"char.Y", EXR_KIND_HALF, l->burn, 1},
-        {"coverage.Y", EXR_KIND_HALF, l->coverage, 1}, {"id.sheet", EXR_KIND_ID, sheet, 1},
+        {"R", EXR_KIND_HALF, &l->beauty[0][0], 3},
+        {"G", EXR_KIND_HALF, &l->beauty[0][1], 3},
+        {"B", EXR_KIND_HALF, &l->beauty[0][2], 3},
+        {"Z", EXR_KIND_FLOAT, l->depth, 1},
+        {"glow.R", EXR_KIND_HALF, &l->glow[0][0], 3},
+        {"glow.G", EXR_KIND_HALF, &l->glow[0][1], 3},
+        {"glow.B", EXR_KIND_HALF, &l->glow[0][2], 3},
+        {"fire.R", EXR_KIND_HALF, &l->fire[0][0], 4},
+        {"fire.G", EXR_KIND_HALF, &l->fire[0][1], 4},
+        {"fire.B", EXR_KIND_HALF, &l->fire[0][2], 4},
+        {"fire.A", EXR_KIND_HALF, &l->fire[0][3], 4},
+        {"normal.X", EXR_KIND_HALF, &l->normal[0][0], 3},
+        {"normal.Y", EXR_KIND_HALF, &l->normal[0][1], 3},
+        {"normal.Z", EXR_KIND_HALF, &l->normal[0][2], 3},
+        {"temperature.K", EXR_KIND_FLOAT, l->temperature, 1},
+        {"char.Y", EXR_KIND_HALF, l->burn, 1},
+        {"coverage.Y", EXR_KIND_HALF, l->coverage, 1},
+        {"id.sheet", EXR_KIND_ID, sheet, 1},
         {"id.piece", EXR_KIND_ID, piece, 1},
     };
     SingeResult result = sheet && piece ? SINGE_OK : no_memory(error);

@@ -35,7 +35,7 @@ static void write_scene_folder(FILE *file, const char *scene_path) {
 }
 
 static void write_seconds(FILE *file, const Totals *totals) {
-    static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics", "gas",
+    static const char *const names[] = {"heat",    "burn", "ablate",  "dynamics",  "gas",
                                         "surface", "ply",  "preview", "checkpoint"};
     fputs("  \"seconds\": {\"wall\": ", file);
     text_json_number(file, totals->wall_seconds);
@@ -48,10 +48,17 @@ static void write_seconds(FILE *file, const Totals *totals) {
 }
 
 static void write_totals(FILE *file, const Totals *t) {
-    const struct { const char *name; uint64_t value; } rows[] = {
-        {"steps", t->steps}, {"heat_iterations", t->heat_iterations}, {"strands_projected", t->strands_projected},
-        {"contacts", t->contacts}, {"ignited", t->ignited}, {"holes_opened", t->holes_opened},
-        {"pieces_freed", t->pieces_freed}, {"crossed_at_start", t->crossed}};
+    const struct {
+        const char *name;
+        uint64_t value;
+    } rows[] = {{"steps", t->steps},
+                {"heat_iterations", t->heat_iterations},
+                {"strands_projected", t->strands_projected},
+                {"contacts", t->contacts},
+                {"ignited", t->ignited},
+                {"holes_opened", t->holes_opened},
+                {"pieces_freed", t->pieces_freed},
+                {"crossed_at_start", t->crossed}};
     fputs("  \"totals\": {", file);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         fprintf(file, "%s\"%s\": %" PRIu64, i ? ", " : "", rows[i].name, rows[i].value);

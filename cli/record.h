@@ -8,11 +8,11 @@
 
 typedef struct Record {
     const char *scene_path;
-    char started[32];     ///< ISO 8601, UTC
-    const char *result;   ///< "running", "complete", "interrupted" or "failed"
-    SingeError error;     ///< when failed
+    char started[32];   ///< ISO 8601, UTC
+    const char *result; ///< "running", "complete", "interrupted" or "failed"
+    SingeError error;   ///< when failed
     int frames_done;
-    int resumed_from;     ///< frame of the checkpoint that the last start went on from, 0 for none
+    int resumed_from; ///< frame of the checkpoint that the last start went on from, 0 for none
     bool preview, video;
     SingeCounts counts;
     float thickening;

@@ -32,14 +32,14 @@ static const ArgOption render_options[OPT_COUNT] = {
 };
 
 static const ArgCommand render_command = {
-    "render", "DIR", "Draws the pictures and the video of a cache again.", render_options, OPT_COUNT,
-    "Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
+    "render",       "DIR",     "Draws the pictures and the video of a cache again.",
+    render_options, OPT_COUNT, "Exit codes: 0 good, 1 failed or interrupted, 2 bad input."};
 
 typedef struct RenderOptions {
     const char *folder;
     SetList sets;
-    int first, last;      ///< 0: all
-    int columns, rows;    ///< 0: no sheet
+    int first, last;   ///< 0: all
+    int columns, rows; ///< 0: no sheet
     int threads;
     bool only_sheet, exr, gif, quiet;
 } RenderOptions;

@@ -23,8 +23,11 @@ static const ArgOption run_options[OPT_COUNT] = {
 };
 
 static const ArgCommand run_command = {
-    "run", "SCENE", "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
-    run_options, OPT_COUNT,
+    "run",
+    "SCENE",
+    "Simulates a scene file and writes a cache, pictures, a video and statistics to DIR.",
+    run_options,
+    OPT_COUNT,
     "Ctrl-C ends the run after its step; a second Ctrl-C ends it at once. Exit codes: 0 good, 1 failed or\n"
     "interrupted, or its video did, 2 bad input."};
 
@@ -155,7 +158,8 @@ static ExitCode finish(Run *run, SingeResult result, const SingeError *error) {
         video = video_make(run->console, &run->folder, (double)run->job.scene->fps, 1, record->frames_done);
     record->video = video == VIDEO_MADE;
     run->totals->wall_seconds = run->wall_before + console_clock() - run->started;
-    if (run->begun && record->frames_done > 0 && outputs_write_roots(&run->outputs, record->frames_done, &write_error)) {
+    if (run->begun && record->frames_done > 0 &&
+        outputs_write_roots(&run->outputs, record->frames_done, &write_error)) {
         console_result(run->console, &write_error);
         return EXIT_FAILED;
     }
@@ -218,7 +222,11 @@ int command_run(int argc, char **argv) {
     if (!code && !done) {
         interrupt_shield();
         Console console = console_make(options.quiet);
-        Run run = {.console = &console, .stats = LINE_FILE_CLOSED, .tables = TABLES_CLOSED, .cache_lock = LOCK_NONE, .pictures_lock = LOCK_NONE,
+        Run run = {.console = &console,
+                   .stats = LINE_FILE_CLOSED,
+                   .tables = TABLES_CLOSED,
+                   .cache_lock = LOCK_NONE,
+                   .pictures_lock = LOCK_NONE,
                    .started = console_clock()};
         run.checkpoint_time = run.started;
         run.record = record_make(options.scene);

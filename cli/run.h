@@ -64,17 +64,17 @@ typedef struct Run {
     LineFile stats;
     Tables tables;
     Record record;
-    Totals *totals;             ///< the record's
-    SingeTimers timers;         ///< as last read
+    Totals *totals;     ///< the record's
+    SingeTimers timers; ///< as last read
     SceneHash hash;
     double started, wall_before; ///< s, clock at the start and time spent before a resumption
     double checkpoint_time, checkpoint_cost;
     double frame_ended, frame_seconds; ///< s, clock at the end of the last frame, and what one takes
-    int first;                  ///< frame to begin with
-    int step;                   ///< steps that are done of the frame in hand
-    int strained;               ///< the frame in which most is stretched by more than half; 0
-    double strain;              ///< of one edge in a hundred there (strain_p99)
-    bool begun;                 ///< what is in the folder is this run's: its first frame stands, or it goes on
+    int first;                         ///< frame to begin with
+    int step;                          ///< steps that are done of the frame in hand
+    int strained;                      ///< the frame in which most is stretched by more than half; 0
+    double strain;                     ///< of one edge in a hundred there (strain_p99)
+    bool begun;                        ///< what is in the folder is this run's: its first frame stands, or it goes on
 } Run;
 
 /// What the run writes besides the surface.

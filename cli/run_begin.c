@@ -16,8 +16,11 @@ static ExitCode run_begin_fail(Run *run, const SingeError *error, ExitCode code)
 
 FolderParts run_parts(const Run *run) {
     bool gas = singe_sim_gas(run->sim).size[0] > 0;
-    return (FolderParts){.pictures = run->pictures != NULL, .gas = gas, .exr = run->layers,
-                         .events = run->job.scene->output.events, .probes = run->job.scene->probe_count > 0,
+    return (FolderParts){.pictures = run->pictures != NULL,
+                         .gas = gas,
+                         .exr = run->layers,
+                         .events = run->job.scene->output.events,
+                         .probes = run->job.scene->probe_count > 0,
                          .outputs = run->job.scene->output.formats};
 }
 
@@ -68,7 +71,8 @@ static SingeResult open_tables(Run *run, SingeError *error) {
 static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
     SingeError error = {0};
-    SingeResult result = checkpoint_read(&run->folder, &run->job.hooks, run->hash, &run->job.assets, &checkpoint, &error);
+    SingeResult result =
+        checkpoint_read(&run->folder, &run->job.hooks, run->hash, &run->job.assets, &checkpoint, &error);
     if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
     const int frame = checkpoint.progress.frame;
     if (frame == 0) return EXIT_GOOD;
@@ -212,7 +216,8 @@ ExitCode run_prepare(Run *run, const RunOptions *options) {
         console_note(run->console, "no checkpoint in %s: starting from the beginning", run->folder.path);
     if (!run->sim && (code = job_build(&run->job, run->console, &run->sim))) return code;
     if ((code = hold_folder(run))) return code;
-    if (outputs_open(&run->outputs, &run->job, &run->folder, run->job.scene->output.formats, run_parts(run).gas, &error))
+    if (outputs_open(&run->outputs, &run->job, &run->folder, run->job.scene->output.formats, run_parts(run).gas,
+                     &error))
         return run_begin_fail(run, &error, EXIT_FAILED);
     return open_outputs(run);
 }

@@ -163,7 +163,8 @@ static SingeResult tell_of_crossings(Run *run, SingeError *error) {
     if (run->totals->crossed)
         console_warn(run->console,
                      "%" PRIu64 " pairs of triangles cross initially, the first near (%.4g, %.4g, %.4g) m; `singe "
-                 "verify` counts them separately", run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
+                     "verify` counts them separately",
+                     run->totals->crossed, (double)at[0], (double)at[1], (double)at[2]);
     return SINGE_OK;
 }
 
@@ -192,8 +193,7 @@ static SingeResult write_checkpoint(Run *run, CheckpointBytes *taken, Progress p
     if (!result) result = outputs_write_roots(&run->outputs, progress.frame, error);
     if (!result)
         result = checkpoint_write(&run->folder, run->sim, run->job.hooks.allocator, taken, progress, run->hash,
-                                  &run->job.assets, totals,
-                                  error);
+                                  &run->job.assets, totals, error);
     run->checkpoint_cost += seconds_since(&clock);
     run->checkpoint_time = clock;
     run->totals->output_seconds[TOTAL_CHECKPOINT] += run->checkpoint_cost;

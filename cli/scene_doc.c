@@ -6,7 +6,7 @@
 #include "scene/scene.h"
 
 static const ArgCommand scene_doc_command = {"scene-doc", NULL, "Prints the reference of scene files (docs/scene.md).",
-                                             NULL, 0, NULL};
+                                             NULL,        0,    NULL};
 
 int command_scene_doc(int argc, char **argv) {
     ArgReader reader = args_begin(&scene_doc_command, argc, argv);

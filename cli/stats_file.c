@@ -40,8 +40,7 @@ SingeResult stats_write(LineFile *file, int frame, const SingeStats *s, const To
         (double)s->temperature_max, s->heat_in, s->heat_lost, s->heat_of_combustion, s->heat_stored, s->ledger_error,
         s->strain_mean, s->strain_p99, s->strain_max, s->inverted_cells, cost->stage[SINGE_STAGE_HEAT],
         cost->stage[SINGE_STAGE_BURN], cost->stage[SINGE_STAGE_ABLATE], cost->stage[SINGE_STAGE_DYNAMICS],
-        cost->stage[SINGE_STAGE_GAS], cost->output,
-        s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited, totals->holes_opened, totals->pieces_freed,
-        s->front_speed, cost->fine_triangles, cost->surface, s->tears);
+        cost->stage[SINGE_STAGE_GAS], cost->output, s->speed_rms_unburnt, s->mass_ledger_error, totals->ignited,
+        totals->holes_opened, totals->pieces_freed, s->front_speed, cost->fine_triangles, cost->surface, s->tears);
     return lines_append(file, line, (size_t)length, error);
 }

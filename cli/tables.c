@@ -35,7 +35,8 @@ SingeResult tables_begin(Tables *tables, SingeError *error) {
 static bool is_of_frame(uint64_t line, const char *text, size_t size, void *context) {
     const Tables *tables = context;
     char number[24];
-    const size_t length = (size_t)snprintf(number, sizeof number, "%" PRIu64 ",", line / tables->scene->probe_count + 1);
+    const size_t length =
+        (size_t)snprintf(number, sizeof number, "%" PRIu64 ",", line / tables->scene->probe_count + 1);
     return size >= length && memcmp(text, number, length) == 0;
 }
 
@@ -44,8 +45,7 @@ SingeResult tables_cut(Tables *tables, int frames, const Totals *totals, SingeEr
     SingeResult result = SINGE_OK;
     const uint64_t events = totals->ignited + totals->holes_opened + totals->pieces_freed;
     snprintf(what, sizeof what, "the %" PRIu64 " events up to frame %d", events, frames);
-    if (tables->events.fd >= 0)
-        result = lines_cut(&tables->events, events_header, events, NULL, NULL, what, error);
+    if (tables->events.fd >= 0) result = lines_cut(&tables->events, events_header, events, NULL, NULL, what, error);
     snprintf(what, sizeof what, "frames 1 to %d", frames);
     if (!result && tables->probes.fd >= 0)
         result = lines_cut(&tables->probes, probes_header, (uint64_t)frames * tables->scene->probe_count, is_of_frame,
@@ -88,8 +88,8 @@ static SingeResult write_events(Tables *tables, size_t count, int frame, SingeEr
     if (!count) return SINGE_OK;
     FILE *file = open_memstream(&text, &size);
     for (size_t i = 0; file && i < count; i++) put_event(file, &tables->held[i], frame);
-    SingeResult result = text_stream_end(file, &text) ? lines_append(&tables->events, text, size, error)
-                                                      : tables_no_memory(error);
+    SingeResult result =
+        text_stream_end(file, &text) ? lines_append(&tables->events, text, size, error) : tables_no_memory(error);
     free(text);
     tables->held_count -= count;
     memmove(tables->held, tables->held + count, tables->held_count * sizeof *tables->held);

@@ -20,10 +20,11 @@ typedef struct Tables {
     LineFile events, probes; ///< closed where the scene asks for none
     HeldEvent *held;         ///< that are not written yet
     size_t held_count, held_capacity;
-    size_t due;              ///< of them, those of the frame in writing
-    char *lines;             ///< of its probes, from malloc; NULL: none
+    size_t due;  ///< of them, those of the frame in writing
+    char *lines; ///< of its probes, from malloc; NULL: none
 } Tables;
-#define TABLES_CLOSED {.events = LINE_FILE_CLOSED, .probes = LINE_FILE_CLOSED}
+#define TABLES_CLOSED \
+    { .events = LINE_FILE_CLOSED, .probes = LINE_FILE_CLOSED }
 
 /// Opens what the scene asks for, and changes nothing in it. Scene, assets and folder must outlive it.
 SINGE_NODISCARD SingeResult tables_open(Tables *tables, const Folder *folder, const Scene *scene,

@@ -14,7 +14,7 @@ typedef struct Totals {
     uint64_t steps, heat_iterations, strands_projected, contacts;
     uint64_t ignited, holes_opened, pieces_freed;
     uint64_t crossed; ///< pairs of triangles of the first frame
-    double hottest; ///< K, of all frames
+    double hottest;   ///< K, of all frames
 } Totals;
 
 #endif

@@ -25,10 +25,16 @@ static const ArgOption verify_options[OPT_COUNT] = {
 };
 
 static const ArgCommand verify_command = {
-    "verify", "DIR", "Reads a cache and counts crossings, inverted cells and other faults.", verify_options,
-    OPT_COUNT, "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
+    "verify",
+    "DIR",
+    "Reads a cache and counts crossings, inverted cells and other faults.",
+    verify_options,
+    OPT_COUNT,
+    "docs/cli.md says what counts. Exit codes: 0 no faults, 1 faults or interrupted, 2 cannot be read."};
 
-static const struct { const char *key, *title; } faults[FAULT_COUNT] = {
+static const struct {
+    const char *key, *title;
+} faults[FAULT_COUNT] = {
     [FAULT_CROSSING] = {"crossings", "pairs of triangles that cross"},
     [FAULT_INVERTED] = {"inverted_cells", "inverted cells (stats.csv)"},
     [FAULT_STRETCHED] = {"stretched_edges", "edges stretched"},
@@ -53,9 +59,9 @@ typedef struct Verify {
     StatsTable stats;
     const char *csv;
     double stretch;
-    bool crossed;                 ///< at the start
-    int first, last, done;        ///< frames; first 0: all
-    Row *rows;                    ///< of every frame
+    bool crossed;          ///< at the start
+    int first, last, done; ///< frames; first 0: all
+    Row *rows;             ///< of every frame
     Findings findings;
 } Verify;
 
@@ -100,8 +106,11 @@ static SingeResult verify_frame(Verify *verify, int frame, Row *row, SingeError 
             snprintf(error->message, sizeof error->message, "no memory to verify frame %d", frame);
             result = SINGE_ERROR_MEMORY;
         }
-        *row = (Row){.vertices = cache.vertex_count, .triangles = cache.triangle_count, .near = findings->near,
-                     .folded = findings->folded, .from_start = findings->from_start};
+        *row = (Row){.vertices = cache.vertex_count,
+                     .triangles = cache.triangle_count,
+                     .near = findings->near,
+                     .folded = findings->folded,
+                     .from_start = findings->from_start};
         memcpy(row->count, findings->count, sizeof row->count);
     }
     cache_free(&cache);
@@ -167,8 +176,9 @@ static uint64_t print_table(const Verify *verify) {
         printf("%-52s", faults[f].title);
         if (!known) printf("%12s\n", "-");
         else if (!total[f]) printf("%12d\n", 0);
-        else printf("%12" PRIu64 "%8d%10" PRIu64 "%7d\n", total[f], frames[f], verify->rows[worst[f]].count[f],
-                    verify->first + worst[f]);
+        else
+            printf("%12" PRIu64 "%8d%10" PRIu64 "%7d\n", total[f], frames[f], verify->rows[worst[f]].count[f],
+                   verify->first + worst[f]);
     }
     printf("%-52s%12" PRIu64 "\n", "(of the crossings: side by side at rest)", near);
     printf("%-52s%12" PRIu64 "\n", "(no fault: edges folded onto each other)", folded);

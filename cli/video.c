@@ -80,7 +80,8 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
         return reason == ENOENT ? VIDEO_NO_PROGRAM : VIDEO_FAILED;
     }
     int status = 0; // kept where the system has reaped the child itself; then the file tells
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return VIDEO_MADE;
     if (WIFEXITED(status)) snprintf(why, WHY_SIZE, "ffmpeg failed (exit %d)", WEXITSTATUS(status));
     else snprintf(why, WHY_SIZE, "ffmpeg was stopped (signal %d)", WTERMSIG(status));
@@ -89,8 +90,8 @@ static VideoResult spawn(char *const *arguments, char why[WHY_SIZE]) {
 
 /// What ffmpeg makes of the frames.
 typedef struct Movie {
-    const char *what, *path;            ///< for messages; where it goes
-    const char *const *options;         ///< NULL-terminated, after the input
+    const char *what, *path;    ///< for messages; where it goes
+    const char *const *options; ///< NULL-terminated, after the input
     const char *format;
 } Movie;
 
@@ -131,8 +132,9 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
     char *final = text_format("file:%s", movie->path);
     char *rate = text_format("%.9g", fps), *start = text_format("%d", first);
     char *count = text_format("%d", last - first + 1);
-    char *arguments[24 + OPTIONS_MAX] = {"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "image2", "-framerate",
-                                         rate, "-start_number", start, "-i", input, "-frames:v", count};
+    char *arguments[24 + OPTIONS_MAX] = {"ffmpeg", "-y",     "-nostdin",   "-loglevel", "error",
+                                         "-f",     "image2", "-framerate", rate,        "-start_number",
+                                         start,    "-i",     input,        "-frames:v", count};
     int n = 15;
     for (int i = 0; movie->options[i] && i < OPTIONS_MAX; i++) arguments[n++] = (char *)movie->options[i];
     arguments[n++] = "-f", arguments[n++] = (char *)movie->format, arguments[n] = final;
@@ -145,8 +147,12 @@ static VideoResult movie_make(Console *console, const Folder *folder, const Movi
 
 VideoResult video_make(Console *console, const Folder *folder, double fps, int first, int last) {
     // H.264 in 4:2:0 wants even sides
-    static const char *const options[] = {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18",
-                                          "-pix_fmt", "yuv420p", "-movflags", "+faststart", NULL};
+    static const char *const options[] = {"-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                          "-c:v",      "libx264",
+                                          "-crf",      "18",
+                                          "-pix_fmt",  "yuv420p",
+                                          "-movflags", "+faststart",
+                                          NULL};
     const Movie movie = {"video", folder->video, options, "mp4"};
     return movie_make(console, folder, &movie, fps, first, last);
 }

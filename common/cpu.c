@@ -1,5 +1,5 @@
-// x86-64 in levels (System V ABI, section 3.1.1), asked of the processor itself: a compiler's own answer needs a part of
-// its run-time library that not every toolchain has.
+// x86-64 in levels (System V ABI, section 3.1.1), asked of the processor itself: a compiler's own answer needs a part
+// of its run-time library that not every toolchain has.
 #include "common/cpu.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -7,15 +7,29 @@
 
 enum {
     // leaf 1, ecx
-    CPU_SSE3 = 1 << 0, CPU_SSSE3 = 1 << 9, CPU_FMA = 1 << 12, CPU_SSE4_1 = 1 << 19, CPU_SSE4_2 = 1 << 20,
-    CPU_MOVBE = 1 << 22, CPU_POPCNT = 1 << 23, CPU_OSXSAVE = 1 << 27, CPU_AVX = 1 << 28, CPU_F16C = 1 << 29,
+    CPU_SSE3 = 1 << 0,
+    CPU_SSSE3 = 1 << 9,
+    CPU_FMA = 1 << 12,
+    CPU_SSE4_1 = 1 << 19,
+    CPU_SSE4_2 = 1 << 20,
+    CPU_MOVBE = 1 << 22,
+    CPU_POPCNT = 1 << 23,
+    CPU_OSXSAVE = 1 << 27,
+    CPU_AVX = 1 << 28,
+    CPU_F16C = 1 << 29,
     // leaf 7, ebx
-    CPU_BMI1 = 1 << 3, CPU_AVX2 = 1 << 5, CPU_BMI2 = 1 << 8, CPU_AVX512F = 1 << 16, CPU_AVX512DQ = 1 << 17,
-    CPU_AVX512CD = 1 << 28, CPU_AVX512BW = 1 << 30,
+    CPU_BMI1 = 1 << 3,
+    CPU_AVX2 = 1 << 5,
+    CPU_BMI2 = 1 << 8,
+    CPU_AVX512F = 1 << 16,
+    CPU_AVX512DQ = 1 << 17,
+    CPU_AVX512CD = 1 << 28,
+    CPU_AVX512BW = 1 << 30,
     // leaf 0x80000001, ecx
     CPU_LZCNT = 1 << 5,
     // what the operating system keeps: SSE and AVX; AVX-512's masks and registers too
-    CPU_KEEPS_AVX = 0x06, CPU_KEEPS_AVX512 = 0xE6,
+    CPU_KEEPS_AVX = 0x06,
+    CPU_KEEPS_AVX512 = 0xE6,
 };
 static const unsigned CPU_AVX512VL = 1u << 31; // leaf 7, ebx
 

@@ -9,9 +9,9 @@ SingeResult error_set(SingeError *error, SingeResult code, const char *stage, in
     SINGE_PRINTF(5, 6);
 
 /// Returns from the calling function when `call` fails.
-#define TRY(call)                          \
-    do {                                   \
-        SingeResult try_result_ = (call);  \
+#define TRY(call)                            \
+    do {                                     \
+        SingeResult try_result_ = (call);    \
         if (try_result_) return try_result_; \
     } while (0)
 

@@ -4,7 +4,9 @@
 
 #include <math.h>
 
-typedef struct Float3 { float x, y, z; } Float3;
+typedef struct Float3 {
+    float x, y, z;
+} Float3;
 
 static inline Float3 float3(float x, float y, float z) { return (Float3){x, y, z}; }
 static inline Float3 float3_load(const float *p) { return (Float3){p[0], p[1], p[2]}; }
@@ -12,14 +14,19 @@ static inline void float3_store(float *p, Float3 a) { p[0] = a.x, p[1] = a.y, p[
 static inline Float3 float3_add(Float3 a, Float3 b) { return (Float3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 static inline Float3 float3_sub(Float3 a, Float3 b) { return (Float3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static inline Float3 float3_scale(Float3 a, float s) { return (Float3){a.x * s, a.y * s, a.z * s}; }
-static inline Float3 float3_mad(Float3 a, Float3 b, float s) { return (Float3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
+static inline Float3 float3_mad(Float3 a, Float3 b, float s) {
+    return (Float3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
 static inline float float3_dot(Float3 a, Float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline Float3 float3_cross(Float3 a, Float3 b) {
     return (Float3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 static inline float float3_length(Float3 a) { return sqrtf(float3_dot(a, a)); }
 /// The unit vector along a, or zero for zero.
-static inline Float3 float3_unit(Float3 a) { float l = float3_length(a); return l > 0 ? float3_scale(a, 1 / l) : a; }
+static inline Float3 float3_unit(Float3 a) {
+    float l = float3_length(a);
+    return l > 0 ? float3_scale(a, 1 / l) : a;
+}
 
 /// Rotates by the unit quaternion q = (x, y, z, w): v + 2 q × (q × v + w v).
 static inline Float3 quat_rotate(const float q[4], Float3 v) {

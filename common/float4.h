@@ -16,9 +16,17 @@
 typedef float Float4 __attribute__((vector_size(16)));
 typedef int32_t Float4Mask __attribute__((vector_size(16))); ///< -1 where it holds, 0 elsewhere
 
-static inline Float4 float4_load(const float *p) { Float4 a; memcpy(&a, p, sizeof a); return a; }
+static inline Float4 float4_load(const float *p) {
+    Float4 a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
 static inline void float4_store(float *p, Float4 a) { memcpy(p, &a, sizeof a); }
-static inline Float4Mask float4_load_ints(const int32_t *p) { Float4Mask a; memcpy(&a, p, sizeof a); return a; }
+static inline Float4Mask float4_load_ints(const int32_t *p) {
+    Float4Mask a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
 static inline Float4 float4_all(float a) { return (Float4){a, a, a, a}; }
 static inline Float4 float4_select(Float4Mask mask, Float4 yes, Float4 no) {
     return (Float4)((mask & (Float4Mask)yes) | (~mask & (Float4Mask)no));
@@ -36,7 +44,10 @@ static inline Float4 float4_max(Float4 a, Float4 b) { return float4_select(a > b
 static inline Float4 float4_sqrt(Float4 a) { return (Float4)vsqrtq_f32((float32x4_t)a); }
 static inline bool float4_any(Float4Mask mask) { return vmaxvq_u32((uint32x4_t)mask) != 0; }
 #else
-static inline Float4 float4_sqrt(Float4 a) { for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]); return a; }
+static inline Float4 float4_sqrt(Float4 a) {
+    for (int k = 0; k < 4; k++) a[k] = sqrtf(a[k]);
+    return a;
+}
 static inline bool float4_any(Float4Mask mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
 #endif
 static inline unsigned float4_bits(Float4Mask mask) {

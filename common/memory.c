@@ -4,9 +4,7 @@
 
 #include <string.h>
 
-Memory memory_make(SingeAllocator hook) {
-    return (Memory){allocator_or_libc(hook), 0};
-}
+Memory memory_make(SingeAllocator hook) { return (Memory){allocator_or_libc(hook), 0}; }
 
 /// Bytes of `count` elements, at least 1; 0 when the product overflows.
 static size_t memory_bytes(size_t count, size_t element_size) {

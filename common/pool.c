@@ -27,9 +27,9 @@ struct Pool {
     SingeTaskFn *run;
     void *context;
     int count, grain, ranges;
-    _Atomic uint64_t left; ///< first << 32 | last
-    atomic_int done;       ///< ranges
-    atomic_uint generation; ///< of jobs
+    _Atomic uint64_t left;       ///< first << 32 | last
+    atomic_int done;             ///< ranges
+    atomic_uint generation;      ///< of jobs
     atomic_int watching, asleep; ///< workers
     atomic_bool caller_asleep;
     atomic_bool quit;

@@ -1,5 +1,5 @@
-// Taylor's series in double precision after a reduction of the argument, cut off below 1e-16 of the result. So a float is
-// rounded as if it were exact, but where the exact value is nearer to a tie than about 1e-8 of its last digit.
+// Taylor's series in double precision after a reduction of the argument, cut off below 1e-16 of the result. So a float
+// is rounded as if it were exact, but where the exact value is nearer to a tie than about 1e-8 of its last digit.
 #include "common/real.h"
 
 #include <stdint.h>
@@ -43,8 +43,8 @@ float portable_expm1f(float x) {
 
 /// 2 artanh(s) for |s| <= 0.1716.
 static double real_log_series(double s) {
-    static const double over_odd[] = {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
-                                      1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3};
+    static const double over_odd[] = {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13,
+                                      1.0 / 11, 1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3};
     double square = s * s, sum = 0;
     for (int i = 0; i < 10; i++) sum = sum * square + over_odd[i];
     return 2 * s + 2 * s * square * sum;
@@ -78,16 +78,17 @@ float portable_powf(float x, float y) {
 
 /// x less the nearest multiple k of pi/2; k modulo 4 in *quarter.
 static double real_quarter(double x, int *quarter) {
-    static const double high = 0x1.921fb544p0, mid = 0x1.0b4611a6p-34, low = 0x1.3198a2e037073p-69; // 33, 33 and 53 bits
+    static const double high = 0x1.921fb544p0, mid = 0x1.0b4611a6p-34,
+                        low = 0x1.3198a2e037073p-69; // 33, 33 and 53 bits
     double k = floor(x * (2 / PI) + 0.5);
     *quarter = (int)(k - 4 * floor(0.25 * k));
     return ((x - k * high) - k * mid) - k * low;
 }
 
 static double real_sin_series(double r) {
-    static const double over_factorial[] = {1.0 / 355687428096000, -1.0 / 1307674368000, 1.0 / 6227020800,
-                                            -1.0 / 39916800,       1.0 / 362880,         -1.0 / 5040,
-                                            1.0 / 120,             -1.0 / 6};
+    static const double over_factorial[] = {
+        1.0 / 355687428096000, -1.0 / 1307674368000, 1.0 / 6227020800, -1.0 / 39916800,
+        1.0 / 362880,          -1.0 / 5040,          1.0 / 120,        -1.0 / 6};
     double square = r * r, sum = 0;
     for (int i = 0; i < 8; i++) sum = sum * square + over_factorial[i];
     return r + r * square * sum;

@@ -11,7 +11,7 @@ typedef struct Stream {
     uint8_t *bytes; ///< written to or read from; not used when measuring
     size_t size;    ///< of `bytes`
     size_t offset;
-    bool failed;    ///< the bytes ended too soon; everything read after it is zero
+    bool failed; ///< the bytes ended too soon; everything read after it is zero
 } Stream;
 
 /// Passes `size` bytes of *data through the stream, in its direction.

@@ -6,8 +6,12 @@
 
 #ifdef _WIN32
 typedef void *ThreadHandle;
-typedef struct Mutex { void *lock; } Mutex;           ///< an SRWLOCK
-typedef struct Condition { void *variable; } Condition; ///< a CONDITION_VARIABLE
+typedef struct Mutex {
+    void *lock;
+} Mutex; ///< an SRWLOCK
+typedef struct Condition {
+    void *variable;
+} Condition; ///< a CONDITION_VARIABLE
 #else
 #include <pthread.h>
 typedef pthread_t ThreadHandle;

@@ -105,9 +105,12 @@ void play_close(Play *play) {
 // ---- grids
 
 LabGrid lab_grid(int across, int along, float cell) {
-    LabGrid grid = {.cells = {across, along}, .sides = {(float)across * cell, (float)along * cell},
-                    .material = singe_default_material(), .solver = singe_default_solver(),
-                    .time_step = singe_default_sim().time_step, .pace = 1};
+    LabGrid grid = {.cells = {across, along},
+                    .sides = {(float)across * cell, (float)along * cell},
+                    .material = singe_default_material(),
+                    .solver = singe_default_solver(),
+                    .time_step = singe_default_sim().time_step,
+                    .pace = 1};
     sheet_inert(&grid.material);
     return grid;
 }
@@ -255,7 +258,9 @@ int shape_pieces(const SingeView *view, double share) {
     return count;
 }
 
-typedef struct Edge { uint32_t low, high; } Edge;
+typedef struct Edge {
+    uint32_t low, high;
+} Edge;
 
 static int edge_order(const void *a, const void *b) {
     const Edge *p = a, *q = b;

@@ -10,7 +10,7 @@
 
 typedef struct Lab {
     Report *report;
-    bool quick;   ///< small sizes: the measures must hold at them as well
+    bool quick; ///< small sizes: the measures must hold at them as well
     int threads;
     Console console;
     char *scenes; ///< folder of the scene files, within the report's
@@ -52,8 +52,8 @@ typedef struct LabGrid {
     SingeMaterialDef material;
     SingeSolverDef solver;
     float time_step, gravity, pace;
-    float jitter;           ///< of a cell, how far vertices lie off the grid
-    const float *mass;      ///< [vertices] the attribute "mass", or NULL
+    float jitter;                                             ///< of a cell, how far vertices lie off the grid
+    const float *mass;                                        ///< [vertices] the attribute "mass", or NULL
     double (*field)(const void *context, double x, double y); ///< the attribute "field", or NULL
     const void *context;
     bool (*inside)(double x, double y); ///< whether a cell with this middle is there, or NULL: all
@@ -87,7 +87,9 @@ double shape_border(const SingeSurface *surface);
 /// m, power spectrum of the height over a grid's rest plane, along both its directions, in bands of half an octave
 /// from `shortest` up: root mean square height in the band, NaN where no wave fits.
 enum { SHAPE_BANDS = 12 };
-typedef struct ShapeSpectrum { double wave[SHAPE_BANDS], height[SHAPE_BANDS]; } ShapeSpectrum;
+typedef struct ShapeSpectrum {
+    double wave[SHAPE_BANDS], height[SHAPE_BANDS];
+} ShapeSpectrum;
 SINGE_NODISCARD SingeResult shape_spectrum(const SingeView *view, int across, int along, double cell,
                                            ShapeSpectrum *spectrum);
 

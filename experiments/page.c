@@ -61,7 +61,7 @@ static SingeResult write_scenes(const Lab *lab, SingeError *error) {
 typedef struct Queue {
     const Page *page;
     const Request *request;
-    const Lab *lab;       ///< what all have in common
+    const Lab *lab; ///< what all have in common
     ReportPage *report;
     pthread_mutex_t lock; ///< of all below
     int next, added;      ///< items: the next to take; those before it are in the report
@@ -138,8 +138,7 @@ static void run_items(Queue *queue) {
         for (int i = 0; i < started; i++) pthread_join(others[i], NULL);
     }
     for (int i = 0; i < queue->page->count && !queue->result; i++)
-        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i)))
-            run_item(queue, i, threads, true);
+        if (is_wanted(queue, i) && (queue->request->name || is_alone(queue, i))) run_item(queue, i, threads, true);
 }
 
 /// Prints the error.
@@ -161,15 +160,18 @@ static ExitCode fill(Queue *queue) {
     int failed = 0;
     SingeError error;
     if (report_page_close(queue->report, &failed, &error)) code = fail(&error);
-    printf("\n%s/index.html: %s\n", queue->request->folder, code ? "not complete" : failed ? "measures fail" : "all measures hold");
+    printf("\n%s/index.html: %s\n", queue->request->folder,
+           code     ? "not complete"
+           : failed ? "measures fail"
+                    : "all measures hold");
     return code ? code : failed ? EXIT_FAILED : EXIT_GOOD;
 }
 
 static ExitCode run(const Page *page, const Request *request) {
     SingeError error = {0};
     Lab lab = {.quick = request->quick, .console = console_make(false)};
-    Queue queue = {.page = page, .request = request, .lab = &lab,
-                   .done = calloc((size_t)page->count, sizeof *queue.done)};
+    Queue queue = {
+        .page = page, .request = request, .lab = &lab, .done = calloc((size_t)page->count, sizeof *queue.done)};
     if (queue.done) queue.report = report_page_open(request->folder, page->title, page->lead, &error);
     else error = (SingeError){.code = SINGE_ERROR_MEMORY, .element = -1};
     ExitCode code = EXIT_FAILED;

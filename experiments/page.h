@@ -24,8 +24,8 @@ typedef struct Page {
 
 /// Reads a command line and runs what it asks for into a report: all items, or the one that an operand (or `all`) or
 /// --only names. All items run at once on as many threads as there are, each with one; then those that run alone, each
-/// with all. The page and what is printed are in the order of the items. Of options `command` may have output, only, quick and threads. Returns EXIT_FAILED where an item
-/// fails or a measure does not hold.
+/// with all. The page and what is printed are in the order of the items. Of options `command` may have output, only,
+/// quick and threads. Returns EXIT_FAILED where an item fails or a measure does not hold.
 ExitCode page_run(const Page *page, const ArgCommand *command, int argc, char **argv);
 
 #endif

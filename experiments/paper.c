@@ -108,7 +108,10 @@ static const ArgCommand paper_command = {
 static const char *const alone[] = {"table2", "adaptive", "statements", NULL};
 
 static const Page page = {
-    items, sizeof items / sizeof *items, "out/paper", "The paper, figure by figure",
+    items,
+    sizeof items / sizeof *items,
+    "out/paper",
+    "The paper, figure by figure",
     "<i>Shrinkage, wrinkling and ablation of burning cloth and paper</i>, its experiments as this program runs them. "
     "Each item says what the paper shows, then what came out here, and holds measures of it against stated bars. The "
     "scenes are in <code>scenes/</code> beside this page; <code>singe run</code> plays them.",

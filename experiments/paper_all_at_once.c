@@ -42,8 +42,8 @@ static SingeResult ranks_print(Lab *lab, const SingeSim *sim, SingeNetwork *all,
     for (uint32_t i = 0; i < view.particle_count; i++) free_count += !(view.particle_flags[i] & SINGE_PINNED);
     report_text(lab->report,
                 "%d x %d cells: %u constraints, %u degrees of freedom: 10 to %.2f. On a sheet without end it is 10 to "
-                "6. The singular values are those of J M<sup>-1/2</sup>; %g of the largest counts as 0.", CELLS, CELLS,
-                springs, 3 * free_count, 10.0 * 3 * free_count / springs, zero_share);
+                "6. The singular values are those of J M<sup>-1/2</sup>; %g of the largest counts as 0.",
+                CELLS, CELLS, springs, 3 * free_count, 10.0 * 3 * free_count / springs, zero_share);
     report_heads(lab->report, "springs|constraints|rank|too many|smallest above 0, over the largest");
     SingeResult result = set_print(lab, all, 0, "all", view.particle_count, &spare);
     for (uint32_t c = 0; c < SINGE_COLOUR_COUNT && !result; c++) {
@@ -104,8 +104,10 @@ static void contenders_run(Lab *lab, const Contender *contenders, double floor) 
     report_row(lab->report, "iterations|%u%s|%u%s|%u%s|%u%s", iterations[0], broken[0] ? ", broke down" : "",
                iterations[1], broken[1] ? ", broke down" : "", iterations[2], broken[2] ? ", broke down" : "",
                iterations[3], broken[3] ? ", broke down" : "");
-    Plot plot = {.title = "All colours in one system, and one after another", .x_label = "projection step",
-                 .y_label = "|C|, m", .log_y = true};
+    Plot plot = {.title = "All colours in one system, and one after another",
+                 .x_label = "projection step",
+                 .y_label = "|C|, m",
+                 .log_y = true};
     for (int i = 0; i < CONTENDERS; i++) {
         plot_add(&plot, (PlotLine){.name = names[i], .colour = inks[i], .y = errors[i], .count = STEPS + 1});
         ends[i] = broken[i] ? 1e9 : errors[i][STEPS] / errors[i][0];

@@ -321,8 +321,10 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
                   "font-size=\"12\">\n");
     for (int s = 0; s < RIVAL_SHOTS; s++) {
         const double left = 20 + 208 * s, k = bend[s];
-        fprintf(file, "<text x=\"%g\" y=\"16\">%.1f s</text>\n<polyline fill=\"none\" stroke=\"#2166ac\" "
-                      "stroke-width=\"3\" points=\"", left, rival_shots[s] / 24.0);
+        fprintf(file,
+                "<text x=\"%g\" y=\"16\">%.1f s</text>\n<polyline fill=\"none\" stroke=\"#2166ac\" "
+                "stroke-width=\"3\" points=\"",
+                left, rival_shots[s] / 24.0);
         for (int i = 0; i < RIVAL_POINTS; i++)
             fprintf(file, "%.1f,%.1f ", left + 84 + scale * profile[s][i][0], 70 - scale * profile[s][i][1]);
         fprintf(file, "\"/>\n<polyline fill=\"none\" stroke=\"#b2182b\" stroke-width=\"3\" stroke-dasharray=\"6 4\" "
@@ -374,7 +376,7 @@ SingeResult paper_rival(Lab *lab, SingeError *error) {
                 hottest, max);
     scale_to_one(difference, RIVAL_LOOKS), scale_to_one(curvature, RIVAL_LOOKS);
     for (int s = 0; s < RIVAL_SHOTS; s++) bend[s] = max * difference[rival_shots[s]];
-    rival_draw(report_drawing(lab->report), (const double (*)[RIVAL_POINTS][2])profiles, bend);
+    rival_draw(report_drawing(lab->report), (const double(*)[RIVAL_POINTS][2])profiles, bend);
     Plot plot = {.title = "Curl while it is heated and cools", .x_label = "s", .y_label = "share of the largest"};
     plot_add(&plot, (PlotLine){"by temperature", "#b2182b", time, difference, RIVAL_LOOKS, false, true});
     plot_add(&plot, (PlotLine){"by shrinkage (here)", "#2166ac", time, curvature, RIVAL_LOOKS, false, false});

@@ -169,7 +169,9 @@ static void shell_measure(const SingeView *view, int n, double *sag, double *ben
     const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
     double border = 0, slope = 0, count = 0;
     for (uint32_t i = 1; i < last; i++) {
-        const uint32_t pairs[4][2] = {{i, i + row}, {i + row * last, i + row * (last - 1)}, {i * row, i * row + 1},
+        const uint32_t pairs[4][2] = {{i, i + row},
+                                      {i + row * last, i + row * (last - 1)},
+                                      {i * row, i * row + 1},
                                       {i * row + last, i * row + last - 1}};
         for (int k = 0; k < 4; k++, count++) {
             const float *p = view->position[pairs[k][0]], *q = view->position[pairs[k][1]];

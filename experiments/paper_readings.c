@@ -61,7 +61,7 @@ static SingeResult steps_taken(SingeSolverMethod method, int max, int *steps, Si
 /// Springs of a colour that share an end with one of the same colour, at most, and that one itself.
 static int row_length(const SingeView *view) {
     int max = 0;
-    const uint32_t (*s)[2] = view->springs[SINGE_BLUE];
+    const uint32_t(*s)[2] = view->springs[SINGE_BLUE];
     for (uint32_t i = 0; i < view->spring_count[SINGE_BLUE]; i++) {
         int count = 0;
         for (uint32_t j = 0; j < view->spring_count[SINGE_BLUE]; j++)
@@ -91,7 +91,8 @@ static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
     const double printed = mass_left(-1), read = mass_left(1);
     report_row(lab->report,
                "eq 1|+ eta dm, where dm is negative|- eta dm: burning heats|as printed a fire puts itself out with "
-               "%.0f %% of its mass left; ours goes to m_min, %.0f %%", 100 * printed, 100 * read);
+               "%.0f %% of its mass left; ours goes to m_min, %.0f %%",
+               100 * printed, 100 * read);
     report_row(lab->report, "eq 1, text|\"the ratio of heat to mass, mu\"|eta; mu is eq 4's rate|-");
     report_row(lab->report,
                "eq 1|no losses|convection and radiation|without them the front is at %.0f C, with them at %.0f C",
@@ -104,7 +105,8 @@ static SingeResult readings_of_heat(Lab *lab, SingeError *error) {
                "eq 3|taken for nabla^2|used only where asked for|on squares it is half of nabla^2 (singe validate)");
     report_row(lab->report,
                "eq 4|a straight line to m_min|slower near the end, p = 0.5|the last tenth above m_min takes 10 %% of "
-               "the time by the line, %.0f %% by ours: ash is seen before it goes", 100 * sqrt(0.1));
+               "the time by the line, %.0f %% by ours: ash is seen before it goes",
+               100 * sqrt(0.1));
     report_bar(lab->report, &(ReportBar){"eq1_printed", "eq 1 as printed: share of mass at which fire puts itself out",
                                          printed, 0.9, 1, read, "as read"});
     report_bar(lab->report,
@@ -138,18 +140,21 @@ static SingeResult readings_of_motion(Lab *lab, SingeError *error) {
     report_heads(lab->report, "where|the paper|our reading|the other reading");
     report_row(lab->report,
                "eq 6|l_rest|l_init, which is the same length|compounded, a spring of v = 0.9 is at %.0e of its length "
-               "after 100 steps", pow(0.9, 100));
+               "after 100 steps",
+               pow(0.9, 100));
     report_row(lab->report,
                "section 6|m'_1 = m_0 - m_loss|m_1 - m_loss|m'_0 = m'_1 always: no spring is ever partly burnt; two of "
                "Fig 5's five are");
     report_row(lab->report, "eq 9|x + v|x + h v|to the letter the sheet is lost after %d steps of 200", literal);
     report_row(lab->report,
                "eq 16|J J^T|J M^-1 J^T|the centre of 1 and 9 kg moves by %.0f %% of what their spring closes, with M "
-               "by %.0e", 100 * without, with_mass);
+               "by %.0e",
+               100 * without, with_mass);
     report_row(lab->report,
                "section 7.2|the displacement is divided by w|eq 19: C is multiplied|a spring of w = 0.1 that is 20 %% "
                "too long: after 7 projections off by %.1e if divided, by %.2f if multiplied, which is softer, as in "
-               "Fig 10", divided, multiplied);
+               "Fig 10",
+               divided, multiplied);
     report_row(lab->report,
                "Table 2|10,000 springs in the last row|100,000|7412.92 ms at 0.074 ms each are %.0f springs",
                7412.92 / 0.074);

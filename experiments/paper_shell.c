@@ -172,7 +172,8 @@ SingeResult paper_fig2(Lab *lab, SingeError *error) {
     report_text(lab->report,
                 "A strip of %g mm thickness in cells of %g mm, seen from the side: at rest, and with its blue layer 5 "
                 "and 10 %% shorter. Red springs take half of it, the mean of their ends, which makes the layers part a "
-                "little; the shell's value knows that, the beam's does not.", 1e3 * curl_thickness, 1e3 * curl_cell);
+                "little; the shell's value knows that, the beam's does not.",
+                1e3 * curl_thickness, 1e3 * curl_cell);
     report_heads(lab->report, "shrunk by %|curvature 1/m|shell, exact|beam, e/((1-e)t)");
     for (int i = 0; i < CURL_CASES; i++)
         report_row(lab->report, "%.0f|%.2f|%.2f|%.2f", percent[i], measured[i], exact[i], beam[i]);
@@ -243,14 +244,15 @@ static void state_draw(FILE *file, const double *ratio, const double *cut) {
             fprintf(file,
                     "<line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#bbb\" stroke-width=\"2\" "
                     "stroke-dasharray=\"3 3\"/><line x1=\"%g\" x2=\"%g\" y1=\"120\" y2=\"%.1f\" stroke=\"#1f77b4\" "
-                    "stroke-width=\"4\"/>\n", x, x, 120 - length, x, x, 120 - length * end);
+                    "stroke-width=\"4\"/>\n",
+                    x, x, 120 - length, x, x, 120 - length * end);
         for (int k = 0; k < 2; k++)
-            fprintf(file, "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "
-                          "y=\"%.1f\">"
-                          "%.2f</text>\n", x, 120 - k * (ratio[i] < 0 ? 100 : length),
-                    state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff", x + 11,
-                    124 - k * (ratio[i] < 0 ? 100 : length),
-                    state_mass[i][k]);
+            fprintf(file,
+                    "<circle cx=\"%g\" cy=\"%.1f\" r=\"6\" fill=\"%s\" stroke=\"#333\"/><text x=\"%g\" "
+                    "y=\"%.1f\">"
+                    "%.2f</text>\n",
+                    x, 120 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k] >= state_loss ? "#d8a05a" : "#fff",
+                    x + 11, 124 - k * (ratio[i] < 0 ? 100 : length), state_mass[i][k]);
         fprintf(file, "<text x=\"%g\" y=\"146\" text-anchor=\"middle\">(%c)</text>\n", x, 'a' + i);
     }
     fprintf(file, "</svg>\n");
@@ -331,9 +333,10 @@ static void march_draw(FILE *file, const SingeSurface *surface, double cell, con
     const double scale = 56 / cell;
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
     for (int i = 0; i < count; i++) // which case each triangle is
-        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
-                      "stroke=\"#bbb\"/>\n", 12 + scale * middles[i][0],
-                348 - scale * middles[i][1], fills[(int)middles[i][2]]);
+        fprintf(file,
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
+                "stroke=\"#bbb\"/>\n",
+                12 + scale * middles[i][0], 348 - scale * middles[i][1], fills[(int)middles[i][2]]);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
         for (int k = 0; k < 3; k++) {
@@ -366,7 +369,8 @@ static void march_cell(March *march, const SingeView *view, const float *mass, u
         double *middle = march->middles[march->count++];
         for (int d = 0; d < 2; d++)
             middle[d] = ((double)view->rest_position[a][d] + (double)view->rest_position[b][d] +
-                         (double)view->rest_position[m][d]) / 3;
+                         (double)view->rest_position[m][d]) /
+                        3;
         middle[2] = inside;
     }
 }
@@ -379,7 +383,8 @@ static double drawn_area(const SingeSurface *surface) {
         const float *q = surface->rest_position[surface->triangles[t][1]];
         const float *r = surface->rest_position[surface->triangles[t][2]];
         area += fabs(((double)q[0] - (double)p[0]) * ((double)r[1] - (double)p[1]) -
-                     ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) / 2;
+                     ((double)q[1] - (double)p[1]) * ((double)r[0] - (double)p[0])) /
+                2;
     }
     return area;
 }
@@ -404,7 +409,8 @@ static void march_report(Lab *lab, const SingeSurface *surface, const March *mar
     march_draw(report_drawing(lab->report), surface, side, march->middles, march->count);
     report_text(lab->report,
                 "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
-                "tell the case of each triangle.", MARCH_CELLS, MARCH_CELLS);
+                "tell the case of each triangle.",
+                MARCH_CELLS, MARCH_CELLS);
     report_heads(lab->report, "corners left|drawn as|triangles");
     for (int k = 3; k >= 0; k--) report_row(lab->report, "%d|%s|%d", k, shapes[k], march->cases[k]);
     report_bar(lab->report, &(ReportBar){"cases", "triangles of the rarest case", march_fewest(march), 1, INFINITY,

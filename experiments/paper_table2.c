@@ -8,8 +8,8 @@
 #include "experiments/paper_states.h"
 
 typedef struct Table2Row {
-    int cells;             ///< a side: 10 springs each
-    double early, full;    ///< ms, the paper's columns b and c
+    int cells;          ///< a side: 10 springs each
+    double early, full; ///< ms, the paper's columns b and c
 } Table2Row;
 
 static const Table2Row table2[] = {
@@ -21,9 +21,9 @@ enum { ROW_COUNT = sizeof table2 / sizeof *table2, QUICK_COUNT = 3 };
 enum { WARM_STEPS = 25, TIMED_STEPS = 25, LARGE_CELLS = 80, LARGE_STEPS = 10 }; ///< large sheets: fewer of either
 
 typedef struct Cost {
-    double ms;           ///< median of the projection of a step
-    double iterations;   ///< of the conjugate gradients, a step
-    double strain;       ///< mean over the mesh's edges, at the end
+    double ms;         ///< median of the projection of a step
+    double iterations; ///< of the conjugate gradients, a step
+    double strain;     ///< mean over the mesh's edges, at the end
 } Cost;
 
 static SingeResult cost_measure(int cells, const SingeSolverDef *solver, int threads, Cost *cost, SingeError *error) {

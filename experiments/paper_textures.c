@@ -92,12 +92,9 @@ SingeResult paper_crossing(Lab *lab, SingeError *error) {
     report_pictures(lab->report, RUNS);
     for (int i = 0; i < RUNS && !result; i++) {
         Play play;
-        const char *laid[] = {"contact=no",
-                              "tearing=no",
-                              sets[i],
-                              "sheets.0.material.mass_loss=10 %",
-                              "sheets.0.grid.cells=[30, 42]",
-                              NULL};
+        const char *laid[] = {
+            "contact=no", "tearing=no", sets[i], "sheets.0.material.mass_loss=10 %", "sheets.0.grid.cells=[30, 42]",
+            NULL};
         result = play_open(&play, lab, "fig1.yaml", laid, error);
         for (int k = 0; k < 3 && !result; k++) {
             result = play_until(&play, 1.2 + 0.4 * k, error);

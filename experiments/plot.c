@@ -58,12 +58,14 @@ static void draw_ticks(FILE *file, const Axis *axis, bool vertical) {
          at += axis->step) {
         double value = axis->log ? pow(10, at) : fabs(at) < 1e-9 * axis->step ? 0 : at, p = pixel(axis, value);
         if (vertical)
-            fprintf(file, "<line x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#e2e2e2\"/>\n"
-                          "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n",
+            fprintf(file,
+                    "<line x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#e2e2e2\"/>\n"
+                    "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n",
                     LEFT, WIDTH - RIGHT, p, p, LEFT - 6, p + 4, value);
         else
-            fprintf(file, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#eee\"/>\n"
-                          "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.4g</text>\n",
+            fprintf(file,
+                    "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#eee\"/>\n"
+                    "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.4g</text>\n",
                     p, p, TOP, HEIGHT - BOTTOM, p, HEIGHT - BOTTOM + 16, value);
     }
 }

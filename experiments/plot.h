@@ -8,10 +8,10 @@
 #include "singe/base.h"
 
 typedef struct PlotLine {
-    const char *name, *colour;  ///< of SVG
-    const double *x, *y;        ///< [count]; x NULL: 0, 1, 2, ...; values that an axis cannot show are left out
+    const char *name, *colour; ///< of SVG
+    const double *x, *y;       ///< [count]; x NULL: 0, 1, 2, ...; values that an axis cannot show are left out
     int count;
-    bool dots, dashed;          ///< marks at the values alone; a broken line
+    bool dots, dashed; ///< marks at the values alone; a broken line
 } PlotLine;
 
 enum { PLOT_LINES_MAX = 12 };

@@ -19,9 +19,10 @@ typedef struct Draft {
 
 /// What the end of the body must close.
 typedef enum Block { BLOCK_NONE, BLOCK_TABLE, BLOCK_PICTURES, BLOCK_MEASURES } Block;
-static const char *const block_ends[] = {
-    [BLOCK_NONE] = "", [BLOCK_TABLE] = "</table></div>\n", [BLOCK_PICTURES] = "</div>\n",
-    [BLOCK_MEASURES] = "</table></div>\n"};
+static const char *const block_ends[] = {[BLOCK_NONE] = "",
+                                         [BLOCK_TABLE] = "</table></div>\n",
+                                         [BLOCK_PICTURES] = "</div>\n",
+                                         [BLOCK_MEASURES] = "</table></div>\n"};
 
 typedef struct Taken {
     char *item, *name;
@@ -33,8 +34,8 @@ struct ReportPage {
     char *folder;
     Draft text, index, csv, json;
     int measures, failed;
-    Taken *taken;         ///< [measures]
-    SingeResult result;   ///< the first failure
+    Taken *taken;       ///< [measures]
+    SingeResult result; ///< the first failure
     SingeError error;
 };
 
@@ -44,8 +45,8 @@ struct Report {
     Block block;
     char *name, *heading;
     int pictures, measures, failed;
-    Taken *taken;         ///< [measures]
-    SingeResult result;   ///< the first failure
+    Taken *taken;       ///< [measures]
+    SingeResult result; ///< the first failure
     SingeError error;
 };
 
@@ -199,8 +200,8 @@ void report_picture(Report *report, const char *caption, int width, int height, 
     if (result && !report->result) report->result = result, report->error = error;
     fprintf(report->body.file,
             "<figure><img src=\"%s\" alt=\"%s\" width=\"%d\" "
-            "height=\"%d\"><figcaption>%s</figcaption></figure>\n", name,
-            caption, width, height, caption);
+            "height=\"%d\"><figcaption>%s</figcaption></figure>\n",
+            name, caption, width, height, caption);
     free(name), free(path);
 }
 
@@ -351,7 +352,8 @@ SingeResult report_page_close(ReportPage *page, int *failed, SingeError *error) 
     *failed = page->failed;
     fprintf(page->text.file, "</body></html>\n");
     fflush(page->text.file);
-    fprintf(page->index.file, "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
+    fprintf(page->index.file,
+            "</table></div>\n<p>%d of %d measures hold. As data: <a href=\"measures.csv\">"
             "measures.csv</a>, <a href=\"measures.json\">measures.json</a>.</p>\n",
             page->measures - page->failed, page->measures);
     fprintf(page->json.file, "\n ],\n \"failed\": %d}\n", page->failed);

@@ -64,9 +64,11 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
         report_heads(lab->report,
                      "material|g/m2|direction|cell mm|step ms|mm/s|sources|change %|hottest C|basis|finding");
         for (int row = 0; row < table.row_count; row++) front_row(lab, &table, row, &worst);
-        report_text(lab->report, "One grammage of one material is calibrated; the others are predictions. The "
-                                 "sources' ranges "
-                    "are in docs/materials.md%s.", lab->quick ? "; strips with gas are left out here" : "");
+        report_text(lab->report,
+                    "One grammage of one material is calibrated; the others are predictions. The "
+                    "sources' ranges "
+                    "are in docs/materials.md%s.",
+                    lab->quick ? "; strips with gas are left out here" : "");
         front_measures(lab, &table, worst);
     }
     table_free(&table);
@@ -77,7 +79,7 @@ SingeResult validate_front(Lab *lab, SingeError *error) {
 // ---- PMMA
 
 enum { SHEETS = 6 };
-static const double bass_um[SHEETS] = {25, 45, 77, 100, 200, 402}; // thickness
+static const double bass_um[SHEETS] = {25, 45, 77, 100, 200, 402};             // thickness
 static const double bass_mm_s[SHEETS] = {8.96, 6.52, 3.88, 2.06, 0.88, 0.435}; // downward, BASS-II
 
 /// Density and specific heat of PMMA, its temperature of vaporising, the flame's, the gas' conductivity at the former.
@@ -121,8 +123,8 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
                    bass_mm_s[i], formula[i], ours[i], ours[i] / bass_mm_s[i]);
         ratio += log(ours[i] / bass_mm_s[i]) / SHEETS, spread = fmax(spread, fabs(log(ours[i] / bass_mm_s[i])));
     }
-    Plot plot = {.title = "PMMA sheets, downward", .x_label = "thickness, um", .y_label = "mm/s", .log_x = true,
-                 .log_y = true};
+    Plot plot = {
+        .title = "PMMA sheets, downward", .x_label = "thickness, um", .y_label = "mm/s", .log_x = true, .log_y = true};
     plot_add(&plot, (PlotLine){"BASS-II", "#111", bass_um, bass_mm_s, SHEETS, true, false});
     plot_add(&plot, (PlotLine){"de Ris", "#999", bass_um, formula, SHEETS, false, true});
     plot_add(&plot, (PlotLine){"here", "#b2182b", bass_um, ours, SHEETS, false, false});
@@ -132,8 +134,8 @@ SingeResult validate_pmma(Lab *lab, SingeError *error) {
                 "A prediction: density, specific heat, temperature of vaporising (670 K) and heat of combustion are "
                 "those of PMMA, and what stands for the flame is what office paper was calibrated with. Measured, the "
                 "speed goes with the thickness to the power %.2f; theory and this model have -1, and so are too fast "
-                "where it is thick. de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.", measured,
-                gas_k, pmma_flame);
+                "where it is thick. de Ris with gas of %.2g W/(m K), air at 670 K, and a flame of %.0f K.",
+                measured, gas_k, pmma_flame);
     report_measure(lab->report, "power", "speed goes with the thickness to the power; by theory -1", here, -1.05,
                    -0.95);
     report_measure(lab->report, "power_measured", "the same, less what was measured", here - measured, -0.25, 0.25);

@@ -13,8 +13,10 @@ static LabGrid heat_grid(int across, int along, float cell, SingeHeatOperator op
     grid.material.heat_operator = operator;
     grid.material.diffusivity = singe_param((float)alpha);
     grid.material.ignition_temperature = singe_param(5000);
-    grid.material.temperature = (SingeParam){.value = (float)warm_mean, .to = (float)(warm_mean + amplitude),
-                                             .field = SINGE_FIELD_ATTRIBUTE, .attribute = "field"};
+    grid.material.temperature = (SingeParam){.value = (float)warm_mean,
+                                             .to = (float)(warm_mean + amplitude),
+                                             .field = SINGE_FIELD_ATTRIBUTE,
+                                             .attribute = "field"};
     grid.solver.substeps = 1; // nothing moves
     return grid;
 }
@@ -71,11 +73,14 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
             min[k] = fmin(min[k], order[k][i]);
         }
         report_row(lab->report, "%.2f|%.2e|%.2f|%.0f|%.2e|%.2f", size[0][i], off[0][i], order[0][i], size[1][i],
-                   off[1][i],                   order[1][i]);
+                   off[1][i], order[1][i]);
     }
-    Plot plot = {.title = "Error of the mode's amplitude after 4 s", .x_label = "cells, mm", .y_label = "relative "
-                                        "error",
-                 .log_x = true, .log_y = true};
+    Plot plot = {.title = "Error of the mode's amplitude after 4 s",
+                 .x_label = "cells, mm",
+                 .y_label = "relative "
+                            "error",
+                 .log_x = true,
+                 .log_y = true};
     double second[CASES];
     for (int i = 0; i < count; i++) second[i] = off[0][0] * pow(size[0][i] / size[0][0], 2);
     plot_add(&plot, (PlotLine){"second order", "#999", size[0], second, count, false, true});
@@ -142,7 +147,8 @@ static double umbrella_factor(double dx, double dy) {
 }
 
 SingeResult validate_umbrella(Lab *lab, SingeError *error) {
-    static const MeshCase meshes[] = {{"squares", {60, 60}, {.12f, .12f}, 0}, {"2 : 1", {36, 72}, {.144f, .144f}, 0},
+    static const MeshCase meshes[] = {{"squares", {60, 60}, {.12f, .12f}, 0},
+                                      {"2 : 1", {36, 72}, {.144f, .144f}, 0},
                                       {"squares, jitter 0.3", {60, 60}, {.12f, .12f}, 0.3f}};
     enum { CASES = sizeof meshes / sizeof *meshes };
     double surface[CASES][2], umbrella[CASES][2], off = 0;

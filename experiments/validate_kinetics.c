@@ -12,7 +12,9 @@
 
 #include "experiments/validate.h"
 
-typedef struct Kinetics { double cellulose, char_mass, ash; } Kinetics;
+typedef struct Kinetics {
+    double cellulose, char_mass, ash;
+} Kinetics;
 
 static Kinetics kinetics_rate(const Kinetics *x, double temperature) {
     const double r = 8.314462618, at = 1 / (r * temperature);
@@ -26,7 +28,9 @@ static Kinetics plus(const Kinetics *x, const Kinetics *rate, double h) {
     return (Kinetics){x->cellulose + h * rate->cellulose, x->char_mass + h * rate->char_mass, x->ash + h * rate->ash};
 }
 
-typedef struct KineticsRun { double peak, peak_rate, residue, half; } KineticsRun;
+typedef struct KineticsRun {
+    double peak, peak_rate, residue, half;
+} KineticsRun;
 
 /// The classical Runge-Kutta method in steps of so many kelvin, from 300 K to 1000 K. Peak and half by temperature.
 static KineticsRun kinetics_run(double kelvin_per_minute, double step, double *rate_at, int looks) {
@@ -77,7 +81,9 @@ static KineticsRun one_reaction(double kelvin_per_minute, double step) {
 }
 
 /// A furnace: everything is as hot as it says.
-typedef struct Furnace { double pace, rate; } Furnace;
+typedef struct Furnace {
+    double pace, rate;
+} Furnace;
 
 static void furnace_flux(void *context, const SingeView *view, float *flux, float *conductance,
                          float *conductance_temperature) {
@@ -155,7 +161,8 @@ SingeResult validate_kinetics(Lab *lab, SingeError *error) {
                 "Three reactions: Kashiwagi and Nambu's, integrated here by themselves. The simulation has one, the "
                 "oxidation of cellulose, and keeps its char, which in the three glows away in the end. It is a choice "
                 "of the material (<code>pre_exponential</code>, <code>activation_energy</code>); by default it burns "
-                "by eq 4, from %.0f C on.", ignition - 273.15);
+                "by eq 4, from %.0f C on.",
+                ignition - 273.15);
     report_measure(lab->report, "peak", "simulated, a kelvin a step: K of the peak from the fine reference", off, 0, 2);
     report_measure(lab->report, "residue", "the same: difference of the residue", residue, 0, 1e-3);
     report_measure(lab->report, "three", "simulated: K of the peak from that of the three reactions", apart, 0, 10);

@@ -64,7 +64,7 @@ static SingeResult beam_sag(Lab *lab, const Beam *beam, double *sag, SingeError 
 }
 
 SingeResult validate_beam(Lab *lab, SingeError *error) {
-    static const Beam beams[] = {{2e-3, 4e-3, 0, 5e-3f}, {3e-3, 9e-3, 0, 5e-3f}, {4e-3, 16e-3, 0, 5e-3f},
+    static const Beam beams[] = {{2e-3, 4e-3, 0, 5e-3f}, {3e-3, 9e-3, 0, 5e-3f},   {4e-3, 16e-3, 0, 5e-3f},
                                  {4e-3, 8e-3, 0, 5e-3f}, {3e-3, 9e-3, 0.4, 5e-3f}, {3e-3, 9e-3, 0, 2.5e-3f}};
     enum { CASES = sizeof beams / sizeof *beams };
     double worst = 0;
@@ -77,7 +77,7 @@ SingeResult validate_beam(Lab *lab, SingeError *error) {
         result = beam_sag(lab, b, &sag, error);
         if (result) return result;
         report_row(lab->report, "%.0f|%.0f|%g|%.1f|%.2g|%.2f|%.2f|%.3f", 1e3 * b->thickness, 1e3 * b->compliance,
-                   b->shear,                   1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
+                   b->shear, 1e3 * (double)b->cell, d, 1e3 * sag, 1e3 * plate, sag / plate);
         worst = fmax(worst, fabs(sag / plate - 1));
     }
     report_text(lab->report,
@@ -142,7 +142,9 @@ static SingeResult disc_bend(Lab *lab, double shrink, int cells, double principa
 }
 
 /// The stiffness of a layer, N/m: along the grid, across to it, in shear.
-typedef struct Stiffness { double along, coupled, shear; } Stiffness;
+typedef struct Stiffness {
+    double along, coupled, shear;
+} Stiffness;
 
 /// nu of a pull along the diagonal of a square lattice.
 static double diagonal_poisson(const Stiffness *c) {
@@ -176,7 +178,7 @@ static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *e
     if (!result) {
         SingeView view = singe_sim_view(sim);
         const int mid = ACROSS / 2 * ALONG + ALONG / 2;
-        const float (*x)[4] = view.position + view.vertex_count, (*r)[4] = view.rest_position + view.vertex_count;
+        const float(*x)[4] = view.position + view.vertex_count, (*r)[4] = view.rest_position + view.vertex_count;
         double g[2][2]; // of the centres' displacement
         for (int k = 0; k < 2; k++)
             for (int d = 0; d < 2; d++) {
@@ -217,11 +219,11 @@ SingeResult validate_disc(Lab *lab, SingeError *error) {
                 "no isotropic plate: when it bends only the springs of the layer of centres give, which run along the "
                 "grid and do not resist shear. Pulled along the grid that layer has %.2f N/m (1/c is %.2f) and nu = "
                 "%.3f; sheared, %.3f N/m; so pulled along its diagonal, nu = %.3f. The disc rolls up where that costs "
-                "least, at 45° to the grid, and has (1 + nu)/2 = %.3f to show.", c.along,
-                1 / (double)singe_default_material().compliance[SINGE_GREEN].value, c.coupled / c.along, c.shear,
-                diagonal, (1 + diagonal) / 2);
-    report_measure(lab->report, "stiffness", "stiffness along the grid times the compliance", c.along *
-                   (double)singe_default_material().compliance[SINGE_GREEN].value, 0.9, 1.1);
+                "least, at 45° to the grid, and has (1 + nu)/2 = %.3f to show.",
+                c.along, 1 / (double)singe_default_material().compliance[SINGE_GREEN].value, c.coupled / c.along,
+                c.shear, diagonal, (1 + diagonal) / 2);
+    report_measure(lab->report, "stiffness", "stiffness along the grid times the compliance",
+                   c.along * (double)singe_default_material().compliance[SINGE_GREEN].value, 0.9, 1.1);
     report_measure(lab->report, "poisson_grid", "nu along the grid, by a pull test", c.coupled / c.along, -0.1, 0.1);
     report_measure(lab->report, "poisson_diagonal", "nu along the diagonal, by pull and shear tests", diagonal, 0.5, 1);
     report_measure(lab->report, "direction", "degrees from the grid at which the disc rolls up", angle, 40, 45);

@@ -28,11 +28,11 @@ struct Walk {
     const char *name;
     SingeError *error;
     Visit *visit;
-    MeshCounts counts;  ///< so far
+    MeshCounts counts; ///< so far
     uint64_t max;      ///< bytes of the answer
     int depth;
     IsolateAnswer *answer;
-    size_t held;        ///< bytes of `buffer` in use
+    size_t held; ///< bytes of `buffer` in use
     uint8_t buffer[1 << 16];
 };
 
@@ -210,7 +210,10 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
     if (!scene || !scene->mRootNode) return refuse_import(source, error);
     if (bad_index)
         return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: an index is out of range", short_name(source->name));
-    Walk walk = {.scene = scene, .name = source->name, .error = error, .answer = answer,
+    Walk walk = {.scene = scene,
+                 .name = source->name,
+                 .error = error,
+                 .answer = answer,
                  .max = MESH_ANSWER_BASE + MESH_ANSWER_TIMES * ((uint64_t)source->size + source->beside_size)};
     return put_scene(&walk);
 }
@@ -221,8 +224,8 @@ static SingeResult read_in_child(void *context, IsolateAnswer *answer, SingeErro
 static SingeResult check_kind(const char *name, const uint8_t *bytes, size_t size, SingeError *error) {
     static const struct {
         const char *ending, *begins;
-    } kinds[] = {{".gltf", "{"},    {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"}, {".fbx", "FBX"},
-                 {".dae", "<"},     {".x3d", "<"},    {".3ds", "MM"}};
+    } kinds[] = {{".gltf", "{"},  {".glb", "glTF"}, {".fbx", "Kaydara FBX"}, {".fbx", ";"},
+                 {".fbx", "FBX"}, {".dae", "<"},    {".x3d", "<"},           {".3ds", "MM"}};
     const uint8_t *at = bytes, *end = bytes + size;
     if (end - at >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
     while (at < end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) at++;

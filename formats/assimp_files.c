@@ -77,8 +77,8 @@ static struct aiFile *source_open(struct aiFileIO *io, const char *name, const c
         free(opened);
         return NULL;
     }
-    *file = (struct aiFile){opened_read, opened_write, opened_tell, opened_size, opened_seek, opened_flush,
-                            (void *)opened};
+    *file =
+        (struct aiFile){opened_read, opened_write, opened_tell, opened_size, opened_seek, opened_flush, (void *)opened};
     return file;
 }
 
@@ -90,4 +90,6 @@ static void source_close(struct aiFileIO *io, struct aiFile *file) {
     free(file);
 }
 
-struct aiFileIO assimp_files(Source *source) { return (struct aiFileIO){source_open, source_close, (void *)source}; }
+struct aiFileIO assimp_files(Source *source) {
+    return (struct aiFileIO){source_open, source_close, (void *)source};
+}

@@ -38,9 +38,13 @@ static float scorch(float peak, float burnt) {
 }
 
 static void brown(float s, float colour[3]) {
-    static const float stops[][4] = {
-        {0, 1, 1, 1}, {0.14f, 0.965f, 0.90f, 0.74f}, {0.32f, 0.85f, 0.655f, 0.36f}, {0.50f, 0.55f, 0.315f, 0.105f},
-        {0.69f, 0.225f, 0.098f, 0.032f}, {0.86f, 0.062f, 0.031f, 0.018f}, {1, 0.020f, 0.016f, 0.014f}};
+    static const float stops[][4] = {{0, 1, 1, 1},
+                                     {0.14f, 0.965f, 0.90f, 0.74f},
+                                     {0.32f, 0.85f, 0.655f, 0.36f},
+                                     {0.50f, 0.55f, 0.315f, 0.105f},
+                                     {0.69f, 0.225f, 0.098f, 0.032f},
+                                     {0.86f, 0.062f, 0.031f, 0.018f},
+                                     {1, 0.020f, 0.016f, 0.014f}};
     int i = 1;
     while (i < 6 && s > stops[i][0]) i++;
     const float f = (s - stops[i - 1][0]) / (stops[i][0] - stops[i - 1][0]);

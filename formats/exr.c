@@ -42,11 +42,10 @@ static exr_pixel_type_t exr_type(ExrKind kind) {
 static exr_result_t exr_describe(exr_context_t file, int width, int height, const ExrChannel *channels, int count) {
     int part;
     exr_result_t result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
-    if (!result)
-        result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
+    if (!result) result = exr_initialize_required_attr_simple(file, part, width, height, EXR_COMPRESSION_ZIP);
     for (int i = 0; i < count && !result; i++)
-        result = exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1,
-                                 1);
+        result =
+            exr_add_channel(file, part, channels[i].name, exr_type(channels[i].kind), EXR_PERCEPTUALLY_LINEAR, 1, 1);
     return result ? result : exr_write_header(file);
 }
 
@@ -74,8 +73,8 @@ static exr_result_t exr_encode(exr_context_t file, int width, int height, const 
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(file, 0, y, &chunk);
         if (!result)
-            result = y ? exr_encoding_update(file, 0, &chunk, &encoder)
-                       : exr_encoding_initialize(file, 0, &chunk, &encoder);
+            result =
+                y ? exr_encoding_update(file, 0, &chunk, &encoder) : exr_encoding_initialize(file, 0, &chunk, &encoder);
         if (result) break;
         exr_aim(&encoder, channels, count, width, y);
         if (y == 0) result = exr_encoding_choose_default_routines(file, 0, &encoder);

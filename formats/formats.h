@@ -18,7 +18,7 @@ typedef struct Bytes {
 SINGE_NODISCARD SingeResult file_read(const char *path, SingeAllocator allocator, Bytes *bytes, SingeError *error);
 /// The same of a file that has at most so many bytes; SINGE_ERROR_LIMIT where it is larger, before it is read.
 SINGE_NODISCARD SingeResult file_read_max(const char *path, size_t max, SingeAllocator allocator, Bytes *bytes,
-                                           SingeError *error);
+                                          SingeError *error);
 /// The first bytes of a regular file, `max` at most; returns how many, 0 where it cannot be read.
 size_t file_read_head(const char *path, uint8_t *bytes, size_t max);
 void bytes_free(Bytes *bytes);
@@ -43,11 +43,11 @@ void file_discard(char *draft);
 /// by mesh_make (mesh/mesh.h).
 typedef struct Polygons {
     uint32_t vertex_count, face_count, corner_count, attribute_count;
-    float *positions;  ///< [3 * vertex_count], file units
-    uint32_t *first;   ///< [face_count + 1] where a face's corners begin
-    uint32_t *corners; ///< [corner_count] vertices
-    float *uv;         ///< [2 * corner_count], of each corner, or NULL
-    uint32_t *lines;   ///< [face_count] the file's line of each, from 1 (OBJ, OFF), or NULL
+    float *positions;           ///< [3 * vertex_count], file units
+    uint32_t *first;            ///< [face_count + 1] where a face's corners begin
+    uint32_t *corners;          ///< [corner_count] vertices
+    float *uv;                  ///< [2 * corner_count], of each corner, or NULL
+    uint32_t *lines;            ///< [face_count] the file's line of each, from 1 (OBJ, OFF), or NULL
     SingeAttribute *attributes; ///< scalar float properties other than position, normal, uv, by name (PLY)
     SingeAllocator allocator;
 } Polygons;
@@ -91,7 +91,8 @@ typedef struct Image {
 /// Reads PNG or JPEG, distinguished by their first bytes; alpha is laid over white. At most 16384 × 16384.
 SINGE_NODISCARD SingeResult image_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
                                        Image *image, SingeError *error);
-/// Width and height that a PNG or JPEG file states in its first 64 KB; false where it cannot be known without reading it.
+/// Width and height that a PNG or JPEG file states in its first 64 KB; false where it cannot be known without reading
+/// it.
 bool image_size(const char *path, int *width, int *height);
 /// Writes an 8-bit RGB PNG file, whole or not at all.
 SINGE_NODISCARD SingeResult png_write(const char *path, int width, int height, const uint8_t *rgb, SingeError *error);
@@ -101,7 +102,7 @@ void image_free(Image *image);
 typedef enum ExrKind { EXR_KIND_HALF, EXR_KIND_FLOAT, EXR_KIND_ID } ExrKind;
 
 typedef struct ExrChannel {
-    const char *name;   ///< "R", "normal.X"
+    const char *name; ///< "R", "normal.X"
     ExrKind kind;
     const void *values; ///< of the first pixel, rows from the top
     int stride;         ///< values (of 4 bytes) from pixel to pixel

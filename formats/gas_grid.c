@@ -60,7 +60,7 @@ SingeResult gas_make(Gas *gas, const char *name, float coolest, SingeError *erro
     memset(gas->flame_share, 0, count * sizeof *gas->flame_share);
     memset(gas->velocity, 0, count * sizeof *gas->velocity);
     gas->view.temperature = gas->temperature, gas->view.smoke = gas->smoke, gas->view.flame = gas->flame;
-    gas->view.velocity = (const float (*)[3])gas->velocity;
+    gas->view.velocity = (const float(*)[3])gas->velocity;
     return SINGE_OK;
 }
 

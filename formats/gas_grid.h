@@ -9,9 +9,9 @@
 enum { GAS_BLOCK = 8 }; ///< cells along a block's side: an OpenVDB leaf
 
 // what a cell holds when it is worth a look: less than this is not to be seen
-#define GAS_SMOKE_MIN 1e-7f ///< kg/m3; at 8.7 m2/g half a metre of it hides 0.04 %
+#define GAS_SMOKE_MIN 1e-7f  ///< kg/m3; at 8.7 m2/g half a metre of it hides 0.04 %
 #define GAS_FLAME_MIN 100.0f ///< W/m3; flames have about 1e6
-#define GAS_WARM_MIN 2.0f   ///< K above the coolest cell
+#define GAS_WARM_MIN 2.0f    ///< K above the coolest cell
 
 /// The box of cells [low, high) of a block, cut to the gas.
 static inline void gas_block_box(const SingeGas *gas, const uint32_t block[3], uint32_t low[3], uint32_t high[3]) {
@@ -25,9 +25,7 @@ static inline size_t gas_index(const SingeGas *gas, uint32_t x, uint32_t y, uint
     return x + (size_t)gas->size[0] * (y + (size_t)gas->size[1] * z);
 }
 
-static inline size_t gas_cells(const SingeGas *gas) {
-    return (size_t)gas->size[0] * gas->size[1] * gas->size[2];
-}
+static inline size_t gas_cells(const SingeGas *gas) { return (size_t)gas->size[0] * gas->size[1] * gas->size[2]; }
 
 /// Whether any of the block's cells holds something. `coolest` is the temperature of still air.
 bool gas_block_holds(const SingeGas *gas, const uint32_t block[3], float coolest);

@@ -19,10 +19,12 @@ typedef struct GlbMeshes {
 } GlbMeshes;
 
 static void put_named(GlbMeshes *w, const char *name, size_t begin, uint32_t count, int width, const float *box) {
-    sink_text(&w->file->meshes, "\"%s\":%u,", name, glb_put_accessor(w->file, begin, count, width, GLB_OF_VERTICES, box));
+    sink_text(&w->file->meshes, "\"%s\":%u,", name,
+              glb_put_accessor(w->file, begin, count, width, GLB_OF_VERTICES, box));
 }
 
-static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, float (*values)[3], bool unit, bool box) {
+static void put_vectors(GlbMeshes *w, const SheetPart *part, const char *name, float (*values)[3], bool unit,
+                        bool box) {
     const size_t begin = w->file->data.size;
     float bounds[6] = {0};
     for (uint32_t i = 0; i < part->count; i++) {
@@ -187,7 +189,8 @@ SingeResult glb_write_single(const char *path, const OutputScene *scene, const O
     }
     sink_text(&file.animations, "],\"channels\":[");
     for (uint32_t i = 0; i < file.node_count; i++)
-        sink_text(&file.animations, "%s{\"sampler\":%u,\"target\":{\"node\":%u,\"path\":\"scale\"}}", i ? "," : "", i, i);
+        sink_text(&file.animations, "%s{\"sampler\":%u,\"target\":{\"node\":%u,\"path\":\"scale\"}}", i ? "," : "", i,
+                  i);
     sink_text(&file.animations, "]}]");
     if (!result) result = glb_finish(&file, "", "{}", path, error);
     glb_free(&file);

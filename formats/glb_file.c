@@ -6,8 +6,14 @@
 enum { GLB_FLOAT = 5126, GLB_UINT = 5125, GLB_VERTICES = 34962, GLB_CORNERS = 34963 };
 
 void glb_begin(GlbFile *f, const OutputScene *scene, SingeAllocator a) {
-    *f = (GlbFile){.text.allocator = a, .data.allocator = a, .views.allocator = a, .accessors.allocator = a,
-                   .meshes.allocator = a, .nodes.allocator = a, .animations.allocator = a, .scene = scene};
+    *f = (GlbFile){.text.allocator = a,
+                   .data.allocator = a,
+                   .views.allocator = a,
+                   .accessors.allocator = a,
+                   .meshes.allocator = a,
+                   .nodes.allocator = a,
+                   .animations.allocator = a,
+                   .scene = scene};
 }
 
 void glb_free(GlbFile *f) {
@@ -32,8 +38,8 @@ void glb_put_string(Sink *sink, const char *text) {
 static void put_uri(Sink *sink, const char *up, const char *path) {
     sink_text(sink, "\"%s", *path == '/' ? "" : up);
     for (const unsigned char *c = (const unsigned char *)path; *c; c++) {
-        const bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
-                           strchr("-_.~/", *c);
+        const bool plain =
+            (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') || strchr("-_.~/", *c);
         if (plain) sink_bytes(sink, c, 1);
         else sink_text(sink, "%%%02X", (unsigned)*c);
     }
@@ -73,7 +79,8 @@ static void put_materials(GlbFile *f) {
     uint32_t textures = 0;
     for (uint32_t i = 0; i < f->scene->sheet_count; i++) {
         const bool pictured = f->scene->sheets[i].picture != NULL;
-        sink_text(&f->text, "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
+        sink_text(&f->text,
+                  "%s{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.9",
                   i ? "," : "");
         if (pictured) sink_text(&f->text, ",\"baseColorTexture\":{\"index\":%u}", textures++);
         sink_text(&f->text, "}}");

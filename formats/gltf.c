@@ -208,7 +208,8 @@ static SingeResult find_sparse(Gltf *gltf, int64_t sparse, uint32_t number, Gltf
         return gltf_bad(gltf, "accessors", number, "its sparse elements have no count or type");
     accessor->sparse_type = (uint32_t)type;
     TRY(find_elements(gltf, indices, number, count, gltf_type_size((uint32_t)type), &accessor->sparse_index, &stride));
-    if (stride != gltf_type_size((uint32_t)type)) return gltf_bad(gltf, "accessors", number, "sparse indices with gaps");
+    if (stride != gltf_type_size((uint32_t)type))
+        return gltf_bad(gltf, "accessors", number, "sparse indices with gaps");
     TRY(find_elements(gltf, values, number, count, size, &accessor->sparse_bytes, &stride));
     if (stride != size) return gltf_bad(gltf, "accessors", number, "sparse elements with gaps");
     accessor->sparse_count = (uint32_t)count;
@@ -320,8 +321,7 @@ static void free_all(Gltf *gltf) {
 // ---- the file
 
 /// Finds the two chunks of a GLB. `json` gets where the text is.
-static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, const uint8_t **json,
-                               size_t *json_size) {
+static SingeResult find_chunks(Gltf *gltf, const uint8_t *bytes, size_t size, const uint8_t **json, size_t *json_size) {
     if (size < 20 || load_u32_little(bytes + 8) > size || load_u32_little(bytes + 8) < 20)
         return gltf_refuse(gltf, SINGE_ERROR_FORMAT, "byte 8: the file is shorter than it says");
     const uint8_t *end = bytes + load_u32_little(bytes + 8), *at = bytes + 12;
@@ -349,8 +349,8 @@ static bool is_for_assimp(const Json *json) {
     return false;
 }
 
-SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator,
-                      Polygons *polygons, SingeError *error) {
+SingeResult gltf_read(const char *name, const uint8_t *bytes, size_t size, SingeAllocator allocator, Polygons *polygons,
+                      SingeError *error) {
     *polygons = (Polygons){.allocator = allocator};
     Gltf gltf = {.name = name, .allocator = allocator, .error = error};
     if (size == 0) return gltf_refuse(&gltf, SINGE_ERROR_FORMAT, "is empty");

@@ -8,8 +8,8 @@ typedef struct GltfAccessor GltfAccessor;
 struct GltfAccessor {
     const uint8_t *bytes; ///< of the first element; all lie within the file or its buffers
     uint32_t count, stride;
-    uint32_t type;        ///< of a component, 5120 to 5126
-    uint32_t width;       ///< components
+    uint32_t type;  ///< of a component, 5120 to 5126
+    uint32_t width; ///< components
     bool normalized;
     uint32_t sparse_count;       ///< elements with other values
     const uint8_t *sparse_index; ///< [sparse_count] of `sparse_type`
@@ -18,8 +18,8 @@ struct GltfAccessor {
 };
 
 typedef struct GltfPrimitive {
-    uint32_t number, mesh; ///< from 0; of which mesh
-    uint32_t mode;         ///< 0 to 6
+    uint32_t number, mesh;         ///< from 0; of which mesh
+    uint32_t mode;                 ///< 0 to 6
     int64_t position, indices, uv; ///< accessors, or -1
 } GltfPrimitive;
 
@@ -36,11 +36,11 @@ typedef struct Gltf {
     Json json;
     uint32_t *views, *accessors, *buffers, *meshes, *nodes; ///< values of the JSON
     uint32_t view_count, accessor_count, buffer_count, mesh_count, node_count;
-    Bytes *loaded;        ///< [buffer_count] of those that were needed
-    size_t loaded_size;   ///< of all of them
-    size_t beside_size;   ///< of those in other files
-    GltfAccessor *read;   ///< [accessor_count]; those used have a width
-    GltfMesh *ranges;     ///< [mesh_count]
+    Bytes *loaded;      ///< [buffer_count] of those that were needed
+    size_t loaded_size; ///< of all of them
+    size_t beside_size; ///< of those in other files
+    GltfAccessor *read; ///< [accessor_count]; those used have a width
+    GltfMesh *ranges;   ///< [mesh_count]
     GltfPrimitive *primitives;
     size_t primitive_count, primitive_capacity;
 } Gltf;

@@ -35,8 +35,8 @@ static Transform chain(const Transform *outer, const Transform *inner) {
     Transform both;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++) {
-            both.m[r][c] = inner->m[0][c] * outer->m[r][0] + inner->m[1][c] * outer->m[r][1] +
-                           inner->m[2][c] * outer->m[r][2];
+            both.m[r][c] =
+                inner->m[0][c] * outer->m[r][0] + inner->m[1][c] * outer->m[r][1] + inner->m[2][c] * outer->m[r][2];
             if (c == 3) both.m[r][c] += outer->m[r][3];
         }
     return both;
@@ -205,8 +205,7 @@ static void fill_positions(Fill *fill, const GltfAccessor *accessor, const Trans
     load_elements(accessor, accessor->count, positions);
     for (uint32_t v = 0; v < accessor->count; v++, positions += 3) {
         float x = positions[0], y = positions[1], z = positions[2];
-        for (int r = 0; r < 3; r++)
-            positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
+        for (int r = 0; r < 3; r++) positions[r] = at->m[r][0] * x + at->m[r][1] * y + at->m[r][2] * z + at->m[r][3];
     }
 }
 
@@ -232,10 +231,11 @@ static void triangle_corners(const GltfPrimitive *primitive, uint64_t f, uint64_
 static SingeResult fill_primitive(Fill *fill, const GltfPrimitive *primitive, const Transform *at) {
     const GltfAccessor *position = &fill->gltf->read[primitive->position];
     Polygons *mesh = fill->mesh;
-    const float (*m)[4] = at->m;
+    const float(*m)[4] = at->m;
     bool mirrored = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) < 0;
+                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+                    0;
     uint64_t corners = primitive->indices < 0 ? position->count : fill->gltf->read[primitive->indices].count;
     uint64_t faces = primitive->mode < 4 ? 0 : primitive->mode == 4 ? corners / 3 : corners > 2 ? corners - 2 : 0;
     fill_positions(fill, position, at);

@@ -167,9 +167,9 @@ typedef struct Child {
     SingeError *error;
     pid_t process;
     int pipe;
-    double waited; ///< s so far
-    double looked; ///< s, the clock when it was last looked at
-    size_t memory_before;  ///< bytes that it began with
+    double waited;        ///< s so far
+    double looked;        ///< s, the clock when it was last looked at
+    size_t memory_before; ///< bytes that it began with
 } Child;
 
 static double clock_now(void) {
@@ -289,7 +289,8 @@ static SingeResult wait_for(Child *child, Bytes *answer) {
     if (!result) result = isolate_judge(child, answer, status);
     if (child->process) {
         kill(child->process, SIGKILL);
-        while (waitpid(child->process, NULL, 0) < 0 && errno == EINTR) {}
+        while (waitpid(child->process, NULL, 0) < 0 && errno == EINTR) {
+        }
     }
     // as bytes_free expects it
     if (!result && !store_trim(answer->allocator, &answer->data, &capacity, answer->size + 1, 1))

@@ -21,8 +21,8 @@ static SingeResult json_bad(const Parser *parser, const char *what) {
 }
 
 static void skip_blanks(Parser *parser) {
-    while (parser->at < parser->end && (*parser->at == ' ' || *parser->at == '\t' || *parser->at == '\n' ||
-                                        *parser->at == '\r'))
+    while (parser->at < parser->end &&
+           (*parser->at == ' ' || *parser->at == '\t' || *parser->at == '\n' || *parser->at == '\r'))
         parser->at++;
 }
 
@@ -30,8 +30,8 @@ static SingeResult json_add(Parser *parser, JsonKind kind, const uint8_t *begin,
     Json *json = parser->json;
     if (!store_grow(json->allocator, &json->values, &json->capacity, json->count + 1, sizeof *json->values))
         return refuse_memory(parser->error, "json", parser->name);
-    json->values[json->count] = (JsonValue){kind, (uint32_t)(begin - json->text), (uint32_t)(end - json->text), 0,
-                                            (uint32_t)json->count + 1};
+    json->values[json->count] =
+        (JsonValue){kind, (uint32_t)(begin - json->text), (uint32_t)(end - json->text), 0, (uint32_t)json->count + 1};
     json->count++;
     return SINGE_OK;
 }
@@ -51,7 +51,7 @@ static SingeResult take_string(Parser *parser) {
 
 static SingeResult take_plain(Parser *parser) {
     const uint8_t *begin = parser->at;
-    while (parser->at < parser->end && *parser->at > ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
+    while ((parser->at < parser->end) && *parser->at > ' ' && !strchr(",]}[{:\"", *parser->at)) parser->at++;
     if (parser->at == begin) return json_bad(parser, "a value is missing");
     return json_add(parser, JSON_PLAIN, begin, parser->at);
 }
@@ -104,7 +104,8 @@ SingeResult json_read(const char *name, const uint8_t *text, size_t size, SingeA
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) parser.at += 3;
     TRY(take_value(&parser));
     while (parser.depth) TRY(go_on(&parser));
-    for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {} // some chunks are filled so
+    for (skip_blanks(&parser); parser.at < parser.end && *parser.at == 0; parser.at++) {
+    } // some chunks are filled so
     return parser.at < parser.end ? json_bad(&parser, "there is more behind the end") : SINGE_OK;
 }
 

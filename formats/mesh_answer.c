@@ -13,8 +13,8 @@ static SingeResult refuse_answer(const char *name, SingeError *error) {
 
 /// False unless the size is that of these counts.
 static bool counts_agree(const MeshCounts *counts, size_t size) {
-    if (counts->vertices > MESH_COUNT_LIMIT || counts->faces > MESH_COUNT_LIMIT ||
-        counts->corners > MESH_COUNT_LIMIT || counts->uv > 1)
+    if (counts->vertices > MESH_COUNT_LIMIT || counts->faces > MESH_COUNT_LIMIT || counts->corners > MESH_COUNT_LIMIT ||
+        counts->uv > 1)
         return false;
     return size == sizeof *counts + 12 * counts->vertices + 4 * counts->faces + (4 + 8 * counts->uv) * counts->corners;
 }
@@ -60,17 +60,18 @@ SingeResult mesh_answer_take(const char *name, const uint8_t *bytes, size_t size
     if (size < sizeof counts) return refuse_answer(name, error);
     memcpy(&counts, bytes, sizeof counts);
     if (!counts_agree(&counts, size)) return refuse_answer(name, error);
-    if (counts.faces == 0)
-        return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
-    Polygons made = {.vertex_count = (uint32_t)counts.vertices, .face_count = (uint32_t)counts.faces,
-                     .corner_count = (uint32_t)counts.corners, .allocator = allocator};
+    if (counts.faces == 0) return refuse(error, SINGE_ERROR_MESH, "mesh", -1, "%s: has no faces", short_name(name));
+    Polygons made = {.vertex_count = (uint32_t)counts.vertices,
+                     .face_count = (uint32_t)counts.faces,
+                     .corner_count = (uint32_t)counts.corners,
+                     .allocator = allocator};
     made.positions = store_new(allocator, made.vertex_count, 3 * sizeof *made.positions);
     made.first = store_new(allocator, (size_t)made.face_count + 1, sizeof *made.first);
     made.corners = store_new(allocator, made.corner_count, sizeof *made.corners);
     if (counts.uv) made.uv = store_new(allocator, made.corner_count, 2 * sizeof *made.uv);
     bool room = made.positions && made.first && made.corners && (!counts.uv || made.uv);
-    SingeResult result = room ? take_arrays(name, bytes + sizeof counts, &made, error)
-                              : refuse_memory(error, "mesh", name);
+    SingeResult result =
+        room ? take_arrays(name, bytes + sizeof counts, &made, error) : refuse_memory(error, "mesh", name);
     if (result) polygons_free(&made);
     else *polygons = made;
     return result;

@@ -19,12 +19,12 @@ enum { FAST_DIGITS = 19, EXACT_DIGITS = 800, EXPONENT_LIMIT = 100000000 };
 
 typedef struct Decimal {
     bool negative;
-    uint64_t leading;         // the first FAST_DIGITS significant digits
-    int leading_exponent;     // power of ten of their last digit
-    const uint8_t *digits;    // first significant digit, in the text
+    uint64_t leading;      // the first FAST_DIGITS significant digits
+    int leading_exponent;  // power of ten of their last digit
+    const uint8_t *digits; // first significant digit, in the text
     const uint8_t *digits_end;
-    int digit_count;          // significant digits, EXPONENT_LIMIT at most
-    int exponent;             // power of ten of the last of them
+    int digit_count; // significant digits, EXPONENT_LIMIT at most
+    int exponent;    // power of ten of the last of them
 } Decimal;
 
 static inline bool is_digit(uint8_t c) { return (uint8_t)(c - '0') < 10; }

@@ -122,9 +122,9 @@ static SingeResult obj_index(Obj *obj, size_t so_far, const char *what, int32_t 
     if (status == NUMBER_OK && value == 0) return obj_refuse_word(obj, "has index 0; OBJ counts from 1");
     if (status == NUMBER_RANGE || value > MESH_COUNT_LIMIT || value < -(int64_t)so_far)
         return refuse(obj->error, SINGE_ERROR_MESH, "obj", obj->text.line,
-                      "%s:%lld:%lld: this %s index is out of range (%llu so far)",
-                      short_name(obj->name), (long long)obj->text.line,
-                      (long long)text_column(&obj->text, obj->begin), what, (unsigned long long)so_far);
+                      "%s:%lld:%lld: this %s index is out of range (%llu so far)", short_name(obj->name),
+                      (long long)obj->text.line, (long long)text_column(&obj->text, obj->begin), what,
+                      (unsigned long long)so_far);
     *index = (int32_t)(value > 0 ? value - 1 : value + (int64_t)so_far);
     (void)number_integer(&obj->text.at, obj->text.end, &value);
     return SINGE_OK;
@@ -176,9 +176,9 @@ static SingeResult obj_face(Obj *obj) {
 
 // What is about looks, groups, points and lines carries nothing that burns.
 static bool obj_is_passed_over(const uint8_t *begin, const uint8_t *end) {
-    static const char *const known[] = {"vn",     "vp",       "g",        "o",         "s",       "mg",      "usemtl",
-                                        "mtllib", "usemap",   "maplib",   "shadow_obj", "trace_obj", "bevel",
-                                        "lod",    "c_interp", "d_interp", "l",         "p"};
+    static const char *const known[] = {"vn",     "vp",     "g",        "o",        "s",          "mg",
+                                        "usemtl", "mtllib", "usemap",   "maplib",   "shadow_obj", "trace_obj",
+                                        "bevel",  "lod",    "c_interp", "d_interp", "l",          "p"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (text_word_is(begin, end, known[i])) return true;
     return false;

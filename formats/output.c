@@ -4,9 +4,9 @@
 const OutputFormat output_formats[OUTPUT_COUNT] = {OUTPUT_FORMATS(OUTPUT_ROW)};
 
 const OutputSingle output_singles[OUTPUT_SINGLE_COUNT] = {{"usd", true, ".usdc", usd_write_single},
-                                                           {"usdz", false, ".usdz", usdz_write},
-                                                           {"glb", true, ".glb", glb_write_single},
-                                                           {"vat", false, NULL, vat_write}};
+                                                          {"usdz", false, ".usdz", usdz_write},
+                                                          {"glb", true, ".glb", glb_write_single},
+                                                          {"vat", false, NULL, vat_write}};
 
 SingeResult ply_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame, SingeError *error) {
     (void)scene;

@@ -50,33 +50,33 @@ typedef struct OutputPose {
 
 /// A rigid thing: a collider or a hot ball.
 typedef struct OutputShape {
-    SingeColliderKind kind; ///< no plane
-    float radius, half_size[3], height; ///< m, as SingeColliderDef has them
-    float colour[3];        ///< linear
-    float temperature;      ///< K
+    SingeColliderKind kind;                ///< no plane
+    float radius, half_size[3], height;    ///< m, as SingeColliderDef has them
+    float colour[3];                       ///< linear
+    float temperature;                     ///< K
     uint32_t vertex_count, triangle_count; ///< of a mesh or a heightfield, in its own frame
-    const float *vertices;  ///< [3 * vertex_count] m
-    const uint32_t *triangles; ///< [3 * triangle_count]
-    const OutputPose *poses; ///< [OutputScene.frames]
+    const float *vertices;                 ///< [3 * vertex_count] m
+    const uint32_t *triangles;             ///< [3 * triangle_count]
+    const OutputPose *poses;               ///< [OutputScene.frames]
 } OutputShape;
 
 /// What does not change from frame to frame. A writer of frames looks at `name`, `fps`, `texture_size` and the
 /// sheets only.
 typedef struct OutputScene {
-    const char *name;   ///< of the files
+    const char *name; ///< of the files
     float fps;
-    int frames;         ///< that are written, from 1
-    int texture_size;   ///< pixels a side of textures
-    bool gas;           ///< gas/NAME.0001.vdb are there
+    int frames;       ///< that are written, from 1
+    int texture_size; ///< pixels a side of textures
+    bool gas;         ///< gas/NAME.0001.vdb are there
     uint32_t sheet_count, shape_count;
     const OutputSheet *sheets;
     const OutputShape *shapes;
     float eye[3], target[3], up[3]; ///< m, of the camera
-    float fov, aspect;  ///< radians, vertical; width over height
-    float aperture, focus; ///< m: of the lens, and the distance that is sharp; 0: all is
+    float fov, aspect;              ///< radians, vertical; width over height
+    float aperture, focus;          ///< m: of the lens, and the distance that is sharp; 0: all is
     float light_direction[3], light_angle, light_colour[3]; ///< towards it; radians, radius; linear
-    float sky[3];       ///< linear
-    float ground_height, ground_colour[3]; ///< m, -INFINITY for none; linear
+    float sky[3];                                           ///< linear
+    float ground_height, ground_colour[3];                  ///< m, -INFINITY for none; linear
 } OutputScene;
 
 SINGE_NODISCARD SingeResult ply_write_frame(const char *path, const OutputScene *scene, const OutputFrame *frame,
@@ -118,11 +118,11 @@ typedef SingeResult OutputWriteRoot(const char *path, const OutputScene *scene, 
 
 /// ROW(name, ending of frames, writer, ending of the root or NULL, its writer or NULL): frames lie in name/, the root
 /// beside that folder. The first is the cache, which every run writes and from which the others can be made.
-#define OUTPUT_FORMATS(ROW)                                   \
-    ROW(ply, ".ply", ply_write_frame, NULL, NULL)             \
+#define OUTPUT_FORMATS(ROW)                                     \
+    ROW(ply, ".ply", ply_write_frame, NULL, NULL)               \
     ROW(usd, ".usdc", usd_write_frame, ".usda", usd_write_root) \
-    ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root) \
-    ROW(glb, ".glb", glb_write_frame, NULL, NULL)             \
+    ROW(vtp, ".vtp", vtp_write_frame, ".pvd", pvd_write_root)   \
+    ROW(glb, ".glb", glb_write_frame, NULL, NULL)               \
     ROW(textures, ".exr", textures_write_frame, NULL, NULL)
 
 #define OUTPUT_ENUMERATOR(name, ...) OUTPUT_##name,

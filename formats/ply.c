@@ -302,8 +302,8 @@ static SingeResult ply_read_face(Ply *ply, const PlyElement *element, PlyFaces *
 // Arrays as polygons_free expects them: with their counts.
 static SingeResult ply_trim_faces(Ply *ply, PlyFaces *faces) {
     Polygons *mesh = faces->mesh;
-    bool good = store_trim(ply->allocator, &mesh->corners, &faces->corner_capacity, mesh->corner_count,
-                           sizeof *mesh->corners);
+    bool good =
+        store_trim(ply->allocator, &mesh->corners, &faces->corner_capacity, mesh->corner_count, sizeof *mesh->corners);
     if (good && faces->uvs)
         good = store_trim(ply->allocator, &mesh->uv, &faces->uv_capacity, 2 * (size_t)mesh->corner_count,
                           sizeof *mesh->uv);

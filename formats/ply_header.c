@@ -15,8 +15,8 @@ static const struct {
     const char *name, *other;
     size_t size;
 } ply_types[PLY_TYPE_COUNT] = {
-    {"char", "int8", 1}, {"uchar", "uint8", 1},  {"short", "int16", 2},   {"ushort", "uint16", 2},
-    {"int", "int32", 4}, {"uint", "uint32", 4},  {"float", "float32", 4}, {"double", "float64", 8},
+    {"char", "int8", 1}, {"uchar", "uint8", 1}, {"short", "int16", 2},   {"ushort", "uint16", 2},
+    {"int", "int32", 4}, {"uint", "uint32", 4}, {"float", "float32", 4}, {"double", "float64", 8},
 };
 
 size_t ply_type_size(PlyType type) { return ply_types[type].size; }
@@ -100,8 +100,8 @@ static SingeResult ply_header_element(Ply *ply) {
     if (!store_grow(ply->allocator, &header->elements, &header->element_capacity, header->element_count + 1,
                     sizeof(PlyElement)))
         return refuse_memory(ply->error, "ply", ply->name);
-    header->elements[header->element_count++] = (PlyElement){name.begin, name.end, (uint32_t)count,
-                                                             header->property_count, 0};
+    header->elements[header->element_count++] =
+        (PlyElement){name.begin, name.end, (uint32_t)count, header->property_count, 0};
     return SINGE_OK;
 }
 
@@ -140,8 +140,7 @@ static SingeResult ply_header_format(Ply *ply, bool *known) {
     if (*known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the format is declared twice");
     for (int i = 0; i < 3; i++)
         if (word_is(word, formats[i])) ply->header.format = (PlyFormat)i, *known = true;
-    if (!*known)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
+    if (!*known) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a PLY format");
     if (!word_is(version, "1.0")) return ply_refuse(ply, SINGE_ERROR_FORMAT, "only PLY version 1.0 is known");
     return SINGE_OK;
 }
@@ -161,8 +160,7 @@ static SingeResult ply_header_line(Ply *ply, bool *format_known, bool *ended) {
     else if (word_is(word, "format")) TRY(ply_header_format(ply, format_known));
     else if (word_is(word, "element")) TRY(ply_header_element(ply));
     else if (word_is(word, "property")) TRY(ply_header_property(ply));
-    else if (!*ended)
-        return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
+    else if (!*ended) return ply_refuse(ply, SINGE_ERROR_FORMAT, "this is not a line of a PLY header");
     text_skip_blanks(&ply->text);
     if (!text_at_line_end(&ply->text)) return ply_refuse(ply, SINGE_ERROR_FORMAT, "too many words on the line");
     if (ply->text.at == ply->text.end) return ply_refuse(ply, SINGE_ERROR_FORMAT, "the header is cut off");

@@ -17,8 +17,10 @@ typedef struct Column {
     bool integer;
 } Column;
 
-#define COLUMN(name, member, width, index) {name, offsetof(SingeSurface, member), width, index, false}
-#define INTEGER(name, member) {name, offsetof(SingeSurface, member), 1, 0, true}
+#define COLUMN(name, member, width, index) \
+    { name, offsetof(SingeSurface, member), width, index, false }
+#define INTEGER(name, member) \
+    { name, offsetof(SingeSurface, member), 1, 0, true }
 
 static const Column columns[] = {
     COLUMN("x", position, 3, 0),

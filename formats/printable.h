@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 enum {
-    SHOWN_MAX = 80,      ///< characters of a word that a message repeats
+    SHOWN_MAX = 80,       ///< characters of a word that a message repeats
     SHOWN_PATH_MAX = 200, ///< of a path, its end
     PRINTABLE_PIECE = 12, ///< bytes that a character takes at most, with a zero
 };

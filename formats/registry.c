@@ -11,16 +11,8 @@ static const struct {
     const char *ending;
     MeshReader *read;
 } mesh_formats[] = {
-    {".obj", obj_read},
-    {".ply", ply_read},
-    {".stl", stl_read},
-    {".off", off_read},
-    {".gltf", gltf_read},
-    {".glb", gltf_read},
-    {".fbx", assimp_read},
-    {".dae", assimp_read},
-    {".3ds", assimp_read},
-    {".x3d", assimp_read},
+    {".obj", obj_read},  {".ply", ply_read},    {".stl", stl_read},    {".off", off_read},    {".gltf", gltf_read},
+    {".glb", gltf_read}, {".fbx", assimp_read}, {".dae", assimp_read}, {".3ds", assimp_read}, {".x3d", assimp_read},
 };
 
 bool mesh_name_ends(const char *name, const char *ending) {

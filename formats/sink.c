@@ -103,8 +103,8 @@ void sink_float(Sink *sink, float value) {
 }
 
 SingeResult sink_write(Sink *sink, const char *path, SingeError *error) {
-    SingeResult result = sink->failed ? refuse_memory(error, "cache", path)
-                                      : file_write(path, sink->bytes, sink->size, error);
+    SingeResult result =
+        sink->failed ? refuse_memory(error, "cache", path) : file_write(path, sink->bytes, sink->size, error);
     sink_free(sink);
     return result;
 }

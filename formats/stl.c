@@ -43,8 +43,8 @@ static SingeResult stl_read_bytes(const char *name, const uint8_t *bytes, size_t
             float *value = &mesh->positions[9 * f + i];
             memcpy(value, &bits, sizeof *value);
             if (!isfinite(*value))
-                return refuse(error, SINGE_ERROR_FORMAT, "stl", (int64_t)at,
-                              "%s: byte %llu: a position is not finite", short_name(name), (unsigned long long)at);
+                return refuse(error, SINGE_ERROR_FORMAT, "stl", (int64_t)at, "%s: byte %llu: a position is not finite",
+                              short_name(name), (unsigned long long)at);
         }
     return stl_arrays(mesh, name, (size_t)count, error);
 }
@@ -100,8 +100,7 @@ static SingeResult stl_solids(Scan *scan, Polygons *mesh, size_t *vertices, size
 static SingeResult stl_read_text(Scan *scan, Polygons *mesh) {
     size_t vertices = 0, capacity = 0;
     SingeResult result = stl_solids(scan, mesh, &vertices, &capacity);
-    if (!result &&
-        !store_trim(scan->allocator, &mesh->positions, &capacity, vertices, 3 * sizeof *mesh->positions))
+    if (!result && !store_trim(scan->allocator, &mesh->positions, &capacity, vertices, 3 * sizeof *mesh->positions))
         result = refuse_memory(scan->error, "stl", scan->name);
     mesh->vertex_count = (uint32_t)capacity; // as polygons_free expects it
     return result ? result : stl_arrays(mesh, scan->name, vertices / 3, scan->error);

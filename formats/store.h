@@ -4,9 +4,9 @@
 
 #include "singe/material.h"
 
-#define TRY(call)                          \
-    do {                                   \
-        SingeResult try_result_ = (call);  \
+#define TRY(call)                            \
+    do {                                     \
+        SingeResult try_result_ = (call);    \
         if (try_result_) return try_result_; \
     } while (0)
 

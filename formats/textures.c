@@ -18,10 +18,10 @@ enum { TEXTURE_MARGIN = 16, TEXTURE_CHANNELS = 4, TEXTURE_SHEETS = 64 };
 typedef struct Canvas {
     int size;
     size_t pixels;
-    float *values;      ///< [pixels][4] R G B A
-    uint8_t *covered;   ///< [pixels] something is left
-    uint8_t *chart;     ///< [pixels] the uncut sheet has it
-    uint32_t *nearest, *queue; ///< [pixels]
+    float *values;                      ///< [pixels][4] R G B A
+    uint8_t *covered;                   ///< [pixels] something is left
+    uint8_t *chart;                     ///< [pixels] the uncut sheet has it
+    uint32_t *nearest, *queue;          ///< [pixels]
     float corners[3][TEXTURE_CHANNELS]; ///< of the triangle that is drawn
 } Canvas;
 
@@ -123,8 +123,8 @@ static SingeResult draw_layer(Layers *layers, const OutputScene *scene, const Ou
     usd_sheet_name(scene, sheet, prim);
     for (uint32_t k = 0; k < TEXTURE_CHANNELS; k++) {
         const uint32_t n = TEXTURE_CHANNELS * layers->count + k;
-        snprintf(layers->names[n], sizeof layers->names[n], "%s%s%c", layers->count ? prim : "", layers->count ? "." : "",
-                 letters[k]);
+        snprintf(layers->names[n], sizeof layers->names[n], "%s%s%c", layers->count ? prim : "",
+                 layers->count ? "." : "", letters[k]);
         layers->channels[n] = (ExrChannel){layers->names[n], EXR_KIND_HALF, canvas.values + k, TEXTURE_CHANNELS};
     }
     layers->count++;
@@ -141,8 +141,8 @@ SingeResult textures_write_frame(const char *path, const OutputScene *scene, con
     for (uint32_t i = 0; i < scene->sheet_count && !result; i++) {
         if (!output_mesh_has_uv(&scene->sheets[i].mesh)) continue;
         if (layers->count == TEXTURE_SHEETS)
-            result = refuse(error, SINGE_ERROR_LIMIT, "textures", -1, "%s: more than %d sheets with uv", short_name(path),
-                            TEXTURE_SHEETS);
+            result = refuse(error, SINGE_ERROR_LIMIT, "textures", -1, "%s: more than %d sheets with uv",
+                            short_name(path), TEXTURE_SHEETS);
         else result = draw_layer(layers, scene, frame, i, path, error);
     }
     if (!result && !layers->count)

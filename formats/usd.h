@@ -29,8 +29,19 @@ typedef struct UsdAttribute {
 } UsdAttribute;
 
 enum {
-    USD_POINTS, USD_VELOCITIES, USD_NORMALS, USD_ST, USD_REST, USD_COLOUR, USD_COLOUR_INDICES, USD_EMBER,
-    USD_EMBER_INDICES, USD_COUNTS, USD_INDICES, USD_EXTENT, USD_OWN
+    USD_POINTS,
+    USD_VELOCITIES,
+    USD_NORMALS,
+    USD_ST,
+    USD_REST,
+    USD_COLOUR,
+    USD_COLOUR_INDICES,
+    USD_EMBER,
+    USD_EMBER_INDICES,
+    USD_COUNTS,
+    USD_INDICES,
+    USD_EXTENT,
+    USD_OWN
 };
 /// The first USD_OWN attributes; the fields of fields.h follow as primvars.
 extern const UsdAttribute usd_attributes[USD_OWN];

@@ -29,8 +29,10 @@ static uint32_t word_number(Crate *crate, const char *text) {
 }
 
 void crate_begin(Crate *crate, SingeAllocator allocator) {
-    *crate = (Crate){.sink = {.allocator = allocator}, .words = {.allocator = allocator},
-                     .scratch = {.allocator = allocator}, .packed = {.allocator = allocator}};
+    *crate = (Crate){.sink = {.allocator = allocator},
+                     .words = {.allocator = allocator},
+                     .scratch = {.allocator = allocator},
+                     .packed = {.allocator = allocator}};
     sink_zeros(&crate->sink, HEADER_SIZE);
     word_number(crate, ""); // number 0 has no sign, by which names of properties are known: it is the root's
 }
@@ -319,9 +321,11 @@ static void put_specs(Crate *crate) {
 }
 
 static void put_sections(Crate *crate) {
-    static const struct { const char *name; void (*put)(Crate *); } sections[SECTIONS] = {
-        {"TOKENS", put_tokens}, {"STRINGS", put_strings}, {"FIELDS", put_fields},
-        {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths}, {"SPECS", put_specs}};
+    static const struct {
+        const char *name;
+        void (*put)(Crate *);
+    } sections[SECTIONS] = {{"TOKENS", put_tokens},       {"STRINGS", put_strings}, {"FIELDS", put_fields},
+                            {"FIELDSETS", put_fieldsets}, {"PATHS", put_paths},     {"SPECS", put_specs}};
     size_t places[SECTIONS + 1];
     for (int i = 0; i < SECTIONS; i++) {
         places[i] = crate->sink.size;

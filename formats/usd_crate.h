@@ -17,8 +17,17 @@
 typedef uint64_t CrateValue;
 
 typedef enum CrateType {
-    CRATE_BOOL = 1, CRATE_INT = 3, CRATE_FLOAT = 8, CRATE_DOUBLE = 9, CRATE_TOKEN = 11, CRATE_VEC2F = 20,
-    CRATE_VEC3F = 24, CRATE_TOKENS = 41, CRATE_SPECIFIER = 42, CRATE_VARIABILITY = 44, CRATE_SAMPLES = 46,
+    CRATE_BOOL = 1,
+    CRATE_INT = 3,
+    CRATE_FLOAT = 8,
+    CRATE_DOUBLE = 9,
+    CRATE_TOKEN = 11,
+    CRATE_VEC2F = 20,
+    CRATE_VEC3F = 24,
+    CRATE_TOKENS = 41,
+    CRATE_SPECIFIER = 42,
+    CRATE_VARIABILITY = 44,
+    CRATE_SAMPLES = 46,
     CRATE_DOUBLES = 48,
 } CrateType;
 
@@ -29,8 +38,14 @@ typedef struct CrateField {
     CrateValue value;
 } CrateField;
 
-typedef struct CratePath { uint32_t token, parent; bool property; } CratePath;
-typedef struct CrateSpecRow { uint32_t path, fields; CrateSpec kind; } CrateSpecRow;
+typedef struct CratePath {
+    uint32_t token, parent;
+    bool property;
+} CratePath;
+typedef struct CrateSpecRow {
+    uint32_t path, fields;
+    CrateSpec kind;
+} CrateSpecRow;
 
 typedef struct Crate {
     Sink sink;

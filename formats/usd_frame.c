@@ -20,14 +20,14 @@ typedef struct UsdWriter {
     Crate crate;
     const OutputScene *scene;
     const SingeSurface *surface;
-    CrateValue time;   ///< of all samples
-    CrateValue *kept;  ///< [frames][sheets][SLOTS] values of many frames; NULL where there is one, in the surface
+    CrateValue time;    ///< of all samples
+    CrateValue *kept;   ///< [frames][sheets][SLOTS] values of many frames; NULL where there is one, in the surface
     CrateValue *column; ///< [frames]
     size_t frames;
     SheetParts parts;
-    float *gathered;   ///< [3 * vertex_count]
-    int32_t *numbers;  ///< [3 * triangle_count and vertex_count at least]
-    int32_t *palette;  ///< [COLOURS] index of a colour, -1: none
+    float *gathered;  ///< [3 * vertex_count]
+    int32_t *numbers; ///< [3 * triangle_count and vertex_count at least]
+    int32_t *palette; ///< [COLOURS] index of a colour, -1: none
     size_t number_count;
 } UsdWriter;
 
@@ -59,7 +59,8 @@ static const void *gather(UsdWriter *w, const SheetPart *part, const void *value
     const uint32_t *from = values;
     if (v[part->count - 1] - v[0] == part->count - 1) return from + (size_t)width * v[0];
     uint32_t *to = (uint32_t *)(void *)w->gathered;
-    for (uint32_t i = 0; i < part->count; i++) memcpy(to + (size_t)width * i, from + (size_t)width * v[i], 4 * (size_t)width);
+    for (uint32_t i = 0; i < part->count; i++)
+        memcpy(to + (size_t)width * i, from + (size_t)width * v[i], 4 * (size_t)width);
     return to;
 }
 
@@ -83,7 +84,8 @@ static void put_colours(UsdWriter *w, const SheetPart *part, CrateValue *palette
         int32_t *entry = &w->palette[q[0] << 11 | q[1] << 5 | q[2]];
         if (*entry < 0) {
             *entry = (int32_t)found;
-            for (int c = 0; c < 3; c++) w->gathered[3 * found + (uint32_t)c] = (float)q[c] / steps[c] * ((float)q[c] / steps[c]);
+            for (int c = 0; c < 3; c++)
+                w->gathered[3 * found + (uint32_t)c] = (float)q[c] / steps[c] * ((float)q[c] / steps[c]);
             found++;
         }
         w->numbers[i] = *entry;
@@ -197,7 +199,8 @@ static void put_own(UsdWriter *w, const SheetPart *part, CrateValue values[USD_O
 
 static CrateValue put_field(UsdWriter *w, const SheetPart *part, const SurfaceField *field) {
     const void *values = gather(w, part, surface_field(w->surface, field), 1);
-    return field->integer ? crate_ints(&w->crate, values, part->count) : crate_floats(&w->crate, 1, values, part->count);
+    return field->integer ? crate_ints(&w->crate, values, part->count)
+                          : crate_floats(&w->crate, 1, values, part->count);
 }
 
 static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
@@ -224,8 +227,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
                                       {"properties", crate_token_list(&w->crate, names, count)}};
     if (pictured) fields[3] = (CrateField){"primChildren", crate_token_list(&w->crate, children, 2)};
     crate_spec(&w->crate, mesh, CRATE_PRIM, fields, pictured ? 4 : 3);
-    for (int i = 0; i < 2; i++)
-        put_uniform(w, mesh, uniforms[i][0], "token", crate_token(&w->crate, uniforms[i][1]));
+    for (int i = 0; i < 2; i++) put_uniform(w, mesh, uniforms[i][0], "token", crate_token(&w->crate, uniforms[i][1]));
     put_uniform(w, mesh, uniforms[2][0], "bool", crate_inline(CRATE_BOOL, 1));
     CrateValue values[USD_OWN] = {0};
     if (!w->kept) put_own(w, &part, values);
@@ -259,9 +261,12 @@ static void put_stage(UsdWriter *w, int first, int last) {
     const char *only[1] = {name};
     usd_name(w->scene->name, name);
     const uint32_t root = crate_path(crate, "", false, CRATE_NO_PARENT);
-    CrateField fields[] = {{"defaultPrim", crate_token(crate, name)}, {"metersPerUnit", crate_double(1)},
-                           {"upAxis", crate_token(crate, "Z")}, {"startTimeCode", crate_double((float)first)},
-                           {"endTimeCode", crate_double((float)last)}, {"timeCodesPerSecond", crate_double(w->scene->fps)},
+    CrateField fields[] = {{"defaultPrim", crate_token(crate, name)},
+                           {"metersPerUnit", crate_double(1)},
+                           {"upAxis", crate_token(crate, "Z")},
+                           {"startTimeCode", crate_double((float)first)},
+                           {"endTimeCode", crate_double((float)last)},
+                           {"timeCodesPerSecond", crate_double(w->scene->fps)},
                            {"framesPerSecond", crate_double(w->scene->fps)},
                            {"primChildren", crate_token_list(crate, only, 1)}};
     crate_spec(crate, root, CRATE_ROOT, fields, sizeof fields / sizeof *fields);

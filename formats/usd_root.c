@@ -102,8 +102,7 @@ static void put_sheet(Root *r, uint32_t sheet) {
         sink_text(&r->sink, "            %s %s%s\n", usd_attributes[i].type, usd_attributes[i].name,
                   usd_attributes[i].vertex ? " (\n                interpolation = \"vertex\"\n            )" : "");
     for (int i = 0; i < SURFACE_FIELDS; i++)
-        sink_text(&r->sink,
-                  "            %s primvars:%s (\n                interpolation = \"vertex\"\n            )\n",
+        sink_text(&r->sink, "            %s primvars:%s (\n                interpolation = \"vertex\"\n            )\n",
                   surface_fields[i].integer ? "int[]" : "float[]", surface_fields[i].name);
     if (r->scene->sheets[sheet].picture) {
         char print[USD_NAME];
@@ -131,8 +130,8 @@ static void put_gas(Root *r) {
     for (int i = 0; i < 4; i++)
         sink_text(&r->sink, "        rel field:%s = </%s/gas/%s>\n", fields[i], r->name, fields[i]);
     for (int i = 0; i < 4; i++) {
-        sink_text(&r->sink, "\n        def OpenVDBAsset \"%s\"\n        {\n            token fieldName = \"%s\"\n", fields[i],
-                  fields[i]);
+        sink_text(&r->sink, "\n        def OpenVDBAsset \"%s\"\n        {\n            token fieldName = \"%s\"\n",
+                  fields[i], fields[i]);
         if (i == 3) put(r, "            token vectorDataRoleHint = \"Vector\"\n");
         put(r, "            asset filePath.timeSamples = {\n");
         for (int frame = 1; frame <= r->scene->frames; frame++) {
@@ -169,8 +168,8 @@ static void put_frame(Root *r, const float back[3], const float up[3], const flo
     }
     unit(x);
     cross(z, x, y);
-    const float rows[4][4] = {{x[0], x[1], x[2], 0}, {y[0], y[1], y[2], 0}, {z[0], z[1], z[2], 0},
-                              {place[0], place[1], place[2], 1}};
+    const float rows[4][4] = {
+        {x[0], x[1], x[2], 0}, {y[0], y[1], y[2], 0}, {z[0], z[1], z[2], 0}, {place[0], place[1], place[2], 1}};
     put(r, "        matrix4d xformOp:transform = (");
     for (int i = 0; i < 4; i++) {
         put(r, i ? ", " : " ");
@@ -250,7 +249,8 @@ static void put_rotation(Root *r, const OutputPose *pose) {
 static void put_visible(Root *r, const OutputPose *pose) { put(r, pose->visible ? "\"inherited\"" : "\"invisible\""); }
 
 /// Its way: one value where it stands still.
-static void put_poses(Root *r, const char *attribute, const OutputShape *shape, void (*value)(Root *, const OutputPose *)) {
+static void put_poses(Root *r, const char *attribute, const OutputShape *shape,
+                      void (*value)(Root *, const OutputPose *)) {
     bool still = true;
     for (int i = 1; i < r->scene->frames; i++) still = still && same_pose(&shape->poses[0], &shape->poses[i]);
     put(r, attribute);
@@ -264,8 +264,10 @@ static void put_poses(Root *r, const char *attribute, const OutputShape *shape, 
 
 static void put_shape(Root *r, uint32_t index) {
     const OutputShape *s = &r->scene->shapes[index];
-    static const char *const kinds[] = {[SINGE_COLLIDER_SPHERE] = "Sphere", [SINGE_COLLIDER_BOX] = "Cube",
-                                        [SINGE_COLLIDER_CAPSULE] = "Capsule", [SINGE_COLLIDER_HEIGHTFIELD] = "Mesh",
+    static const char *const kinds[] = {[SINGE_COLLIDER_SPHERE] = "Sphere",
+                                        [SINGE_COLLIDER_BOX] = "Cube",
+                                        [SINGE_COLLIDER_CAPSULE] = "Capsule",
+                                        [SINGE_COLLIDER_HEIGHTFIELD] = "Mesh",
                                         [SINGE_COLLIDER_MESH] = "Mesh"};
     sink_text(&r->sink,
               "\n        def %s \"shape%u\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"
@@ -300,7 +302,8 @@ static void put_shape(Root *r, uint32_t index) {
         put_numbers(r, s->half_size, 3);
         put(r, "\n");
     }
-    sink_text(&r->sink, "            uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"%s]\n        }\n",
+    sink_text(&r->sink,
+              "            uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"%s]\n        }\n",
               scaled ? ", \"xformOp:scale\"" : "");
 }
 
@@ -310,7 +313,8 @@ static void put_ground(Root *r) {
     float far_off[3];
     for (int i = 0; i < 3; i++) far_off[i] = s->eye[i] - s->target[i];
     const float half = 20 * sqrtf(dot(far_off, far_off)), x = s->target[0], y = s->target[1], z = s->ground_height;
-    const float corners[12] = {x - half, y - half, z, x + half, y - half, z, x + half, y + half, z, x - half, y + half, z};
+    const float corners[12] = {x - half, y - half, z, x + half, y - half, z,
+                               x + half, y + half, z, x - half, y + half, z};
     static const uint32_t indices[4] = {0, 1, 2, 3};
     sink_text(&r->sink,
               "\n        def Mesh \"ground\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"

@@ -49,8 +49,8 @@ static SingeResult add_frames(Zip *zip, const char *path, const OutputScene *sce
 }
 
 /// The scene with its pictures in the archive.
-static SingeResult add_root(Zip *zip, const OutputScene *scene, OutputSheet *sheets, PictureName *names, const char *path,
-                            SingeError *error) {
+static SingeResult add_root(Zip *zip, const OutputScene *scene, OutputSheet *sheets, PictureName *names,
+                            const char *path, SingeError *error) {
     OutputScene packed = *scene;
     char name[1024];
     Sink root = {0};

@@ -9,8 +9,8 @@
 // A texel a vertex and frame: vertex i of frame f (both from 0) is in column i mod width, row f * rows + i / width, so
 // that the v of frame f is TEXCOORD_1's plus f * rows / height, from the first row on.
 //
-// A vertex of the cache is one of the mesh by its place at rest, its sheet, and its number in the file, where it has one.
-// One that is gone goes on with those of its neighbours that are left: faces at the rim keep their shape.
+// A vertex of the cache is one of the mesh by its place at rest, its sheet, and its number in the file, where it has
+// one. One that is gone goes on with those of its neighbours that are left: faces at the rim keep their shape.
 #include "formats/glb_file.h"
 #include "formats/number.h"
 #include "formats/store.h"
@@ -25,15 +25,15 @@ enum { VAT_HEIGHT_MOST = 16384 };
 typedef struct Vat {
     const OutputScene *scene;
     const OutputCache *cache;
-    uint32_t count;          ///< vertices of all sheets
-    int width, rows, height; ///< of the textures
+    uint32_t count;                     ///< vertices of all sheets
+    int width, rows, height;            ///< of the textures
     float (*position)[4], (*normal)[4]; ///< [width * height]
     float (*at)[3], (*facing)[3];       ///< [count] as in the frame in hand, in the GLB's axes
-    float (*moved)[4];       ///< [count] sum and number of the displacements of neighbours, or the own one's
-    uint8_t *found;          ///< [count]
-    uint32_t *table, *next;  ///< hash of (sheet, rest): the first vertex + 1, and the next of the same hash
-    uint32_t *first;         ///< [sheet_count + 1] vertices
-    uint32_t *source_first;  ///< [sheet_count + 1] vertices of the files
+    float (*moved)[4];                  ///< [count] sum and number of the displacements of neighbours, or the own one's
+    uint8_t *found;                     ///< [count]
+    uint32_t *table, *next;             ///< hash of (sheet, rest): the first vertex + 1, and the next of the same hash
+    uint32_t *first;                    ///< [sheet_count + 1] vertices
+    uint32_t *source_first;             ///< [sheet_count + 1] vertices of the files
     int log;
 } Vat;
 
@@ -61,14 +61,15 @@ static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {
     vat->count = vat->first[sheets];
     SingeResult result = vat_size(vat, path, error);
     if (result) return result;
-    for (vat->log = 4; (uint64_t)1 << vat->log < 2 * (uint64_t)vat->count; vat->log++) {}
+    for (vat->log = 4; (uint64_t)1 << vat->log < 2 * (uint64_t)vat->count; vat->log++) {
+    }
     const size_t texels = (size_t)vat->width * (size_t)vat->height;
     vat->position = calloc(texels, sizeof *vat->position), vat->normal = calloc(texels, sizeof *vat->normal);
     vat->at = calloc(vat->count, sizeof *vat->at), vat->facing = calloc(vat->count, sizeof *vat->facing);
     vat->moved = calloc(vat->count, sizeof *vat->moved), vat->found = calloc(vat->count, 1);
     vat->table = calloc((size_t)1 << vat->log, 4), vat->next = calloc(vat->count, 4);
-    const bool all = vat->position && vat->normal && vat->at && vat->facing && vat->moved && vat->found && vat->table &&
-                     vat->next;
+    const bool all =
+        vat->position && vat->normal && vat->at && vat->facing && vat->moved && vat->found && vat->table && vat->next;
     return all ? SINGE_OK : refuse_memory(error, "vat", path);
 }
 
@@ -257,7 +258,8 @@ static void put_uvs(GlbFile *f, const Vat *vat, uint32_t sheet, const VatCorner 
     begin = f->data.size;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t v = vat->first[sheet] + corners[i].vertex, width = (uint32_t)vat->width;
-        const float uv[2] = {((float)(v % width) + 0.5f) / (float)width, ((float)(v / width) + 0.5f) / (float)vat->height};
+        const float uv[2] = {((float)(v % width) + 0.5f) / (float)width,
+                             ((float)(v / width) + 0.5f) / (float)vat->height};
         sink_words(&f->data, uv, 2);
     }
     put_attribute(f, "TEXCOORD_1", begin, count, 2, NULL);
@@ -323,10 +325,11 @@ static SingeResult write_numbers(const char *path, const Vat *vat, SingeError *e
                 box[1][c] = at[c] > box[1][c] ? at[c] : box[1][c];
             }
         }
-    sink_text(&sink, "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ", vat->cache->frames);
+    sink_text(&sink,
+              "{\n  \"generator\": \"Singe " SINGE_VERSION "\",\n  \"frames\": %d,\n  \"fps\": ", vat->cache->frames);
     sink_float(&sink, vat->scene->fps);
-    sink_text(&sink, ",\n  \"vertices\": %u,\n  \"width\": %d,\n  \"height\": %d,\n  \"rows_per_frame\": %d,\n", vat->count,
-              vat->width, vat->height, vat->rows);
+    sink_text(&sink, ",\n  \"vertices\": %u,\n  \"width\": %d,\n  \"height\": %d,\n  \"rows_per_frame\": %d,\n",
+              vat->count, vat->width, vat->height, vat->rows);
     put_triple(&sink, "bounds_min", box[0]), put_triple(&sink, "bounds_max", box[1]);
     sink_text(&sink, "  \"up\": \"y\",\n  \"unit\": \"m\"\n}\n");
     if (snprintf(name, sizeof name, "%s.json", path) >= (int)sizeof name) sink.failed = true;

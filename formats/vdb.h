@@ -23,7 +23,9 @@ enum {
     VDB_LIBRARY_MINOR = 0,
     VDB_ACTIVE_VALUES = 2, ///< compression: values of cells that are not active are left out
     VDB_ID = 36,
-    VDB_UPPER_LOG = 5, VDB_LOWER_LOG = 4, VDB_LEAF_LOG = 3,
+    VDB_UPPER_LOG = 5,
+    VDB_LOWER_LOG = 4,
+    VDB_LEAF_LOG = 3,
     VDB_UPPER_MASK = 1 << (3 * VDB_UPPER_LOG - 3), ///< bytes
     VDB_LOWER_MASK = 1 << (3 * VDB_LOWER_LOG - 3),
     VDB_LEAF_MASK = 1 << (3 * VDB_LEAF_LOG - 3),

@@ -96,10 +96,12 @@ static SingeResult read_head(Reader *r) {
     if (get_u32(r) != VDB_VERSION) return vdb_read_bad(r, "a VDB file of another version");
     vdb_read_take(r, 8); // of the library
     const uint8_t *offsets = vdb_read_take(r, 1);
-    if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID)) return vdb_read_bad(r, "the head is cut off or has no offsets");
+    if (!offsets || *offsets != 1 || !vdb_read_take(r, VDB_ID))
+        return vdb_read_bad(r, "the head is cut off or has no offsets");
     r->time = (double)NAN;
     TRY(read_metadata(r, true));
-    if (!isfinite(r->time) || !gas_cells(&r->gas->view)) return vdb_read_bad(r, "not a gas of Singe: no time or no size");
+    if (!isfinite(r->time) || !gas_cells(&r->gas->view))
+        return vdb_read_bad(r, "not a gas of Singe: no time or no size");
     if (r->extinction != (double)GAS_EXTINCTION || r->flame_unit != (double)GAS_FLAME_UNIT)
         return vdb_read_bad(r, "its density or its flame is in other units than those of this version");
     r->gas->view.cell = 1; // the grids tell
@@ -148,7 +150,8 @@ static SingeResult read_leaf(Reader *r, Reader *buffers, const uint32_t low[3], 
     for (uint32_t n = 0; n < 8 * VDB_LEAF_MASK; n++) {
         if (!vdb_read_bit(mask, n)) continue;
         uint32_t x = low[0] + (n >> 6), y = low[1] + (n >> 3 & 7), z = low[2] + (n & 7);
-        if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2]) return vdb_read_bad(r, "a cell outside of the gas");
+        if (x >= gas->size[0] || y >= gas->size[1] || z >= gas->size[2])
+            return vdb_read_bad(r, "a cell outside of the gas");
         if (!has(buffers, 4 * (uint64_t)width)) return vdb_read_bad(buffers, "the values are cut off");
         for (uint32_t k = 0; k < width; k++) {
             float value = get_float(buffers);
@@ -183,7 +186,8 @@ static SingeResult read_tree(Reader *r, Reader *buffers, VdbField field) {
     if (!children) return SINGE_OK;
     static const uint8_t zero[12];
     const uint8_t *origin = vdb_read_take(r, 12), *nodes = take_node(r, VDB_UPPER_MASK);
-    if (!origin || memcmp(origin, zero, 12) != 0 || !nodes) return vdb_read_bad(r, "the tree is cut off or lies elsewhere");
+    if (!origin || memcmp(origin, zero, 12) != 0 || !nodes)
+        return vdb_read_bad(r, "the tree is cut off or lies elsewhere");
     for (uint32_t n = 0; n < 8 * VDB_UPPER_MASK; n++) {
         enum { SIDE = GAS_BLOCK << VDB_LOWER_LOG };
         const uint32_t low[3] = {(n >> 10) * SIDE, (n >> 5 & 31) * SIDE, (n & 31) * SIDE};

@@ -19,7 +19,7 @@ typedef struct Writer {
     Leaf *leaves;
     size_t leaf_count, node_count, block_count;
     float coolest;
-    bool half;      ///< values are 16-bit floats
+    bool half; ///< values are 16-bit floats
     uint8_t *begin, *at;
 } Writer;
 
@@ -58,7 +58,7 @@ static uint16_t to_half(float value) {
     const uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
     bits &= 0x7fffffffu;
     if (bits >= 0x477ff000u) return sign | 0x7bff; // the largest there is
-    if (bits < 0x38800000u) { // below 2^-14 they are multiples of 2^-24
+    if (bits < 0x38800000u) {                      // below 2^-14 they are multiples of 2^-24
         float magnitude;
         memcpy(&magnitude, &bits, sizeof magnitude);
         return sign | (uint16_t)nearbyintf(magnitude * 0x1p24f);
@@ -204,7 +204,7 @@ static uint8_t *put_node(Writer *w, size_t mask_bytes) {
 }
 
 static void put_topology(Writer *w, const VdbFieldInfo *field) {
-    put_u32(w, 1); // buffers a leaf
+    put_u32(w, 1);                                                             // buffers a leaf
     const float still = w->half ? from_half(to_half(w->coolest)) : w->coolest; // the background, a whole float anyway
     for (uint32_t k = 0; k < field->width; k++) put_float(w, field == &vdb_fields[VDB_TEMPERATURE] ? still : 0);
     put_u32(w, 0); // tiles

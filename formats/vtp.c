@@ -16,7 +16,8 @@ static size_t value_size(const VtpArray *array) { return strcmp(array->type, "In
 
 /// The element of an array that begins at *offset, which moves on.
 static void put_element(Sink *xml, const VtpArray *array, uint64_t *offset) {
-    sink_text(xml, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%llu\"/>\n",
+    sink_text(xml,
+              "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%llu\"/>\n",
               array->type, array->name, array->width, (unsigned long long)*offset);
     *offset += 8 + value_size(array) * (size_t)array->width * array->count;
 }
@@ -58,9 +59,10 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
                      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
                      "format=\"ascii\">");
     sink_number(&sink, frame->time);
-    sink_text(&sink, "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%u\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
-                     "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n"
-                     "<PointData Scalars=\"temperature\" Vectors=\"velocity\" Normals=\"normal\" TCoords=\"uv\">\n",
+    sink_text(&sink,
+              "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%u\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+              "NumberOfStrips=\"0\" NumberOfPolys=\"%u\">\n"
+              "<PointData Scalars=\"temperature\" Vectors=\"velocity\" Normals=\"normal\" TCoords=\"uv\">\n",
               s->vertex_count, s->triangle_count);
     for (int i = 0; i < POINT_DATA; i++) put_element(&sink, &arrays[i], &offset);
     sink_text(&sink, "</PointData>\n<Points>\n");
@@ -76,7 +78,11 @@ SingeResult vtp_write_frame(const char *path, const OutputScene *scene, const Ou
 /// A name in an XML attribute.
 static void put_xml(Sink *sink, const char *text) {
     for (const char *c = text; *c; c++) {
-        const char *entity = *c == '&' ? "&amp;" : *c == '<' ? "&lt;" : *c == '>' ? "&gt;" : *c == '"' ? "&quot;" : NULL;
+        const char *entity = *c == '&'   ? "&amp;"
+                             : *c == '<' ? "&lt;"
+                             : *c == '>' ? "&gt;"
+                             : *c == '"' ? "&quot;"
+                                         : NULL;
         if (entity) sink_text(sink, "%s", entity);
         else sink_bytes(sink, c, 1);
     }

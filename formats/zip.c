@@ -2,7 +2,13 @@
 
 #include <string.h>
 
-enum { ZIP_ALIGNMENT = 64, ZIP_VERSION = 20, ZIP_UTF8 = 1 << 11, ZIP_DAY = 1 << 5 | 1 /* 1980-01-01 */, ZIP_PADDING = 0x1986 };
+enum {
+    ZIP_ALIGNMENT = 64,
+    ZIP_VERSION = 20,
+    ZIP_UTF8 = 1 << 11,
+    ZIP_DAY = 1 << 5 | 1 /* 1980-01-01 */,
+    ZIP_PADDING = 0x1986
+};
 
 void zip_begin(Zip *zip, SingeAllocator allocator) {
     *zip = (Zip){.sink = {.allocator = allocator}, .directory = {.allocator = allocator}};
@@ -39,7 +45,8 @@ void zip_add(Zip *zip, const char *name, const void *bytes, size_t size) {
     // an extra field of no meaning takes up what is missing: 4 bytes and its contents
     const size_t extra = (ZIP_ALIGNMENT - (head + 4) % ZIP_ALIGNMENT) % ZIP_ALIGNMENT + 4;
     const uint32_t sum = zip_sum(bytes, size);
-    zip->too_large = zip->too_large || size > UINT32_MAX - 1024 || head + size > UINT32_MAX - 1024 || zip->count >= 65535;
+    zip->too_large =
+        zip->too_large || size > UINT32_MAX - 1024 || head + size > UINT32_MAX - 1024 || zip->count >= 65535;
     sink_bytes(&zip->sink, "PK\3\4", 4);
     put_entry(&zip->sink, sum, size, length, extra);
     sink_bytes(&zip->sink, name, length);

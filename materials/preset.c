@@ -23,7 +23,8 @@ SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, Singe
     if (!preset) {
         char names[200] = "";
         for (const MaterialPreset *p = material_presets; p->name; p++)
-            snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", p == material_presets ? "" : ", ", p->name);
+            snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", p == material_presets ? "" : ", ",
+                     p->name);
         return refuse(error, SINGE_ERROR_ARGUMENT, "material", -1, "there is no material of this name; there are: %s",
                       names);
     }

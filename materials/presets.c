@@ -38,9 +38,7 @@ static void newsprint(SingeMaterialDef *def) {
     preset_noise(&def->char_strength, 0.6f, 6, 0.015f, 4, 3);
 }
 
-static void office_paper(SingeMaterialDef *def) {
-    (void)def;
-}
+static void office_paper(SingeMaterialDef *def) { (void)def; }
 
 static void one_reaction(SingeMaterialDef *def) {
     (void)def;

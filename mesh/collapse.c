@@ -15,9 +15,9 @@ typedef struct Short {
 
 typedef struct Shrink {
     Work *work;
-    double min;          ///< sides shorter than this
-    uint32_t *set, *stays; ///< [vertices] what becomes one; the vertex that stays, of a root
-    uint8_t *open;         ///< [vertices] of a root: has a vertex on an open edge
+    double min;                   ///< sides shorter than this
+    uint32_t *set, *stays;        ///< [vertices] what becomes one; the vertex that stays, of a root
+    uint8_t *open;                ///< [vertices] of a root: has a vertex on an open edge
     double (*low)[3], (*high)[3]; ///< [vertices] of a root
 } Shrink;
 
@@ -34,7 +34,8 @@ static int by_size(const void *a, const void *b) {
 
 static double side_length(const Work *work, uint32_t half) {
     const Faces *faces = &work->faces;
-    return distance3(work->position[faces->corner[half]], work->position[faces->corner[faces_next(faces, work->face, half)]]);
+    return distance3(work->position[faces->corner[half]],
+                     work->position[faces->corner[faces_next(faces, work->face, half)]]);
 }
 
 static double median_side(Work *work) {
@@ -83,8 +84,12 @@ static bool join_ends(Shrink *shrink, uint32_t half) {
 
 static Shrink shrink_begin(Work *work, double min) {
     const uint32_t count = work->vertex_count;
-    Shrink shrink = {.work = work, .min = min, .set = work_sets(work, count), .stays = work_sets(work, count),
-                     .open = work_new(work, count, 1), .low = work_new(work, count, sizeof *shrink.low),
+    Shrink shrink = {.work = work,
+                     .min = min,
+                     .set = work_sets(work, count),
+                     .stays = work_sets(work, count),
+                     .open = work_new(work, count, 1),
+                     .low = work_new(work, count, sizeof *shrink.low),
                      .high = work_new(work, count, sizeof *shrink.high)};
     if (work->no_memory) return shrink;
     work_mark_open(work, shrink.open);

@@ -44,7 +44,7 @@ void mesh_grid_wear(Mesh *mesh, uint32_t cells_x, uint32_t cells_y, const GridWe
     for (uint32_t v = 0; v <= last; v++) {
         uint32_t i = v % row, j = v / row;
         // the border slides along itself only
-        bool free_x = i > 0 && i < cells_x, free_y = j > 0 && j < cells_y;
+        bool free_x = i > 0 && i<cells_x, free_y = j> 0 && j < cells_y;
         double dx = free_x ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed))) : 0;
         double dy = free_y ? fmax(-1, fmin(1, 0.5 * grid_noise(i, j, jitter_wavelength, 2 * wear->seed + 1))) : 0;
         double x = (i + (double)wear->jitter * dx) / cells_x, y = (j + (double)wear->jitter * dy) / cells_y;

@@ -20,7 +20,7 @@ typedef struct Junctions {
     Work *work;
     Positions positions;
     uint32_t *open_first, *open_to; ///< open edges by their ends
-    uint32_t face; ///< whose side is looked along
+    uint32_t face;                  ///< whose side is looked along
     OnSide found[ON_SIDE_MAX + 2];
     int count;
 } Junctions;
@@ -58,7 +58,8 @@ static void look_along(Junctions *j, uint32_t a, uint32_t b) {
     j->count = 0;
     for (int s = 0; s <= steps && length > 0; s++) {
         double at[3];
-        for (int k = 0; k < 3; k++) at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
+        for (int k = 0; k < 3; k++)
+            at[k] = work->position[a][k] + (work->position[b][k] - work->position[a][k]) * s / steps;
         int64_t centroid[3], box[3];
         positions_box(&j->positions, at, centroid);
         for (int i = 0; i < 27; i++) {
@@ -188,8 +189,7 @@ SingeResult mesh_junctions(Work *work) {
         work->faces = after;
     }
     for (uint32_t f = 0; f < before.count; f++)
-        work_did(work, MESH_JUNCTION,
-                 after.first[f + 1] - after.first[f] - (before.first[f + 1] - before.first[f]),
+        work_did(work, MESH_JUNCTION, after.first[f + 1] - after.first[f] - (before.first[f + 1] - before.first[f]),
                  work_face_name(work, before.origin[f]));
     return work->no_memory ? SINGE_OK : mesh_clean(work); // a vertex may lie on two sides of one face
 }

@@ -243,8 +243,8 @@ static bool pair_faces(Work *work) {
 }
 
 static SingeResult run_steps(Work *work, const MeshOptions *options) {
-    *work->report = (MeshReport){.faces = work->file->face_count, .vertices = work->file->vertex_count,
-                                 .lines = work->file->lines != NULL};
+    *work->report = (MeshReport){
+        .faces = work->file->face_count, .vertices = work->file->vertex_count, .lines = work->file->lines != NULL};
     SingeResult result = check_values(work);
     if (result) return result;
     take_vertices(work);

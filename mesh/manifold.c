@@ -81,7 +81,7 @@ static void turn_over(Work *work, const Turn *turn) {
     uint32_t *corner = work_new(work, faces->corner_count, sizeof *corner);
     uint32_t *twin = work_new(work, faces->corner_count, sizeof *twin);
     int32_t *id = work_new(work, faces->corner_count, sizeof *id);
-    float (*uv)[2] = faces->uv ? work_new(work, faces->corner_count, sizeof *uv) : NULL;
+    float(*uv)[2] = faces->uv ? work_new(work, faces->corner_count, sizeof *uv) : NULL;
     if (work->no_memory) return;
     for (uint32_t f = 0; f < faces->count; f++)
         for (uint32_t h = faces->first[f]; h < faces->first[f + 1]; h++) {
@@ -159,8 +159,7 @@ static void part_fans(Work *work) {
             owner[v] = h;
         }
     }
-    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++)
-        faces->corner[h] = vertex[sets_find(set, h)];
+    for (uint32_t h = 0; h < faces->corner_count && !work->no_memory; h++) faces->corner[h] = vertex[sets_find(set, h)];
     draw_back(work, vertices);
 }
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 enum {
-    MATCH_REACH = 6000,     ///< nodes that a search may look at, where there are many searches
-    MATCH_WORK = 20000000,  ///< and that all searches may
+    MATCH_REACH = 6000,    ///< nodes that a search may look at, where there are many searches
+    MATCH_WORK = 20000000, ///< and that all searches may
 };
 
 typedef struct Match {

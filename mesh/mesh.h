@@ -8,17 +8,17 @@
 /// A sheet's mesh: quads.
 typedef struct Mesh {
     uint32_t vertex_count, cell_count, attribute_count;
-    float *positions;  ///< [3 * vertex_count], m or file units
-    float *uv;         ///< [2 * vertex_count] or NULL; on a seam that of one of its charts
-    float *corner_uv;  ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
-    uint32_t *cells;   ///< [4 * cell_count]
-    uint32_t *cell_lines; ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
-    uint32_t *cell_faces; ///< [cell_count] the file's face of each, or NULL where they are the same
-    int32_t *source;      ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
+    float *positions;       ///< [3 * vertex_count], m or file units
+    float *uv;              ///< [2 * vertex_count] or NULL; on a seam that of one of its charts
+    float *corner_uv;       ///< [8 * cell_count] of each cell's corners, where there are seams; else NULL
+    uint32_t *cells;        ///< [4 * cell_count]
+    uint32_t *cell_lines;   ///< [cell_count] the file's line of each, from 1 (OBJ), or NULL
+    uint32_t *cell_faces;   ///< [cell_count] the file's face of each, or NULL where they are the same
+    int32_t *source;        ///< [vertex_count] the file's vertex, -1 for a new one; NULL where they are the same
     int32_t *corner_source; ///< [4 * cell_count] the same of the cells' corners, where the file had several; else NULL
-    uint32_t source_count; ///< vertices of the file
-    uint32_t *became;     ///< [source_count] the vertex that the file's vertex is now, UINT32_MAX where it is left out;
-                          ///< NULL with source
+    uint32_t source_count;  ///< vertices of the file
+    uint32_t *became; ///< [source_count] the vertex that the file's vertex is now, UINT32_MAX where it is left out;
+                      ///< NULL with source
     SingeAttribute *attributes; ///< of the vertices
     SingeAllocator allocator;
 } Mesh;
@@ -29,8 +29,8 @@ SINGE_NODISCARD SingeResult mesh_grid(float size_x, float size_y, uint32_t cells
                                       SingeAllocator allocator, Mesh *mesh, SingeError *error);
 /// What keeps a grid from being perfect.
 typedef struct GridWear {
-    float jitter;  ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3
-    float displacement;  ///< m, root mean square height of the waves in which the sheet lies, >= 0
+    float jitter;       ///< of a cell, how far vertices lie off the grid at most, 0 to 0.3
+    float displacement; ///< m, root mean square height of the waves in which the sheet lies, >= 0
     uint32_t seed;
 } GridWear;
 
@@ -79,13 +79,13 @@ typedef enum MeshRepair {
 } MeshRepair;
 
 typedef struct MeshReport {
-    uint32_t faces, vertices;       ///< of the file
+    uint32_t faces, vertices;            ///< of the file
     uint32_t triangles, quads, polygons; ///< of its faces
-    uint32_t seam_vertices;         ///< with more than one uv
+    uint32_t seam_vertices;              ///< with more than one uv
     uint32_t components;
     uint32_t count[MESH_REPAIRS];
-    uint32_t first[MESH_REPAIRS];   ///< line, or else number from 0, of the first face or vertex it was done to
-    bool lines;                     ///< faces are reported by line
+    uint32_t first[MESH_REPAIRS]; ///< line, or else number from 0, of the first face or vertex it was done to
+    bool lines;                   ///< faces are reported by line
 } MeshReport;
 
 MeshOptions mesh_default_options(void);

@@ -26,15 +26,15 @@ typedef struct HeapItem {
 
 typedef struct Pairs {
     Work *work;
-    uint32_t *mate;    ///< [triangles]
-    uint32_t *whole;   ///< [triangles] the first corner of the quad that it is half of, in `before`; MESH_NONE
-    double *cost;      ///< [half-edges] of the pair across a side, the lower of its two numbers
-    uint8_t *good;     ///< [half-edges] it makes a quad
-    uint32_t *degree;  ///< [vertices] triangles
-    uint8_t *rim;      ///< [vertices] on an open edge
-    Faces before;      ///< the faces that the triangles come from
+    uint32_t *mate;   ///< [triangles]
+    uint32_t *whole;  ///< [triangles] the first corner of the quad that it is half of, in `before`; MESH_NONE
+    double *cost;     ///< [half-edges] of the pair across a side, the lower of its two numbers
+    uint8_t *good;    ///< [half-edges] it makes a quad
+    uint32_t *degree; ///< [vertices] triangles
+    uint8_t *rim;     ///< [vertices] on an open edge
+    Faces before;     ///< the faces that the triangles come from
     uint32_t *before_face, *before_twin; ///< [their corners]
-    uint32_t *from;    ///< [half-edges] the corner in `before` that it leaves
+    uint32_t *from;                      ///< [half-edges] the corner in `before` that it leaves
     HeapItem *heap;
     uint32_t heap_count, heap_capacity;
 } Pairs;
@@ -186,7 +186,7 @@ static double fold_between(const Pairs *pairs, uint32_t a, uint32_t b) {
 }
 
 static bool is_seam(const Pairs *pairs, uint32_t half, uint32_t twin) {
-    float (*uv)[2] = pairs->work->faces.uv;
+    float(*uv)[2] = pairs->work->faces.uv;
     if (!uv) return false;
     uint32_t a = pair_next3(twin), b = pair_next3(half);
     return uv[half][0] != uv[a][0] || uv[half][1] != uv[a][1] || uv[b][0] != uv[twin][0] || uv[b][1] != uv[twin][1];
@@ -195,8 +195,8 @@ static bool is_seam(const Pairs *pairs, uint32_t half, uint32_t twin) {
 static void cost_pair(Pairs *pairs, uint32_t half, uint32_t twin) {
     const uint32_t *corner = pairs->work->faces.corner;
     double angle[4] = {corner_angle(pairs, half) + corner_angle(pairs, pair_next3(twin)),
-                       corner_angle(pairs, pair_next3(half)) + corner_angle(pairs, twin), corner_angle(pairs, pair_last3(half)),
-                       corner_angle(pairs, pair_last3(twin))};
+                       corner_angle(pairs, pair_next3(half)) + corner_angle(pairs, twin),
+                       corner_angle(pairs, pair_last3(half)), corner_angle(pairs, pair_last3(twin))};
     double worst = 0, max = 0, fold = fold_between(pairs, half / 3, twin / 3);
     for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(angle[i] - 90)), max = fmax(max, angle[i]);
     bool thin_fan = corner[pair_last3(half)] == corner[pair_last3(twin)]; // a vertex inside must keep three cells
@@ -283,7 +283,8 @@ static double pair_gain(const Pairs *pairs, uint32_t half) {
         uint32_t shared = shared_half(pairs, across / 3);
         if (shared == MESH_NONE || shared == across) continue;
         uint32_t shared_twin = work->twin[shared];
-        double from = quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, shared_twin);
+        double from =
+            quad_angle(pairs, side, inner, other) + quad_angle(pairs, pair_next3(across), shared, shared_twin);
         double to = quad_angle(pairs, pair_next3(side), inner, other) + quad_angle(pairs, across, shared, shared_twin);
         gain += fmax(0, straight_within - 0.5 * (fabs(from - 180) + fabs(to - 180)));
     }
@@ -351,7 +352,8 @@ static uint32_t open_side(const Pairs *pairs, uint32_t triangle) {
     double max = -1;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
         if (work->twin[h] != MESH_NONE) continue;
-        double length = distance3(work->position[work->faces.corner[h]], work->position[work->faces.corner[pair_next3(h)]]);
+        double length =
+            distance3(work->position[work->faces.corner[h]], work->position[work->faces.corner[pair_next3(h)]]);
         if (length > max) max = length, best = h;
     }
     return best;

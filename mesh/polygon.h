@@ -10,13 +10,13 @@ enum { POLYGON_GROWTH = 2 }; ///< corners that a ring may have for one of its fa
 typedef struct PolygonCut {
     Work *work;
     const Faces *faces;
-    uint32_t capacity;        ///< POLYGON_GROWTH times the corners of the largest face
-    uint32_t *ring;           ///< [capacity] half-edges
-    double (*at)[2];          ///< [capacity] their places, seen along the normal
-    double *worth;            ///< [capacity] of the triangle at a corner
-    uint32_t *order;          ///< sides by their ends, once one is asked for
-    uint32_t count;           ///< triangles
-    uint32_t (*triangle)[3];  ///< [capacity] half-edges
+    uint32_t capacity;       ///< POLYGON_GROWTH times the corners of the largest face
+    uint32_t *ring;          ///< [capacity] half-edges
+    double (*at)[2];         ///< [capacity] their places, seen along the normal
+    double *worth;           ///< [capacity] of the triangle at a corner
+    uint32_t *order;         ///< sides by their ends, once one is asked for
+    uint32_t count;          ///< triangles
+    uint32_t (*triangle)[3]; ///< [capacity] half-edges
 } PolygonCut;
 
 /// False without memory.

@@ -58,14 +58,15 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
             return bad(error, "an attribute has no name or no values");
-    if (def->quads != SINGE_MESH_PAIR && def->quads != SINGE_MESH_SPLIT) return bad(error, "quads is none of the choices");
+    if (def->quads != SINGE_MESH_PAIR && def->quads != SINGE_MESH_SPLIT)
+        return bad(error, "quads is none of the choices");
     if (!(def->weld >= 0 && isfinite(def->weld))) return bad(error, "weld must be 0 or more");
     if (!(def->smallest >= 0 && def->smallest <= 1)) return bad(error, "smallest must be between 0 and 1");
     for (uint32_t f = 0; f < def->face_count; f++) {
         uint32_t size = def->face_sizes ? def->face_sizes[f] : 3;
         if (size < 3)
-            return refuse(error, SINGE_ERROR_MESH, "mesh", f, "%s: face %u (from 0) has %u corners", short_name(name), f,
-                          size);
+            return refuse(error, SINGE_ERROR_MESH, "mesh", f, "%s: face %u (from 0) has %u corners", short_name(name),
+                          f, size);
         total += size;
     }
     if (total > INT32_MAX || def->vertex_count > INT32_MAX || def->face_count > INT32_MAX)
@@ -77,8 +78,11 @@ static SingeResult check_def(const SingeMeshDef *def, const char *name, uint32_t
 
 /// The Def as mesh_make reads it; what it points to is not written to. False when out of memory.
 static bool take(const SingeMeshDef *def, uint32_t corners, Polygons *polygons) {
-    *polygons = (Polygons){.vertex_count = def->vertex_count, .face_count = def->face_count, .corner_count = corners,
-                           .attribute_count = def->attribute_count, .allocator = def->allocator,
+    *polygons = (Polygons){.vertex_count = def->vertex_count,
+                           .face_count = def->face_count,
+                           .corner_count = corners,
+                           .attribute_count = def->attribute_count,
+                           .allocator = def->allocator,
                            .positions = (float *)(uintptr_t)def->positions,
                            .corners = (uint32_t *)(uintptr_t)def->corners,
                            .attributes = (SingeAttribute *)(uintptr_t)def->attributes};
@@ -155,7 +159,8 @@ SingeResult singe_mesh_create_grid(const SingeGridDef *given, SingeMesh **mesh, 
     if (!read_def(&def, sizeof def, given))
         return bad(error, "struct_size is not set; start from singe_default_grid()");
     if (!(def.jitter >= 0 && def.jitter <= 0.3f)) return bad(error, "grid: jitter must be between 0 and 0.3");
-    if (!(def.displacement >= 0 && isfinite(def.displacement))) return bad(error, "grid: displacement must be 0 or more");
+    if (!(def.displacement >= 0 && isfinite(def.displacement)))
+        return bad(error, "grid: displacement must be 0 or more");
     SingeMesh *made = new_mesh(def.allocator);
     if (!made) return refuse_memory(error, "grid", "grid");
     SingeResult result =

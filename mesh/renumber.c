@@ -8,9 +8,9 @@
 
 typedef struct Order {
     Work *work;
-    uint32_t *vertex, *face;   ///< new number, MESH_NONE before
+    uint32_t *vertex, *face; ///< new number, MESH_NONE before
     uint32_t vertices, faces;
-    uint32_t *row;             ///< quads of the row that is walked, as the half-edges of their lower sides
+    uint32_t *row; ///< quads of the row that is walked, as the half-edges of their lower sides
 } Order;
 
 static uint32_t next4(uint32_t half) { return (half & ~3u) | ((half + 1) & 3); }
@@ -81,7 +81,7 @@ static void apply(Order *order) {
     Work *work = order->work;
     const Faces *old = &work->faces;
     const size_t attributes = work->attribute_count;
-    double (*position)[3] = work_new(work, work->vertex_count, sizeof *position);
+    double(*position)[3] = work_new(work, work->vertex_count, sizeof *position);
     int32_t *source = work_new(work, work->vertex_count, sizeof *source);
     float *values = work_new(work, work->vertex_count * attributes, sizeof *values);
     Faces out = work_faces(work, old->count, old->corner_count);
@@ -113,8 +113,10 @@ void mesh_order(Work *work) {
     const uint32_t count = work->faces.count;
     work_edges(work);
     if (work->no_memory || count < MESH_ORDER_MIN || in_order(work) >= MESH_IN_ORDER) return;
-    Order order = {.work = work, .vertex = work_new(work, work->vertex_count, sizeof *order.vertex),
-                   .face = work_new(work, count, sizeof *order.face), .row = work_new(work, count, sizeof *order.row)};
+    Order order = {.work = work,
+                   .vertex = work_new(work, work->vertex_count, sizeof *order.vertex),
+                   .face = work_new(work, count, sizeof *order.face),
+                   .row = work_new(work, count, sizeof *order.row)};
     if (work->no_memory) return;
     memset(order.vertex, 0xff, work->vertex_count * sizeof *order.vertex);
     memset(order.face, 0xff, count * sizeof *order.face);

@@ -48,9 +48,9 @@ static void join_flattest(Work *work, const uint32_t *halves, uint32_t size) {
 // ---- faces of one sheet that meet at a side
 
 typedef struct Around {
-    double angle;   ///< around the side
+    double angle; ///< around the side
     uint32_t half;
-    bool forwards;  ///< runs along the side as the first one does
+    bool forwards; ///< runs along the side as the first one does
 } Around;
 
 enum { AROUND_MAX = 64 }; ///< faces at a side that are looked at; more are left alone
@@ -166,8 +166,7 @@ static void add_corners(Work *work, const uint32_t *centroid, uint32_t added) {
     for (uint32_t f = 0; f < old->count && !work->no_memory; f++) {
         for (uint32_t h = old->first[f]; h < old->first[f + 1]; h++) {
             faces_push(&out, old->corner[h], old, h);
-            if (centroid[h] != MESH_NONE)
-                faces_push_between(&out, centroid[h], old, h, faces_next(old, work->face, h));
+            if (centroid[h] != MESH_NONE) faces_push_between(&out, centroid[h], old, h, faces_next(old, work->face, h));
         }
         faces_end(&out, old->origin[f]);
     }

@@ -34,7 +34,8 @@ uint32_t *work_sets(Work *work, uint32_t count) {
 // ---- faces
 
 Faces work_faces(Work *work, uint32_t count, uint32_t corners) {
-    Faces faces = {.capacity = count, .corner_capacity = corners,
+    Faces faces = {.capacity = count,
+                   .corner_capacity = corners,
                    .first = work_new(work, (size_t)count + 1, sizeof *faces.first),
                    .corner = work_new(work, corners, sizeof *faces.corner),
                    .id = work_new(work, corners, sizeof *faces.id),
@@ -79,7 +80,7 @@ static bool work_room(Work *work) {
     if (work->vertex_count < work->vertex_capacity) return true;
     uint32_t capacity = work->vertex_capacity + work->vertex_capacity / 2 + 16;
     size_t attributes = work->attribute_count;
-    double (*position)[3] = work_new(work, capacity, sizeof *position);
+    double(*position)[3] = work_new(work, capacity, sizeof *position);
     int32_t *source = work_new(work, capacity, sizeof *source);
     float *values = work_new(work, capacity * attributes, sizeof *values);
     if (work->no_memory) return false;

@@ -18,11 +18,11 @@ typedef struct WorkBlock {
 typedef struct Faces {
     uint32_t count, corner_count;
     uint32_t capacity, corner_capacity;
-    uint32_t *first;   ///< [count + 1]
-    uint32_t *corner;  ///< [corner_count] vertex
-    float (*uv)[2];    ///< [corner_count] or NULL
-    int32_t *id;       ///< [corner_count] vertex of the file, -1 for a new one
-    uint32_t *origin;  ///< [count] face of the file
+    uint32_t *first;  ///< [count + 1]
+    uint32_t *corner; ///< [corner_count] vertex
+    float (*uv)[2];   ///< [corner_count] or NULL
+    int32_t *id;      ///< [corner_count] vertex of the file, -1 for a new one
+    uint32_t *origin; ///< [count] face of the file
 } Faces;
 
 typedef struct Work {
@@ -32,17 +32,17 @@ typedef struct Work {
     SingeError *error;
     WorkBlock *blocks;
     bool no_memory;
-    bool shrunk;          ///< faces vanish because their sides did, which has been said
+    bool shrunk; ///< faces vanish because their sides did, which has been said
     uint32_t vertex_count, vertex_capacity, attribute_count;
     double (*position)[3];
-    int32_t *source;      ///< vertex of the file, -1 for a new one
-    uint32_t *became;     ///< [file's vertices] the vertex that it is now
-    float *attributes;    ///< [vertex_capacity * attribute_count]
+    int32_t *source;   ///< vertex of the file, -1 for a new one
+    uint32_t *became;  ///< [file's vertices] the vertex that it is now
+    float *attributes; ///< [vertex_capacity * attribute_count]
     Faces faces;
-    uint32_t *face;       ///< [corner_count] whose corner it is (work_edges)
-    uint32_t *twin;       ///< [corner_count] the same side in the other face; MESH_NONE (work_edges)
-    double weld;          ///< distance at which vertices are one
-    double smallest;      ///< sides below this share of the median side shrink
+    uint32_t *face;  ///< [corner_count] whose corner it is (work_edges)
+    uint32_t *twin;  ///< [corner_count] the same side in the other face; MESH_NONE (work_edges)
+    double weld;     ///< distance at which vertices are one
+    double smallest; ///< sides below this share of the median side shrink
 } Work;
 
 /// Zeroed memory; NULL and work->no_memory when there is none.

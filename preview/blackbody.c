@@ -41,7 +41,8 @@ void blackbody_fill(Float3 table[BLACKBODY_COUNT]) {
         double b = 0.0557 * x - 0.2040 + 1.0570 * z;
         double strength = pow(xyz[1] / reference[1], 0.55);
         strength *= (double)stepf(BLACKBODY_MIN, BLACKBODY_MIN + 120, (float)temperature);
-        table[i] = float3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
+        table[i] =
+            float3((float)(fmax(r, 0) * strength), (float)(fmax(g, 0) * strength), (float)(fmax(b, 0) * strength));
     }
 }
 

@@ -22,20 +22,21 @@ typedef struct Block {
     Float3 origin[LANES], direction[LANES], light[LANES], sum[LANES];
     float time[LANES]; ///< of the ray within the exposure, 0 to 1
     Point point[LANES];
-    FireTile *tile;                     ///< flame and smoke; NULL: none
+    FireTile *tile;                         ///< flame and smoke; NULL: none
     float fire_from[LANES], fire_to[LANES]; ///< distances for which the next two are known
     Float3 fire_light[LANES];
     float fire_clear[LANES];
     float low[LANES], high[LANES];
-    float clear[LANES];   ///< of a shadow ray
-    float sun_seen;       ///< sum of those to the sun
+    float clear[LANES]; ///< of a shadow ray
+    float sun_seen;     ///< sum of those to the sun
     int sun_asked;
     float open[LANES], sky_seen[LANES]; ///< share of the sky, of a sample and summed
     int sky_asked[LANES];
-    bool clouded;         ///< whether anything hid sky
-    bool sunlit, shaded;  ///< whether any ray to the sun came through, and whether any did not
-    Float3 lamp[LANES];       ///< light of flames and embers, summed over samples, as if nothing hid it
-    Float3 lamp_position[LANES], lamp_normal[LANES], lamp_white[LANES]; ///< where it was found last, and what it was on white
+    bool clouded;        ///< whether anything hid sky
+    bool sunlit, shaded; ///< whether any ray to the sun came through, and whether any did not
+    Float3 lamp[LANES];  ///< light of flames and embers, summed over samples, as if nothing hid it
+    Float3 lamp_position[LANES], lamp_normal[LANES],
+        lamp_white[LANES];                     ///< where it was found last, and what it was on white
     float lamp_seen[LANES], lamp_asked[LANES]; ///< luminance of it that a ray found, and that of what it asked for
     LayerSum layer[LANES];
 } Block;
@@ -48,7 +49,9 @@ static inline void aim_ray(struct RTCRay16 *ray, int lane, Float3 origin, Float3
     ray->time[lane] = time, ray->mask[lane] = ~0u, ray->id[lane] = (unsigned)lane, ray->flags[lane] = 0;
 }
 
-static inline void rest_ray(struct RTCRay16 *ray, int lane) { aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0); }
+static inline void rest_ray(struct RTCRay16 *ray, int lane) {
+    aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0);
+}
 
 /// Instead of a sample's number: the middle of the sun and an open sky, for where nothing can hide them.
 enum { SAMPLE_MIDDLE = -1 };

@@ -64,8 +64,8 @@ static void bloom_add(Preview *preview, const Float3 *glow, int w, int h, float 
             float gx = clampf(((float)x + 0.5f) / SHRINK - 0.5f, 0, (float)(w - 1));
             int x0 = (int)gx, x1 = x0 + 1 < w ? x0 + 1 : x0;
             const Float3 *top = glow + (size_t)y0 * (size_t)w, *bottom = glow + (size_t)y1 * (size_t)w;
-            Float3 c = float3_mix(float3_mix(top[x0], top[x1], gx - (float)x0), float3_mix(bottom[x0], bottom[x1], gx - (float)x0),
-                          gy - (float)y0);
+            Float3 c = float3_mix(float3_mix(top[x0], top[x1], gx - (float)x0),
+                                  float3_mix(bottom[x0], bottom[x1], gx - (float)x0), gy - (float)y0);
             Float3 *out = preview->picture + (size_t)y * (size_t)preview->def.width + (size_t)x;
             *out = float3_mad(*out, c, amount);
         }

@@ -328,7 +328,8 @@ static void fill_table(Preview *preview, Block *block) {
         if (block->x[i] >= preview->def.width || block->y[i] >= preview->def.height) continue;
         float share = 1 / maxf((float)count[i], 1);
         preview->table[pixel_index(preview, block, i)] =
-            (Table){.albedo = float3_scale(sum[i].albedo, share), .polish = share * sum[i].polish,
+            (Table){.albedo = float3_scale(sum[i].albedo, share),
+                    .polish = share * sum[i].polish,
                     .tilt = {share * sum[i].tilt[0], share * sum[i].tilt[1]}};
     }
 }

@@ -118,7 +118,7 @@ void tracer_intersect(const Preview *preview, const int *valid, struct RTCRayHit
         wanted[i] = valid[i];
         if (wanted[i] && scene->embree)
             wanted[i] = -tracer_near(scene, float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
-                                      float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
+                                     float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]), ray->tfar[i], 0);
         count += wanted[i] != 0;
     }
     if (!scene->embree || !count) return;
@@ -140,7 +140,8 @@ void tracer_occlude(const Preview *preview, int *valid, struct RTCRay16 *ray, fl
     for (int i = 0; i < LANES; i++) {
         passage.clear[i] = clear[i] = 1;
         if (!valid[i]) continue;
-        Float3 o = float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]), d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
+        Float3 o = float3(ray->org_x[i], ray->org_y[i], ray->org_z[i]),
+               d = float3(ray->dir_x[i], ray->dir_y[i], ray->dir_z[i]);
         if (shape_blocks(preview, ray->time[i], o, d, ray->tfar[i])) clear[i] = 0;
         if (clear[i] <= 0 || !scene->embree || !tracer_near(scene, o, d, ray->tfar[i], 0)) valid[i] = 0;
         count += valid[i] != 0;

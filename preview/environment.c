@@ -40,7 +40,8 @@ static Float3 studio(Float3 d, float sun_azimuth) {
 
 /// Outdoors: bluer overhead, pale at the horizon and about the sun.
 static Float3 open_sky(Float3 d, Float3 sun) {
-    float haze = expf(-4.5f * maxf(d.z, 0)), near = maxf(float3_dot(d, sun), 0), near2 = near * near, near8 = near2 * near2;
+    float haze = expf(-4.5f * maxf(d.z, 0)), near = maxf(float3_dot(d, sun), 0), near2 = near * near,
+          near8 = near2 * near2;
     near8 *= near8;
     Float3 light = float3_mix(float3(0.62f, 0.86f, 1.30f), float3(1.45f, 1.35f, 1.22f), haze);
     return float3_mad(light, float3(1.5f, 1.25f, 0.9f), 0.35f * near2 + 1.3f * near8);
@@ -92,7 +93,8 @@ static void fill_radiance(Preview *preview) {
     Float3 colour = float3_scale(float3_load(def->sky_colour), FILM_SPEED), bounce = float3_scale(colour, 0.5f);
     float height = maxf(preview->sun.z, 0), scale = total > 0 ? PI_F / total : 0;
     if (isfinite(def->ground_height))
-        bounce = float3_mul(float3_load(def->ground_colour), float3_mad(colour, float3_scale(preview->sun_light, height), 0.8f));
+        bounce = float3_mul(float3_load(def->ground_colour),
+                            float3_mad(colour, float3_scale(preview->sun_light, height), 0.8f));
     for (int row = 0; row < SKY_DOWN; row++)
         for (int column = 0; column < SKY_ACROSS; column++) {
             bool above = row < SKY_DOWN / 2 || pictured_below;
@@ -173,5 +175,5 @@ Float3 sky_mirrored(const Sky *sky, Float3 d) {
     int x = noise_floor(across, &fx), y = noise_floor(clampf(down, 0, SKY_DOWN - 1.001f), &fy);
     int x0 = (x + SKY_ACROSS) % SKY_ACROSS, x1 = (x0 + 1) % SKY_ACROSS;
     return float3_mix(float3_mix(sky->blurred[y][x0], sky->blurred[y][x1], fx),
-                  float3_mix(sky->blurred[y + 1][x0], sky->blurred[y + 1][x1], fx), fy);
+                      float3_mix(sky->blurred[y + 1][x0], sky->blurred[y + 1][x1], fx), fy);
 }

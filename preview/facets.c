@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const float FACETS_CREASE = 0.82f; ///< cosine of 35 degrees
-static const Float3 UP = {0, 0, 1};           ///< for the normal of what has no area
+static const Float3 UP = {0, 0, 1};       ///< for the normal of what has no area
 
 static Float3 facets_corner(const PreviewSolid *solid, uint32_t triangle, int corner) {
     return float3_load(solid->vertices + 3 * (size_t)solid->triangles[3 * (size_t)triangle + (size_t)corner]);
@@ -74,8 +74,8 @@ static SingeResult facets_normals(Preview *preview, Facets *facets, SingeError *
 
 /// Copies of the arrays: Embree reads 16 bytes from the last vertex on.
 static bool facets_fill(RTCGeometry geometry, const PreviewSolid *solid) {
-    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              3 * sizeof(float), solid->vertex_count);
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                              solid->vertex_count);
     uint32_t *triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                   3 * sizeof(uint32_t), solid->triangle_count);
     if (!vertices || !triangles) return false;
@@ -118,8 +118,10 @@ SingeResult facets_get(Preview *preview, const PreviewSolid *solid, const Facets
         if (result) return result;
         facets = allocator_resize(preview->allocator, NULL, 0, sizeof *facets);
         if (!facets) return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a mesh");
-        *facets = (Facets){.solid = solid, .triangle_count = solid->triangle_count, .passing = solid->passing,
-                            .next = preview->facets};
+        *facets = (Facets){.solid = solid,
+                           .triangle_count = solid->triangle_count,
+                           .passing = solid->passing,
+                           .next = preview->facets};
         preview->facets = facets;
         result = facets_build(preview, facets, error);
         if (result) facets->solid = NULL; // stays in the list till it is freed, but is not found
@@ -172,8 +174,15 @@ static bool facets_near(const Facets *facets, Float3 origin, Float3 direction) {
 
 float facets_intersect(const Facets *facets, Float3 o, Float3 d, float near, float far, Float3 *normal) {
     if (!facets_near(facets, o, d)) return -1;
-    struct RTCRayHit hit = {.ray = {.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
-                                    .tnear = maxf(near, 0), .tfar = far, .mask = ~0u}};
+    struct RTCRayHit hit = {.ray = {.org_x = o.x,
+                                    .org_y = o.y,
+                                    .org_z = o.z,
+                                    .dir_x = d.x,
+                                    .dir_y = d.y,
+                                    .dir_z = d.z,
+                                    .tnear = maxf(near, 0),
+                                    .tfar = far,
+                                    .mask = ~0u}};
     hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     trace_nearest(facets->embree, &hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(hit.ray.tfar > near)) return -1;

@@ -10,9 +10,9 @@
 
 #include <string.h>
 
-#define BURNING 2e6f       ///< W/m3, q0
-#define FLAME_SEEN 0.085f  ///< less is below the edge of a flame wherever noise puts it
-#define SMOKE_SEEN 0.08f   ///< 1/m
+#define BURNING 2e6f      ///< W/m3, q0
+#define FLAME_SEEN 0.085f ///< less is below the edge of a flame wherever noise puts it
+#define SMOKE_SEEN 0.08f  ///< 1/m
 
 static size_t fire_at(const Fire *fire, int x, int y, int z) {
     return (size_t)x + (size_t)fire->size[0] * ((size_t)y + (size_t)fire->size[1] * (size_t)z);
@@ -50,7 +50,8 @@ static void find_roots(Preview *preview) {
         float rate = scene->vertices[i].flaming, rest;
         if (rate < 0.02f) continue;
         Float3 g = float3_scale(float3_sub(float3_load(scene->positions[i]), fire->origin), 1 / fire->cell);
-        int position[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest), noise_floor(g.z + 0.5f, &rest)};
+        int position[3] = {noise_floor(g.x + 0.5f, &rest), noise_floor(g.y + 0.5f, &rest),
+                           noise_floor(g.z + 0.5f, &rest)};
         bool in = true;
         for (int c = 0; c < 3; c++) in = in && position[c] > 0 && position[c] < fire->size[c] - 1;
         if (!in) continue;
@@ -129,7 +130,8 @@ static float max_flame(const Fire *fire, int x, int y, int z) {
         int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
         float sum = 0;
         for (int m = 0; m < 8; m++)
-            sum += fire->cells[fire_at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))].flame;
+            sum += fire->cells[fire_at(fire, x + (m & 1 ? d[0] : 0), y + (m & 2 ? d[1] : 0), z + (m & 4 ? d[2] : 0))]
+                       .flame;
         max = maxf(max, 0.125f * sum);
     }
     return max;
@@ -160,7 +162,8 @@ static bool find_bounds(Fire *fire) {
                 if (!fire->seen[brick_at(fire, x, y, z)]) continue;
                 Float3 corner = float3_mad(fire->origin, float3((float)x, (float)y, (float)z), side);
                 low = float3(minf(low.x, corner.x), minf(low.y, corner.y), minf(low.z, corner.z));
-                high = float3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
+                high =
+                    float3(maxf(high.x, corner.x + side), maxf(high.y, corner.y + side), maxf(high.z, corner.z + side));
             }
     fire->low = low, fire->high = high;
     return low.x < high.x;
@@ -300,8 +303,8 @@ void fire_free(Preview *preview) {
     Fire *fire = &preview->fire;
     free_cells(preview, fire);
     allocator_resize(preview->allocator, fire->noise,
-                   fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
+                     fire->noise ? (size_t)FIRE_NOISE * FIRE_NOISE * FIRE_NOISE * sizeof *fire->noise : 0, 0);
     allocator_resize(preview->allocator, fire->tiles,
-                   fire->tiles ? (size_t)preview->def.thread_count * sizeof(FireTile) : 0, 0);
+                     fire->tiles ? (size_t)preview->def.thread_count * sizeof(FireTile) : 0, 0);
     *fire = (Fire){.cells = NULL};
 }

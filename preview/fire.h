@@ -9,19 +9,19 @@
 #include <stdint.h>
 
 enum {
-    FIRE_BORDER = 2,  ///< empty cells around the gas, so that interpolation needs no bounds
-    FIRE_BRICK = 2,   ///< cells along the side of a brick, the unit of what is skipped
-    FIRE_STEPS = 96,  ///< a ray's steps through what is not empty
-    FIRE_NOISE = 16,  ///< corners along the side of the lattice of noise, a power of two
+    FIRE_BORDER = 2, ///< empty cells around the gas, so that interpolation needs no bounds
+    FIRE_BRICK = 2,  ///< cells along the side of a brick, the unit of what is skipped
+    FIRE_STEPS = 96, ///< a ray's steps through what is not empty
+    FIRE_NOISE = 16, ///< corners along the side of the lattice of noise, a power of two
     FIRE_COLOURS = 64,
 };
 
 /// What is looked up at a place. Four floats: interpolated together.
 typedef struct FireCell {
-    float flame;  ///< 0 none to 1 burning fully
-    float rise;   ///< m times flame: how far above the paper the flame is
-    float smoke;  ///< 1/m, extinction
-    float glow;   ///< light of the flames that reaches the smoke, per unit of albedo
+    float flame; ///< 0 none to 1 burning fully
+    float rise;  ///< m times flame: how far above the paper the flame is
+    float smoke; ///< 1/m, extinction
+    float glow;  ///< light of the flames that reaches the smoke, per unit of albedo
 } FireCell;
 
 /// What a ray meets in steps from `from` to `distance`: behind one, `light` has been added and `clear` of what comes
@@ -41,21 +41,21 @@ typedef struct FireTile {
 } FireTile;
 
 typedef struct Fire {
-    int size[3];      ///< cells with their border; all 0 where there is no gas
-    bool visible;     ///< whether any of it is seen
-    float cell;       ///< m
-    Float3 origin;        ///< m, middle of cell (0, 0, 0), border included
+    int size[3];   ///< cells with their border; all 0 where there is no gas
+    bool visible;  ///< whether any of it is seen
+    float cell;    ///< m
+    Float3 origin; ///< m, middle of cell (0, 0, 0), border included
     FireCell *cells;
     size_t cell_capacity;
     int bricks[3];
-    uint8_t *seen;    ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
+    uint8_t *seen;      ///< [bricks] FIRE_FLAME and FIRE_SMOKE of what the eddies may bring there
     float (*source)[3]; ///< [cells] how far the gas goes along x and y as it rises by one; what burns there
-    float (*roots)[2]; ///< [cells] rate at which paper burns there, and its height times that
-    uint8_t *burns;   ///< [cells] whether flame may be in reach of the small eddies alone
+    float (*roots)[2];  ///< [cells] rate at which paper burns there, and its height times that
+    uint8_t *burns;     ///< [cells] whether flame may be in reach of the small eddies alone
     size_t brick_capacity;
-    float moment;     ///< s, by which the eddies have risen
-    Float3 daylight;      ///< of sun and sky, per unit of the smoke's albedo
-    Float3 low, high;     ///< m, bounds of the bricks that are not empty
+    float moment;      ///< s, by which the eddies have risen
+    Float3 daylight;   ///< of sun and sky, per unit of the smoke's albedo
+    Float3 low, high;  ///< m, bounds of the bricks that are not empty
     FireTile *tiles;   ///< [def.thread_count] what each thread works on; NULL before the first gas
     float (*noise)[4]; ///< [FIRE_NOISE^3] four numbers from -1 to 1 at every corner; NULL before the first gas
     Float3 colours[FIRE_COLOURS]; ///< radiance of a thick flame from its coolest to its hottest

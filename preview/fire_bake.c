@@ -1,4 +1,5 @@
-// The gas on finer cells, with the tongues and streaks that pictures add by noise: for programs that draw what cells hold.
+// The gas on finer cells, with the tongues and streaks that pictures add by noise: for programs that draw what cells
+// hold.
 
 #include "preview/internal.h"
 
@@ -23,6 +24,7 @@ SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, doub
     for (int z = 0; z < size[2]; z++)
         for (int y = 0; y < size[1]; y++)
             for (int x = 0; x < size[0]; x++, i++)
-                fire_look(preview, float3_mad(origin, float3((float)x, (float)y, (float)z), side), &flame[i], &smoke[i]);
+                fire_look(preview, float3_mad(origin, float3((float)x, (float)y, (float)z), side), &flame[i],
+                          &smoke[i]);
     return SINGE_OK;
 }

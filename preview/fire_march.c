@@ -5,7 +5,10 @@
 
 #include "preview/internal.h"
 
-typedef struct Gathered { Float3 light; float clear; } Gathered;
+typedef struct Gathered {
+    Float3 light;
+    float clear;
+} Gathered;
 
 static void add_step(Gathered *g, const Matter *m, float step) {
     float depth = m->dense * step;
@@ -43,8 +46,8 @@ static int look_ahead(const Fire *fire, Float3 p, Float3 d, float *run) {
         brick[c] = i < 0 ? 0 : i < fire->bricks[c] ? i : fire->bricks[c] - 1;
         if (fabsf(ray[c]) > 1e-9f) *run = minf(*run, ((ray[c] > 0 ? 1 : 0) - f) * side / ray[c]);
     }
-    return fire->seen[(size_t)brick[0] + (size_t)fire->bricks[0] * ((size_t)brick[1] + (size_t)fire->bricks[1] *
-                      (size_t)brick[2])];
+    return fire->seen[(size_t)brick[0] +
+                      (size_t)fire->bricks[0] * ((size_t)brick[1] + (size_t)fire->bricks[1] * (size_t)brick[2])];
 }
 
 static void see_ray(const Preview *preview, Float3 d, FireView *view) {

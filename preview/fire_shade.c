@@ -21,13 +21,13 @@
 
 #define FLAME_COOL 1350.0f ///< K
 #define FLAME_HOT 2050.0f
-#define FLAME_DIM 0.4f     ///< radiance of a thick flame at its coolest and its hottest
+#define FLAME_DIM 0.4f ///< radiance of a thick flame at its coolest and its hottest
 #define FLAME_BRIGHT 3.7f
 #define SOOT_DENSE 32.0f   ///< 1/m: radiance gathered a metre over that of a thick flame
 #define SOOT_OPAQUE 6.0f   ///< 1/m, extinction
-#define BLUE_DENSE 0.55f  ///< 1/m: radiance of the base gathered a metre
+#define BLUE_DENSE 0.55f   ///< 1/m: radiance of the base gathered a metre
 #define EDGE 0.19f         ///< share of burning at which a flame has its edge
-#define STAND_OFF 0.002f  ///< m above the paper, where nothing is seen yet
+#define STAND_OFF 0.002f   ///< m above the paper, where nothing is seen yet
 #define SOOT_BEGINS 0.010f ///< m
 #define SOOT_FULL 0.030f
 
@@ -58,8 +58,8 @@ static FireCell look_up(const Fire *fire, Float3 g) {
     Four sum = {0, 0, 0, 0};
     for (int z = 0; z < 3; z++)
         for (int y = 0; y < 3; y++) {
-            size_t row = (size_t)base[0] + (size_t)fire->size[0] * ((size_t)(base[1] + y) +
-                         (size_t)fire->size[1] * (size_t)(base[2] + z));
+            size_t row = (size_t)base[0] + (size_t)fire->size[0] *
+                                               ((size_t)(base[1] + y) + (size_t)fire->size[1] * (size_t)(base[2] + z));
             const FireCell *cells = &fire->cells[row];
             Four across = four_load(&cells[0].flame) * w[0][0] + four_load(&cells[1].flame) * w[0][1] +
                           four_load(&cells[2].flame) * w[0][2];
@@ -68,7 +68,9 @@ static FireCell look_up(const Fire *fire, Float3 g) {
     return (FireCell){sum[0], sum[1], sum[2], sum[3]};
 }
 
-typedef struct Noise { float a, b, c, d; } Noise;
+typedef struct Noise {
+    float a, b, c, d;
+} Noise;
 
 /// The whole number below x, and what is left. Places lie within some kilometres, so that it is an int.
 static inline int fire_split(float x, float *rest) {
@@ -99,7 +101,7 @@ static inline Noise eddies(const Fire *fire, Float3 p, float time, float width, 
     const float c = 0.829f, s = 0.559f, tilt = 0.21f; // 34 degrees about the vertical
     float across = 1 / width, z = p.z - RISE * time;
     return noise_at(fire, float3((c * p.x - s * p.y + tilt * z / stretch) * across,
-                             (s * p.x + c * p.y) * across + 1.3f * time, z * across / stretch));
+                                 (s * p.x + c * p.y) * across + 1.3f * time, z * across / stretch));
 }
 
 // ---- what is there

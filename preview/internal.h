@@ -9,10 +9,10 @@
 #include "preview/trace.h"
 
 enum {
-    LANES = 16,            ///< rays in a packet: a block of 4 x 4 pixels
-    BLOCK = 4,             ///< pixels along a block's side
-    TILE = FIRE_TILE,      ///< pixels along a tile's side, the unit of work of a thread
-    LIGHT_LIMIT = 16,      ///< ember clusters that cast light
+    LANES = 16,       ///< rays in a packet: a block of 4 x 4 pixels
+    BLOCK = 4,        ///< pixels along a block's side
+    TILE = FIRE_TILE, ///< pixels along a tile's side, the unit of work of a thread
+    LIGHT_LIMIT = 16, ///< ember clusters that cast light
     MIP_LIMIT = 15,
     BLACKBODY_COUNT = 160, ///< table from BLACKBODY_MIN in steps of BLACKBODY_STEP
     THREAD_LIMIT = 64,
@@ -27,7 +27,7 @@ enum {
 /// What shading reads of a vertex.
 typedef struct PaperVertex {
     float normal[3];
-    float rest[3];       ///< m
+    float rest[3]; ///< m
     float uv[2];
     float temperature;   ///< K
     float peak;          ///< K, highest so far
@@ -55,9 +55,9 @@ typedef struct Texture {
 /// Point sources. Those beyond the count have softness 1 and are black.
 typedef struct EmberLights {
     float x[LIGHT_LIMIT], y[LIGHT_LIMIT], z[LIGHT_LIMIT];
-    float softness[LIGHT_LIMIT]; ///< m2, added to the distance squared
-    float extent[LIGHT_LIMIT];   ///< m, within which the light comes from
-    float power[LIGHT_LIMIT];    ///< luminance of the strength
+    float softness[LIGHT_LIMIT];    ///< m2, added to the distance squared
+    float extent[LIGHT_LIMIT];      ///< m, within which the light comes from
+    float power[LIGHT_LIMIT];       ///< luminance of the strength
     float strength[3][LIGHT_LIMIT]; ///< linear colour; radiance times area over 2 pi: divide by distance squared
 } EmberLights;
 
@@ -71,8 +71,8 @@ typedef struct Sky {
 
 /// The light of embers and flames in a pixel, before what hides it is taken away.
 typedef struct Lamp {
-    Float3 light;       ///< as it reaches the eye
-    Float3 normal;      ///< of the last sample
+    Float3 light;   ///< as it reaches the eye
+    Float3 normal;  ///< of the last sample
     float distance; ///< m, the same
     float seen;     ///< share of it that nothing hides, by few rays
     int32_t sheet;
@@ -88,21 +88,21 @@ typedef struct Table {
 typedef struct Camera {
     Float3 eye, right, up, forward; ///< right and up reach the border of the picture at distance 1
     Float3 lens_right, lens_up;     ///< the lens' radius
-    float lens, focus;          ///< m, its radius and the distance that is sharp
-    float pixel;                ///< size of a pixel at distance 1
-    float reach;                ///< m, eye to target
+    float lens, focus;              ///< m, its radius and the distance that is sharp
+    float pixel;                    ///< size of a pixel at distance 1
+    float reach;                    ///< m, eye to target
 } Camera;
 
 typedef struct Scene {
     RTCScene embree; ///< NULL when there is no triangle
     PaperVertex *vertices;
-    float (*positions)[4];    ///< in the middle of the exposure
-    float (*moved[2])[4];     ///< when it begins and ends; not used without a shutter
+    float (*positions)[4]; ///< in the middle of the exposure
+    float (*moved[2])[4];  ///< when it begins and ends; not used without a shutter
     uint32_t (*triangles)[3];
     uint32_t vertex_count, triangle_count;
     uint32_t vertex_capacity, position_capacity, moved_capacity[2], triangle_capacity;
-    Float3 low, high;    ///< bounds of the drawn triangles
-    float epsilon;   ///< m, distance by which secondary rays leave a surface
+    Float3 low, high; ///< bounds of the drawn triangles
+    float epsilon;    ///< m, distance by which secondary rays leave a surface
     EmberLights lights;
     int light_count;
 } Scene;
@@ -111,11 +111,11 @@ typedef struct Scene {
 typedef struct Facets {
     const PreviewSolid *solid;
     RTCScene embree;
-    Float3 *normals;  ///< [3 * triangle_count] of each triangle's corners
-    Float3 middle;    ///< of its bounds, in its own frame
-    float extent; ///< m, from the middle
+    Float3 *normals; ///< [3 * triangle_count] of each triangle's corners
+    Float3 middle;   ///< of its bounds, in its own frame
+    float extent;    ///< m, from the middle
     uint32_t triangle_count;
-    bool passing;     ///< goes when no shape has it any more
+    bool passing; ///< goes when no shape has it any more
     struct Facets *next;
 } Facets;
 
@@ -127,40 +127,40 @@ struct Preview {
     Float3 sun, sun_right, sun_up; ///< unit, towards the light, and a frame across it
     Float3 sun_light;              ///< what white paper sends back of it
     Sky sky;
-    float sun_spread;          ///< tangent of the light's apparent radius
+    float sun_spread; ///< tangent of the light's apparent radius
     PreviewShape *shapes;
     uint32_t shape_count;
-    Facets *facets;            ///< of the solids that were drawn
-    Texture *textures;         ///< [def.sheet_count]
-    float linear[256];         ///< sRGB byte to linear
+    Facets *facets;    ///< of the solids that were drawn
+    Texture *textures; ///< [def.sheet_count]
+    float linear[256]; ///< sRGB byte to linear
     Float3 blackbody[BLACKBODY_COUNT];
-    Float3 *picture;               ///< [height * width] radiance
-    Lamp *lamps;               ///< [height * width]
-    float *seen;               ///< [height * width] of the lamps, smoothed along rows
-    Table *table;              ///< [height * width], once `table_known`
+    Float3 *picture; ///< [height * width] radiance
+    Lamp *lamps;     ///< [height * width]
+    float *seen;     ///< [height * width] of the lamps, smoothed along rows
+    Table *table;    ///< [height * width], once `table_known`
     bool table_known;
-    uint8_t *mask;             ///< [mask_size] of each block: whether a sheet or a shape may touch it
-    Float3 *glow[2];               ///< [quarter height * quarter width] for the bloom
+    uint8_t *mask;   ///< [mask_size] of each block: whether a sheet or a shape may touch it
+    Float3 *glow[2]; ///< [quarter height * quarter width] for the bloom
     Scene scene;
     Fire fire;
-    PreviewLayers layers;      ///< being drawn
+    PreviewLayers layers; ///< being drawn
     double time;
 };
 
 /// A point to be lit. All normals face the viewer.
 typedef struct Point {
     Float3 position, normal, geometric, view; ///< view: unit, towards the eye
-    Float3 albedo, glow;    ///< glow: what it gives off itself
-    float transmission; ///< share of the light from behind that comes through
-    float gloss, shininess; ///< Blinn-Phong lobe of the sun
-    float mirror;       ///< share of the blurred sky that it mirrors
-    float footprint;    ///< m, a pixel's size here
-    float fade;         ///< 0 here to 1 lost in the background
-    bool lit;           ///< false: glow is all
-    float distance;     ///< m, from the lens; infinite: nothing there
+    Float3 albedo, glow;                      ///< glow: what it gives off itself
+    float transmission;                       ///< share of the light from behind that comes through
+    float gloss, shininess;                   ///< Blinn-Phong lobe of the sun
+    float mirror;                             ///< share of the blurred sky that it mirrors
+    float footprint;                          ///< m, a pixel's size here
+    float fade;                               ///< 0 here to 1 lost in the background
+    bool lit;                                 ///< false: glow is all
+    float distance;                           ///< m, from the lens; infinite: nothing there
     float temperature, burn;
     int32_t sheet, piece; ///< -1: none
-    bool hit;           ///< a sheet or a shape
+    bool hit;             ///< a sheet or a shape
 } Point;
 
 // preview.c
@@ -253,7 +253,7 @@ typedef struct PaperState {
     Float3 rest;
     float uv[2], temperature, peak, burn, burn_rate, gradient, heat_gradient, rim, spacing;
     float glowing; ///< 1/s, of burn_rate what char without fuel burns at
-    float age; ///< s since it caught fire, as a fire of real pace has it; 0: not yet
+    float age;     ///< s since it caught fire, as a fire of real pace has it; 0: not yet
     int32_t sheet, piece;
 } PaperState;
 /// The sheet's fields at a place in a triangle.

@@ -64,13 +64,15 @@ static void lamps_aim(const Preview *preview, Block *block, int lane, int sample
     sample_square((uint32_t)sample, block->turn[lane][1], block->turn[lane][0], square);
     float z = 1.6f * square[0] - 0.8f, disc[2];
     sample_disc((const float[2]){0.6f, square[1]}, disc);
-    Float3 to = float3_add(float3(l->x[lamp], l->y[lamp], l->z[lamp]), float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
-    Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position), to_light = float3_sub(to, point->position);
+    Float3 to = float3_add(float3(l->x[lamp], l->y[lamp], l->z[lamp]),
+                           float3_scale(float3(disc[0], disc[1], z), 0.8f * extent));
+    Float3 centre = float3_sub(float3(l->x[lamp], l->y[lamp], l->z[lamp]), point->position),
+           to_light = float3_sub(to, point->position);
     float distance = float3_length(to_light), free = float3_length(centre) - extent;
     if (free < 0.1f * extent || distance < 1e-6f) return; // beside it, or in it
     float side = float3_dot(point->geometric, to_light) > 0 ? preview->scene.epsilon : -preview->scene.epsilon;
-    aim_ray(&block->shadow, lane, float3_mad(point->position, point->geometric, side), float3_scale(to_light, 1 / distance), 0,
-            minf(free, distance), block->time[lane]);
+    aim_ray(&block->shadow, lane, float3_mad(point->position, point->geometric, side),
+            float3_scale(to_light, 1 / distance), 0, minf(free, distance), block->time[lane]);
     block->valid[lane] = -1;
 }
 
@@ -121,10 +123,12 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
 
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples) {
     const Point *point = &block->point[lane];
-    preview->lamps[pixel] = (Lamp){
-        .light = float3_scale(block->lamp[lane], 1 / (float)samples), .normal = point->geometric,
-        .distance = point->distance, .sheet = point->sheet,
-        .seen = block->lamp_asked[lane] > 0 ? block->lamp_seen[lane] / block->lamp_asked[lane] : 1};
+    preview->lamps[pixel] =
+        (Lamp){.light = float3_scale(block->lamp[lane], 1 / (float)samples),
+               .normal = point->geometric,
+               .distance = point->distance,
+               .sheet = point->sheet,
+               .seen = block->lamp_asked[lane] > 0 ? block->lamp_seen[lane] / block->lamp_asked[lane] : 1};
 }
 
 // ---- smoothed
@@ -136,8 +140,8 @@ static bool is_same(const Lamp *a, const Lamp *b) {
 }
 
 /// Mean of `values` along a line of pixels `stride` apart, from `before` of them to `after`, each at its nearness.
-static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride, int before, int after,
-                    int reach) {
+static float lamps_smooth_line(const Lamp *lamp, const float *values, size_t values_stride, ptrdiff_t stride,
+                               int before, int after, int reach) {
     float sum = 0, total = 0;
     for (int k = -before; k <= after; k++) {
         if (!is_same(lamp, lamp + k * stride)) continue;
@@ -159,8 +163,8 @@ void lamps_smooth(Preview *preview, Block *block) {
         if (x >= w || y >= h) continue;
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
         const Lamp *lamp = &preview->lamps[pixel];
-        preview->seen[pixel] = lamps_smooth_line(lamp, &lamp->seen, sizeof *lamp, 1, lamps_lesser(x, reach), lamps_lesser(w - 1 - x, reach),
-                                      reach);
+        preview->seen[pixel] = lamps_smooth_line(lamp, &lamp->seen, sizeof *lamp, 1, lamps_lesser(x, reach),
+                                                 lamps_lesser(w - 1 - x, reach), reach);
     }
 }
 
@@ -172,8 +176,8 @@ void lamps_finish(Preview *preview, Block *block) {
         size_t pixel = (size_t)y * (size_t)w + (size_t)x;
         const Lamp *lamp = &preview->lamps[pixel];
         if (lamp->light.x + lamp->light.y + lamp->light.z <= 0) continue;
-        float seen = lamps_smooth_line(lamp, &preview->seen[pixel], sizeof(float), w, lamps_lesser(y, reach), lamps_lesser(h - 1 - y, reach),
-                            reach);
+        float seen = lamps_smooth_line(lamp, &preview->seen[pixel], sizeof(float), w, lamps_lesser(y, reach),
+                                       lamps_lesser(h - 1 - y, reach), reach);
         preview->picture[pixel] = float3_mad(preview->picture[pixel], lamp->light, seen);
     }
 }

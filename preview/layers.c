@@ -44,6 +44,5 @@ void layers_write(const Preview *preview, size_t pixel, const LayerSum *sum) {
 
 void layers_finish(const Preview *preview) {
     size_t count = (size_t)preview->def.width * (size_t)preview->def.height;
-    for (size_t i = 0; preview->layers.beauty && i < count; i++)
-        store(preview->layers.beauty, i, preview->picture[i]);
+    for (size_t i = 0; preview->layers.beauty && i < count; i++) store(preview->layers.beauty, i, preview->picture[i]);
 }

@@ -65,9 +65,7 @@ void sample_lens(uint32_t index, uint32_t key, float out[2]) {
     out[1] = fraction((float)(key >> 16) / 65536 + 0.67104360f * (float)index);
 }
 
-float sample_time(uint32_t index, uint32_t key) {
-    return fraction(hash_unit(key) + 0.61803399f * (float)index);
-}
+float sample_time(uint32_t index, uint32_t key) { return fraction(hash_unit(key) + 0.61803399f * (float)index); }
 
 void sample_pixel(int x, int y, uint32_t seed, float out[2]) {
     float px = (float)(x + (int)(seed & 63)), py = (float)(y + (int)(seed >> 6 & 63));

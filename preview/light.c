@@ -9,7 +9,10 @@
 
 enum { GRID = 10, CELLS = GRID * GRID * GRID, FLAME_LIGHTS = 6 };
 
-typedef struct Cluster { Float3 position, strength; float weight; } Cluster;
+typedef struct Cluster {
+    Float3 position, strength;
+    float weight;
+} Cluster;
 
 /// Embers are drawn on film's scale, which holds back what is bright (blackbody.c). The light they cast is not held
 /// back, and an eye in the dark sees it better than a camera set for daylight does.
@@ -41,7 +44,8 @@ static void gather_triangle(const Preview *preview, const uint32_t t[3], Cluster
     float hottest = maxf(a->temperature, maxf(b->temperature, c->temperature));
     float share = hottest > BLACKBODY_MIN ? coverage(a, b, c) : 0;
     if (share <= 0) return;
-    Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]), pc = float3_load(scene->positions[t[2]]);
+    Float3 pa = float3_load(scene->positions[t[0]]), pb = float3_load(scene->positions[t[1]]),
+           pc = float3_load(scene->positions[t[2]]);
     float area = 0.5f * float3_length(float3_cross(float3_sub(pb, pa), float3_sub(pc, pa)));
     float rate = (a->burn_rate + b->burn_rate + c->burn_rate) / 3;
     float temperature = (a->temperature + b->temperature + c->temperature) / 3;
@@ -72,7 +76,8 @@ static void add_shapes(Preview *preview) {
         if (shape->kind == SINGE_COLLIDER_BOX) r = float3_length(float3_load(shape->half_size)) * 0.6f;
         Float3 glow = blackbody_glow(preview->blackbody, shape->temperature);
         Float3 position = shape_middle(shape);
-        add_light(scene, position, float3_scale(glow, 1.6f * r * r), 0.3f * r * r, 1.02f * shape_extent(shape, preview->def.shutter));
+        add_light(scene, position, float3_scale(glow, 1.6f * r * r), 0.3f * r * r,
+                  1.02f * shape_extent(shape, preview->def.shutter));
     }
 }
 

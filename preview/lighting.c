@@ -57,8 +57,10 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
     tracer_occlude(preview, block->valid, &block->shadow, block->clear);
     for (int i = 0; i < LANES; i++) {
         if (!asked[i]) continue;
-        block->light[i] = float3_mad(block->light[i], float3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
-        block->sunlit = block->sunlit || block->clear[i] > 0.99f, block->shaded = block->shaded || block->clear[i] < 0.99f;
+        block->light[i] =
+            float3_mad(block->light[i], float3_mul(reflected[i], preview->sun_light), share * block->clear[i]);
+        block->sunlit = block->sunlit || block->clear[i] > 0.99f,
+        block->shaded = block->shaded || block->clear[i] < 0.99f;
         block->sun_seen += block->clear[i], block->sun_asked++;
     }
 }
@@ -68,14 +70,15 @@ static void add_known_sun(const Preview *preview, Block *block, const int *activ
     float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
     for (int i = 0; i < LANES; i++)
         if (light_reaches(block, active, i))
-            block->light[i] = float3_mad(block->light[i], float3_mul(light_reflect(&block->point[i], preview->sun),
-                                                            preview->sun_light), seen);
+            block->light[i] = float3_mad(
+                block->light[i], float3_mul(light_reflect(&block->point[i], preview->sun), preview->sun_light), seen);
 }
 
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
     if (!rays) add_known_sun(preview, block, active);
     for (int k = 0; k < rays; k++)
-        add_sun_ray(preview, block, active, sample == SAMPLE_MIDDLE ? SAMPLE_MIDDLE : sample * rays + k, 1 / (float)rays);
+        add_sun_ray(preview, block, active, sample == SAMPLE_MIDDLE ? SAMPLE_MIDDLE : sample * rays + k,
+                    1 / (float)rays);
 }
 
 /// Whether the point is nearer than `reach` to the surface's bounds.
@@ -85,7 +88,9 @@ static bool within(const Scene *scene, Float3 p, float reach) {
 }
 
 /// Length of the rays that ask how much of the sky is hidden.
-static float sky_reach(const Scene *scene) { return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f; }
+static float sky_reach(const Scene *scene) {
+    return 0.28f * float3_length(float3_sub(scene->high, scene->low)) + 0.01f;
+}
 
 static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
     if (within(&preview->scene, p, reach)) return true;
@@ -126,7 +131,8 @@ bool light_may_be_hidden(const Preview *preview, const Block *block, const int *
     Float3 p = block->point[first].position;
     float spread = 0;
     for (int i = first + 1; i < LANES; i++)
-        if (light_reaches(block, active, i)) spread = maxf(spread, float3_length(float3_sub(block->point[i].position, p)));
+        if (light_reaches(block, active, i))
+            spread = maxf(spread, float3_length(float3_sub(block->point[i].position, p)));
     return sky_may_be_hidden(preview, p, table_reach(&preview->scene, p) + spread) ||
            sun_may_be_hidden(preview, p, spread);
 }
@@ -171,7 +177,8 @@ void light_add_sky(const Preview *preview, Block *block, const int *active, int 
         Float3 ambient = sky_ambient(&preview->sky, point->normal);
         // thin paper also passes some of what falls on its other side
         if (point->transmission > 0)
-            ambient = float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);
+            ambient =
+                float3_mad(ambient, sky_ambient(&preview->sky, float3_scale(point->normal, -1)), point->transmission);
         Float3 light = float3_mul(point->albedo, ambient);
         if (point->mirror > 0) light = float3_add(light, mirror_sky(&preview->sky, point));
         float open = ask ? block->open[i] : block->sky_seen[i] / (float)block->sky_asked[i];

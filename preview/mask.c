@@ -7,7 +7,9 @@
 
 #include <string.h>
 
-typedef struct Rectangle { float low[2], high[2]; } Rectangle;
+typedef struct Rectangle {
+    float low[2], high[2];
+} Rectangle;
 
 static const Rectangle nowhere = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
 static const Rectangle everywhere = {{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
@@ -30,8 +32,7 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
     float y = float3_dot(d, camera->up) / (float3_dot(camera->up, camera->up) * depth);
     float at[2] = {(0.5f + 0.5f * x) * (float)preview->def.width, (0.5f - 0.5f * y) * (float)preview->def.height};
     float blur = camera_blur(camera, depth);
-    for (int c = 0; c < 2; c++)
-        r->low[c] = minf(r->low[c], at[c] - blur), r->high[c] = maxf(r->high[c], at[c] + blur);
+    for (int c = 0; c < 2; c++) r->low[c] = minf(r->low[c], at[c] - blur), r->high[c] = maxf(r->high[c], at[c] + blur);
 }
 
 static void mark(Preview *preview, const Rectangle *r) {
@@ -54,7 +55,8 @@ void mask_fill(Preview *preview) {
         for (int k = 0; k < 3; k++) {
             uint32_t v = scene->triangles[t][k];
             if (moves)
-                include(preview, float3_load(scene->moved[0][v]), &r), include(preview, float3_load(scene->moved[1][v]), &r);
+                include(preview, float3_load(scene->moved[0][v]), &r),
+                    include(preview, float3_load(scene->moved[1][v]), &r);
             else include(preview, float3_load(scene->positions[v]), &r);
         }
         mark(preview, &r);
@@ -66,7 +68,7 @@ void mask_fill(Preview *preview) {
         for (int corner = 0; corner < 8; corner++)
             include(preview,
                     float3(centre.x + (corner & 1 ? extent : -extent), centre.y + (corner & 2 ? extent : -extent),
-                       centre.z + (corner & 4 ? extent : -extent)),
+                           centre.z + (corner & 4 ? extent : -extent)),
                     &r);
         mark(preview, &r);
     }

@@ -26,7 +26,8 @@ static bool mesh_in_reserve(Preview *preview, uint32_t vertices, uint32_t triang
                 mesh_in_grow(preview, &scene->positions, &scene->position_capacity, vertices, position);
     for (int i = 0; done && preview->def.shutter > 0 && i < 2; i++)
         done = mesh_in_grow(preview, &scene->moved[i], &scene->moved_capacity[i], vertices, position);
-    return done && mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
+    return done &&
+           mesh_in_grow(preview, &scene->triangles, &scene->triangle_capacity, triangles, sizeof *scene->triangles);
 }
 
 static float finite_or(float x, float otherwise) { return isfinite(x) ? x : otherwise; }
@@ -110,7 +111,8 @@ static void add3(float sum[3], Float3 v, float weight) {
 /// `gradient`.
 static void add_gradient(Scene *scene, const uint32_t t[3]) {
     PaperVertex *v[3] = {&scene->vertices[t[0]], &scene->vertices[t[1]], &scene->vertices[t[2]]};
-    Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin), e2 = float3_sub(float3_load(v[2]->rest), origin);
+    Float3 origin = float3_load(v[0]->rest), e1 = float3_sub(float3_load(v[1]->rest), origin),
+           e2 = float3_sub(float3_load(v[2]->rest), origin);
     Float3 n = float3_cross(e1, e2);
     float n2 = float3_dot(n, n);
     if (!(n2 > 1e-24f)) return;
@@ -137,7 +139,8 @@ static void add_angles(Scene *scene, const uint32_t t[3]) {
 static bool keep_triangle(const SingeSurface *surface, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++)
         if (!near_enough(surface->position[t[k]])) return false;
-    Float3 a = float3_load(surface->position[t[0]]), b = float3_load(surface->position[t[1]]), c = float3_load(surface->position[t[2]]);
+    Float3 a = float3_load(surface->position[t[0]]), b = float3_load(surface->position[t[1]]),
+           c = float3_load(surface->position[t[2]]);
     Float3 n = float3_cross(float3_sub(b, a), float3_sub(c, a));
     return float3_dot(n, n) > 1e-30f;
 }
@@ -175,7 +178,8 @@ static void measure_textures(Preview *preview) {
             float cu = c->uv[0] - a->uv[0], cv = c->uv[1] - a->uv[1];
             texels += fabs((double)bu * (double)cv - (double)bv * (double)cu);
             Float3 o = float3_load(a->rest);
-            area += (double)float3_length(float3_cross(float3_sub(float3_load(b->rest), o), float3_sub(float3_load(c->rest), o)));
+            area += (double)float3_length(
+                float3_cross(float3_sub(float3_load(b->rest), o), float3_sub(float3_load(c->rest), o)));
         }
         texels *= (double)texture->width[0] * (double)texture->height[0];
         texture->texels_per_metre = area > 0 && texels < 1e12 ? (float)sqrt(texels / area) : 0;
@@ -183,9 +187,9 @@ static void measure_textures(Preview *preview) {
 }
 
 static SingeResult check(const SingeSurface *surface, SingeError *error) {
-    if (surface->vertex_count && !(surface->position && surface->normal && surface->uv && surface->rest_position &&
-                                   surface->temperature && surface->temperature_peak && surface->burn &&
-                                   surface->burn_rate && surface->sheet))
+    if (surface->vertex_count &&
+        !(surface->position && surface->normal && surface->uv && surface->rest_position && surface->temperature &&
+          surface->temperature_peak && surface->burn && surface->burn_rate && surface->sheet))
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface lacks one of the arrays that are drawn");
     if (surface->triangle_count && !surface->triangles)
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the surface has a triangle count and no triangles");
@@ -245,7 +249,7 @@ void tracer_free(Preview *preview) {
     allocator_resize(preview->allocator, scene->positions, scene->position_capacity * sizeof *scene->positions, 0);
     for (int end = 0; end < 2; end++)
         allocator_resize(preview->allocator, scene->moved[end], scene->moved_capacity[end] * sizeof *scene->moved[end],
-                       0);
+                         0);
     allocator_resize(preview->allocator, scene->triangles, scene->triangle_capacity * sizeof *scene->triangles, 0);
     *scene = (Scene){0};
 }

@@ -56,7 +56,7 @@ static inline float noise3(Float3 p, uint32_t seed) {
 static inline Float3 noise3_gradient(Float3 p, float n, uint32_t seed) {
     const float e = 0.25f;
     return float3((noise3(float3(p.x + e, p.y, p.z), seed) - n) / e, (noise3(float3(p.x, p.y + e, p.z), seed) - n) / e,
-              (noise3(float3(p.x, p.y, p.z + e), seed) - n) / e);
+                  (noise3(float3(p.x, p.y, p.z + e), seed) - n) / e);
 }
 
 /// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice

@@ -19,12 +19,20 @@ SingeResult preview_fail(SingeError *error, SingeResult code, int64_t element, c
 
 PreviewDef preview_default(void) {
     return (PreviewDef){
-        .width = 960, .height = 540, .samples = 8, .thread_count = 1,
+        .width = 960,
+        .height = 540,
+        .samples = 8,
+        .thread_count = 1,
         .camera = {.eye = {0, -0.42f, 0.34f}, .target = {0, -0.01f, 0}, .up = {0, 0, 1}, .fov = 0.6f},
-        .sun_direction = {-0.55f, 0.45f, 0.62f}, .sun_angle = 0.045f,
-        .sun_colour = {2.2f, 2.05f, 1.85f}, .sky_colour = {0.4f, 0.45f, 0.53f},
-        .ground_height = 0, .ground_colour = {0.235f, 0.145f, 0.085f}, .background = {0.16f, 0.15f, 0.145f},
-        .exposure = 1, .pace = 1,
+        .sun_direction = {-0.55f, 0.45f, 0.62f},
+        .sun_angle = 0.045f,
+        .sun_colour = {2.2f, 2.05f, 1.85f},
+        .sky_colour = {0.4f, 0.45f, 0.53f},
+        .ground_height = 0,
+        .ground_colour = {0.235f, 0.145f, 0.085f},
+        .background = {0.16f, 0.15f, 0.145f},
+        .exposure = 1,
+        .pace = 1,
     };
 }
 
@@ -43,7 +51,8 @@ static SingeResult check_camera(const PreviewCamera *camera, SingeError *error) 
         !all_between(camera->up, 3, -1e4f, 1e4f))
         return preview_refuse(error, -1, "camera: eye, target and up must be finite and within 10 km");
     Float3 up = float3_load(camera->up), view = float3_sub(float3_load(camera->target), float3_load(camera->eye));
-    if (!(float3_dot(view, view) > 1e-12f)) return preview_refuse(error, -1, "camera: eye and target are the same point");
+    if (!(float3_dot(view, view) > 1e-12f))
+        return preview_refuse(error, -1, "camera: eye and target are the same point");
     if (!(float3_dot(up, up) > 1e-12f)) return preview_refuse(error, -1, "camera: up has no direction");
     if (!(camera->fov > 0.001f && camera->fov < 3.1f))
         return preview_refuse(error, -1, "camera: fov must lie between 0.001 and 3.1 rad");
@@ -71,7 +80,8 @@ static SingeResult check_shape(const PreviewShape *shape, int64_t index, SingeEr
     default: good = false;
     }
     if (shape->kind != SINGE_COLLIDER_SPHERE) good = good && fabsf(length - 1) < 0.01f;
-    return good ? SINGE_OK : preview_refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
+    return good ? SINGE_OK
+                : preview_refuse(error, index, "shape: kind, size, place, rotation or temperature is out of range");
 }
 
 static SingeResult check_shapes(const PreviewShape *shapes, uint32_t count, SingeError *error) {
@@ -98,11 +108,14 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
         !all_between(def->ground_colour, 3, 0, 1e4f) || !all_between(def->background, 3, 0, 1e4f))
         return preview_refuse(error, -1, "colours must be finite and not negative");
     if (!(def->exposure > 0 && def->exposure < 1e4f)) return preview_refuse(error, -1, "exposure must be above 0");
-    if (!(def->shutter >= 0 && def->shutter <= 1e4f)) return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
+    if (!(def->shutter >= 0 && def->shutter <= 1e4f))
+        return preview_refuse(error, -1, "shutter must lie between 0 and 1e4 s");
     if (!(def->pace > 0 && def->pace <= 1e9f)) return preview_refuse(error, -1, "pace must be above 0");
-    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN) return preview_refuse(error, -1, "ground is none of those there are");
+    if ((unsigned)def->ground > PREVIEW_GROUND_PLAIN)
+        return preview_refuse(error, -1, "ground is none of those there are");
     if ((unsigned)def->sky > PREVIEW_SKY_PICTURE) return preview_refuse(error, -1, "sky is none of those there are");
-    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f) return preview_refuse(error, -1, "sky_turn must be finite");
+    if (!isfinite(def->sky_turn) || fabsf(def->sky_turn) > 1e6f)
+        return preview_refuse(error, -1, "sky_turn must be finite");
     if (def->sky == PREVIEW_SKY_PICTURE && !(def->sky_picture && image_is_good(def->sky_picture)))
         return preview_refuse(error, -1, "sky_picture is missing, empty or too large");
     float ground = def->ground_height;
@@ -114,7 +127,8 @@ static SingeResult check_light(const PreviewDef *def, SingeError *error) {
 static SingeResult check_def(const PreviewDef *def, SingeError *error) {
     if (def->width < 1 || def->height < 1 || def->width > SIZE_LIMIT || def->height > SIZE_LIMIT)
         return preview_refuse(error, -1, "width and height must lie between 1 and 16384");
-    if (def->samples < 1 || def->samples > 4096) return preview_refuse(error, -1, "samples must lie between 1 and 4096");
+    if (def->samples < 1 || def->samples > 4096)
+        return preview_refuse(error, -1, "samples must lie between 1 and 4096");
     if (def->thread_count < 1 || def->thread_count > THREAD_LIMIT)
         return preview_refuse(error, -1, "thread_count must lie between 1 and 64");
     SingeResult result = check_camera(&def->camera, error);
@@ -125,7 +139,8 @@ static SingeResult check_def(const PreviewDef *def, SingeError *error) {
             result = preview_refuse(error, s, "a sheet's picture is empty or too large");
     }
     for (uint32_t s = 0; !result && def->colours && s < def->sheet_count; s++)
-        if (!all_between(def->colours[s], 3, 0, 1e4f)) result = preview_refuse(error, s, "a sheet's colour is out of range");
+        if (!all_between(def->colours[s], 3, 0, 1e4f))
+            result = preview_refuse(error, s, "a sheet's colour is out of range");
     for (uint32_t s = 0; !result && def->transmittances && s < def->sheet_count; s++)
         if (!all_between(&def->transmittances[s], 1, 0, 1))
             result = preview_refuse(error, s, "a sheet's transmittance must lie between 0 and 1");
@@ -150,8 +165,8 @@ static SingeResult preview_allocate(Preview *preview, SingeError *error) {
         preview->glow[i] = allocator_resize(*allocator, NULL, 0, glow_count(def) * sizeof(Float3));
     preview->textures = allocator_resize(*allocator, NULL, 0, def->sheet_count * sizeof(Texture));
     if (preview->textures) memset(preview->textures, 0, def->sheet_count * sizeof(Texture));
-    if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask || !preview->glow[0] || !preview->glow[1] ||
-        (def->sheet_count && !preview->textures))
+    if (!preview->picture || !preview->lamps || !preview->seen || !preview->table || !preview->mask ||
+        !preview->glow[0] || !preview->glow[1] || (def->sheet_count && !preview->textures))
         return preview_fail(error, SINGE_ERROR_MEMORY, -1, "out of memory for a picture of %d x %d", def->width,
                             def->height);
     for (uint32_t s = 0; s < def->sheet_count && def->pictures; s++) {

@@ -24,10 +24,10 @@ typedef struct PreviewSolid {
 typedef struct PreviewShape {
     SingeColliderKind kind;
     float position[3], rotation[4], radius, half_size[3], height;
-    float velocity[3];  ///< m/s, for the blur of what moves
-    float colour[3];    ///< linear albedo
-    float temperature;  ///< K; glows by black-body colour above about 800 K
-    const PreviewSolid *solid; ///< of a heightfield or a mesh, in the shape's frame
+    float velocity[3];           ///< m/s, for the blur of what moves
+    float colour[3];             ///< linear albedo
+    float temperature;           ///< K; glows by black-body colour above about 800 K
+    const PreviewSolid *solid;   ///< of a heightfield or a mesh, in the shape's frame
     const struct Facets *facets; ///< the preview's own; NULL
 } PreviewShape;
 
@@ -53,24 +53,24 @@ typedef struct PreviewDef {
     int width, height, samples; ///< samples a pixel, >= 1
     int thread_count;
     PreviewCamera camera;
-    float sun_direction[3];  ///< towards the light, any length > 0
-    float sun_angle;         ///< radians, apparent radius: how soft shadows are
-    float sun_colour[3];     ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
-    float sky_colour[3];     ///< ambient light from above
+    float sun_direction[3]; ///< towards the light, any length > 0
+    float sun_angle;        ///< radians, apparent radius: how soft shadows are
+    float sun_colour[3];    ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
+    float sky_colour[3];    ///< ambient light from above
     PreviewSky sky;
     const Image *sky_picture; ///< latitudes from the top, longitudes about z; its middle lies towards +y
     float sky_turn;           ///< radians about z, counted from above
-    float ground_height;     ///< m, z of the ground; -INFINITY for none
+    float ground_height;      ///< m, z of the ground; -INFINITY for none
     PreviewGround ground;
-    float ground_colour[3];  ///< linear
+    float ground_colour[3]; ///< linear
     float background[3];
-    float exposure;          ///< multiplies before tone mapping
-    float shutter;           ///< s that a frame is open, its time in the middle; 0: nothing blurs
-    float pace;              ///< how many times as fast as a real one fire burns: ages are reported by it
+    float exposure; ///< multiplies before tone mapping
+    float shutter;  ///< s that a frame is open, its time in the middle; 0: nothing blurs
+    float pace;     ///< how many times as fast as a real one fire burns: ages are reported by it
     uint32_t seed;
-    const Image *const *pictures;  ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
-    const float (*colours)[3];     ///< [sheet_count] tint of each sheet, linear
-    const float *transmittances;   ///< [sheet_count] share of light that comes through; NULL: PREVIEW_TRANSMITTANCE
+    const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
+    const float (*colours)[3];    ///< [sheet_count] tint of each sheet, linear
+    const float *transmittances;  ///< [sheet_count] share of light that comes through; NULL: PREVIEW_TRANSMITTANCE
     uint32_t sheet_count;
     uint32_t shape_count;
     const PreviewShape *shapes;
@@ -89,9 +89,10 @@ SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewSh
 /// is copied. NULL or one of size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
 enum { PREVIEW_BAKE_MOST = 4 };
-/// The gas that was set, on cells `detail` times as fine along each side, with the tongues and streaks that pictures add
-/// by noise; the surface is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest: extinction
-/// in 1/m, and the flame's light as a share of the brightest there is (118 times that of white paper a metre).
+/// The gas that was set, on cells `detail` times as fine along each side, with the tongues and streaks that pictures
+/// add by noise; the surface is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest:
+/// extinction in 1/m, and the flame's light as a share of the brightest there is (118 times that of white paper a
+/// metre).
 SINGE_NODISCARD SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail,
                                              float *smoke, float *flame, SingeError *error);
 /// Draws one frame into rgb[height * width * 3], 8-bit sRGB, rows from the top. `time` drives what
@@ -103,15 +104,15 @@ SINGE_NODISCARD SingeResult preview_draw(Preview *preview, const SingeSurface *s
 /// Pictures beside the one that is seen, [height * width], rows from the top. NULL: not wanted. *Mean* is over all
 /// samples of a pixel, *of hits* over those that met a sheet or a shape (0 where none did), *first* that of one sample.
 typedef struct PreviewLayers {
-    float (*beauty)[3];   ///< mean; linear Rec. 709, before halo, exposure and film
-    float (*glow)[3];     ///< mean; the part of beauty that what is hot gives off itself
-    float *coverage;      ///< share of the samples that are hits
-    float (*normal)[3];   ///< of hits, in the world's axes, towards the eye
-    float *temperature;   ///< of hits, K
-    float *burn;          ///< of hits, 0 fresh to 1 ash; 0 on shapes
-    float *depth;         ///< first, m along the camera's view; infinite where there is nothing
+    float (*beauty)[3];     ///< mean; linear Rec. 709, before halo, exposure and film
+    float (*glow)[3];       ///< mean; the part of beauty that what is hot gives off itself
+    float *coverage;        ///< share of the samples that are hits
+    float (*normal)[3];     ///< of hits, in the world's axes, towards the eye
+    float *temperature;     ///< of hits, K
+    float *burn;            ///< of hits, 0 fresh to 1 ash; 0 on shapes
+    float *depth;           ///< first, m along the camera's view; infinite where there is nothing
     int32_t *sheet, *piece; ///< first; -1 where there is none
-    float (*fire)[4];     ///< mean; light of flame and smoke alone, and the share that they hide of what is behind
+    float (*fire)[4];       ///< mean; light of flame and smoke alone, and the share that they hide of what is behind
 } PreviewLayers;
 
 /// As preview_draw, and fills the layers. `rgb` may be NULL.

@@ -24,7 +24,8 @@ static float fibres(Float3 position, float footprint) {
 static float veins(const Bent *bent, float footprint) {
     Float3 bowed = float3_mad(bent->position, float3(bent->middle, bent->coarse, bent->fine), 1.1e-3f);
     float large = ridge(paper_noise(bowed, 8.5f, footprint, 14), 0.10f);
-    float small = ridge(paper_noise(float3_mad(bowed, float3(1, -1, 1), 2e-3f * bent->coarse), 3.4f, footprint, 18), 0.13f);
+    float small =
+        ridge(paper_noise(float3_mad(bowed, float3(1, -1, 1), 2e-3f * bent->coarse), 3.4f, footprint, 18), 0.13f);
     return maxf(large, 0.55f * small);
 }
 

@@ -23,11 +23,12 @@ static float line_life(const Preview *preview, const Bent *bent) {
     float t = seconds(preview);
     Float3 drift = float3_add(float3_scale(bent->position, 190), float3(0.5f * t, -0.35f * t, 0.8f * t));
     Float3 patch = float3_add(float3_scale(bent->position, 62), float3(-0.12f * t, 0.2f * t, 0.15f * t));
-    return stepf(-0.22f, 0.62f, 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->middle +
-                                   0.2f * bent->fine);
+    return stepf(-0.22f, 0.62f,
+                 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->middle + 0.2f * bent->fine);
 }
 
-static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
+static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air,
+                         float footprint) {
     float activity = ember_activity(state->burn_rate);
     if (activity < 0.02f || state->temperature < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
@@ -49,7 +50,8 @@ static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *
     float activity = ember_activity(state->glowing);
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
-    float temperature = ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->middle;
+    float temperature =
+        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->middle;
     float strength = activity * (0.15f + 0.85f * life) * air;
     return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
 }
@@ -69,6 +71,6 @@ void ember_shade(const Preview *preview, const PaperState *state, const Bent *be
     if (state->burn < 0.2f || state->temperature < 420) return;
     float air = ember_air(preview, point->position);
     point->glow = float3_add(ember_line(preview, state, bent, air, point->footprint),
-                         sparks(preview, state, bent, air, point->footprint));
+                             sparks(preview, state, bent, air, point->footprint));
     point->glow = float3_add(point->glow, leaf(preview, state, bent, air));
 }

@@ -25,8 +25,12 @@ static Plank find_plank(uint32_t seed, float x, float y) {
     int column = noise_floor(x / PLANK_LENGTH + offset, &along);
     uint32_t key = hash_u32((uint32_t)row * 0x9e3779b1u + (uint32_t)column * 0x85ebca6bu + seed);
     float side = minf(across, 1 - across) * PLANK_WIDTH, end = minf(along, 1 - along) * PLANK_LENGTH;
-    return (Plank){.along = along * PLANK_LENGTH, .across = (across - 0.5f) * PLANK_WIDTH, .edge = minf(side, end),
-                   .tone = hash_unit(key), .hue = hash_unit(key + 1), .shift = 60 * hash_unit(key + 2)};
+    return (Plank){.along = along * PLANK_LENGTH,
+                   .across = (across - 0.5f) * PLANK_WIDTH,
+                   .edge = minf(side, end),
+                   .tone = hash_unit(key),
+                   .hue = hash_unit(key + 1),
+                   .shift = 60 * hash_unit(key + 2)};
 }
 
 /// Late wood, 0 to 1, of the year rings.

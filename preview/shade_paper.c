@@ -16,10 +16,10 @@
 
 /// Linear colours that multiply the paper's, by how far it is scorched in [0, 1].
 static Float3 scorch_colour(float s) {
-    static const float stop[7][4] = {
-        {0.00f, 1.00f, 1.00f, 1.00f},    {0.14f, 0.965f, 0.90f, 0.74f},   {0.32f, 0.85f, 0.655f, 0.36f},
-        {0.50f, 0.55f, 0.315f, 0.105f},  {0.69f, 0.225f, 0.098f, 0.032f}, {0.86f, 0.062f, 0.031f, 0.018f},
-        {1.00f, 0.020f, 0.016f, 0.014f}};
+    static const float stop[7][4] = {{0.00f, 1.00f, 1.00f, 1.00f},    {0.14f, 0.965f, 0.90f, 0.74f},
+                                     {0.32f, 0.85f, 0.655f, 0.36f},   {0.50f, 0.55f, 0.315f, 0.105f},
+                                     {0.69f, 0.225f, 0.098f, 0.032f}, {0.86f, 0.062f, 0.031f, 0.018f},
+                                     {1.00f, 0.020f, 0.016f, 0.014f}};
     int i = 1;
     while (i < 6 && s > stop[i][0]) i++;
     float f = clampf((s - stop[i - 1][0]) / (stop[i][0] - stop[i - 1][0]), 0, 1);
@@ -29,7 +29,7 @@ static Float3 scorch_colour(float s) {
 /// Where noise is read: the rest position turned, so that the noise's lattice lies askew to sheets and their grids.
 static Float3 askew(Float3 r) {
     return float3(0.7654f * r.x - 0.5321f * r.y + 0.3622f * r.z, 0.6133f * r.x + 0.7718f * r.y - 0.1673f * r.z,
-              -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
+                  -0.1905f * r.x + 0.3481f * r.y + 0.9179f * r.z);
 }
 
 void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperState *state) {
@@ -50,7 +50,8 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
         .age = w * a->age + u * b->age + v * c->age,
         // a triangle with no corner inside tells nothing of the distance: a strip or a crumb, which is to stay
         .rim = min > 0.5f ? 0.25f : w * a->rim + u * b->rim + v * c->rim,
-        .sheet = a->sheet, .piece = a->piece,
+        .sheet = a->sheet,
+        .piece = a->piece,
     };
 }
 
@@ -149,7 +150,8 @@ static float heat_scorch(float peak) {
 /// Char: browner where it is thin, bluer where it is done; print (1) stays readable on it, as a dull grey.
 static Float3 char_colour(const Bent *bent, float ink, float footprint) {
     float value = 1 + 0.35f * bent->middle + 0.3f * bent->fine + 0.35f * bent->coarse;
-    Float3 soot = float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
+    Float3 soot =
+        float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 2.1f, 0.05f, footprint);
     Float3 colour = float3_scale(soot, value * (1 - 0.6f * craze));
     return float3_mad(colour, float3(0.024f, 0.024f, 0.026f), ink);
@@ -178,7 +180,8 @@ bool paper_shade(const Preview *preview, const PaperState *state, Point *point) 
     float by_heat = heat_scorch(bent.peak), by_burn = 1 - expf(-7.5f * maxf(bent.burn, 0));
     float scorch = 1 - (1 - by_heat) * (1 - by_burn);
     float ink = 1 - clampf(float3_luminance(point->albedo), 0, 1), print = stepf(0.45f, 0.8f, ink);
-    Float3 burnt = float3_mul(scorch_colour(scorch), float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
+    Float3 burnt = float3_mul(scorch_colour(scorch),
+                              float3_mix(point->albedo, float3(0.80f, 0.80f, 0.80f), stepf(0.6f, 1.0f, scorch)));
     point->transmission *= 1 - stepf(0.1f, 0.7f, scorch);
     char_shade(&bent, burnt, print, point);
     ash_shade(state, &bent, print, point);

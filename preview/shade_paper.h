@@ -6,7 +6,7 @@
 
 /// The paper at a hit as the picture's scale has it.
 typedef struct Bent {
-    Float3 position;                      ///< where noise is read
+    Float3 position;               ///< where noise is read
     float burn, temperature, peak; ///< b', T' and P'
     float coarse, middle, fine;    ///< the noise that bent them, [-1, 1]
 } Bent;

@@ -14,7 +14,8 @@ void shape_shade(const Preview *preview, const PreviewShape *shape, float moment
     Float3 centre = float3_mad(float3_load(shape->position), float3_load(shape->velocity), moment);
     Float3 local = float3_rotate(shape->rotation, float3_sub(point->position, centre), -1);
     Float3 p = float3_scale(local, 3.5f / maxf(size, 1e-6f));
-    float scale = 0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
+    float scale =
+        0.6f * noise3(p, 41) + 0.3f * noise3(float3_scale(p, 2.7f), 42) + 0.2f * noise3(float3_scale(p, 7.1f), 43);
     float facing = clampf(float3_dot(point->normal, point->view), 0, 1), limb = 0.52f + 0.48f * sqrtf(facing);
     float temperature = shape->temperature * (1 + 0.04f * scale) - 90 * (1 - facing) * (1 - facing);
     Float3 glow = blackbody_glow(preview->blackbody, temperature);

@@ -70,7 +70,8 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
         if (t > 0) *normal = float3_scale(float3_mad(offset, direction, t), 1 / shape->radius);
         return t;
     }
-    Float3 o = float3_rotate(shape->rotation, offset, -1), d = float3_rotate(shape->rotation, direction, -1), n = {0, 0, 1};
+    Float3 o = float3_rotate(shape->rotation, offset, -1), d = float3_rotate(shape->rotation, direction, -1),
+           n = {0, 0, 1};
     float t = -1;
     if (shape->kind == SINGE_COLLIDER_BOX) t = box(shape, o, d, near, far, &n);
     if (shape->kind == SINGE_COLLIDER_CAPSULE) t = capsule(shape, o, d, near, far, &n);

@@ -19,7 +19,8 @@ static void texture_halve(const Preview *preview, const Texture *texture, int le
             for (int c = 0; c < 3; c++) {
                 float sum = preview->linear[row0[3 * x0 + c]] + preview->linear[row0[3 * x1 + c]] +
                             preview->linear[row1[3 * x0 + c]] + preview->linear[row1[3 * x1 + c]];
-                out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] = texture_encode(0.25f * sum);
+                out[((size_t)y * (size_t)texture->width[level] + (size_t)x) * 3 + (size_t)c] =
+                    texture_encode(0.25f * sum);
             }
         }
     }

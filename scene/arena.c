@@ -20,8 +20,7 @@ struct SceneArena {
 SceneArena *arena_create(void) { return calloc(1, sizeof(SceneArena)); }
 
 void arena_destroy(SceneArena *arena) {
-    if (!arena)
-        return;
+    if (!arena) return;
     while (arena->blocks) {
         Block *next = arena->blocks->next;
         free(arena->blocks);
@@ -58,8 +57,7 @@ void arena_fail(SceneArena *arena) { arena->failed = 1; }
 
 char *arena_text(SceneArena *arena, const char *text, size_t length) {
     char *copy = arena_new(arena, length + 1, 1);
-    if (copy && length)
-        memcpy(copy, text, length);
+    if (copy && length) memcpy(copy, text, length);
     return copy;
 }
 

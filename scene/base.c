@@ -19,8 +19,7 @@ typedef struct BaseChain {
 
 const char *scene_material_name(int index) {
     int count = 0;
-    while (scene_builtins[count].name && count < index)
-        count++;
+    while (scene_builtins[count].name && count < index) count++;
     return count == index ? scene_builtins[count].name : NULL;
 }
 
@@ -53,8 +52,7 @@ static char *base_stem(SceneArena *arena, const char *path) {
 static SceneText *base_text(Reader *reader, const char *name, const char *bytes, size_t size) {
     SceneText *text = arena_new(reader->arena, 1, sizeof *text);
     char *copy = arena_text(reader->arena, bytes, size);
-    if (!text || !copy)
-        return NULL;
+    if (!text || !copy) return NULL;
     text->name = name;
     text->bytes = copy;
     text->size = size;
@@ -65,16 +63,14 @@ static SceneText *base_text(Reader *reader, const char *name, const char *bytes,
 
 static SceneText *base_known(const Reader *reader, const char *name) {
     SceneText *text = reader->text->files;
-    while (text && strcmp(text->name, name) != 0)
-        text = text->next;
+    while (text && strcmp(text->name, name) != 0) text = text->next;
     return text;
 }
 
 static SceneText *base_builtin(Reader *reader, const Node *node) {
     Nearest nearest = {.word = node->text};
     const SceneBuiltin *builtin = scene_builtins;
-    for (; builtin->name && strcmp(builtin->name, node->text) != 0; builtin++)
-        nearest_offer(&nearest, builtin->name);
+    for (; builtin->name && strcmp(builtin->name, node->text) != 0; builtin++) nearest_offer(&nearest, builtin->name);
     if (builtin->name) {
         SceneText *known = base_known(reader, builtin->name);
         return known ? known : base_text(reader, builtin->name, builtin->bytes, builtin->size);
@@ -95,22 +91,18 @@ static SceneText *base_file(Reader *reader, const SchemaRow *row, const Node *no
     SingeError error;
     SceneText *text = NULL;
     value_file(reader, row, node, file); // says when it is not there
-    if (message_total(reader->messages) != before || !file->path)
-        return NULL;
-    if ((text = base_known(reader, file->path)))
-        return text;
+    if (message_total(reader->messages) != before || !file->path) return NULL;
+    if ((text = base_known(reader, file->path))) return text;
     if (file_read_max(file->path, SCENE_BYTES_MAX, (SingeAllocator){0}, &bytes, &error))
         message_add(reader->messages, reader->text, node->location, "a material cannot be read: %s", error.message);
-    else
-        text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
+    else text = base_text(reader, file->path, (const char *)bytes.data, bytes.size);
     bytes_free(&bytes);
     return text;
 }
 
 /// Whether the file may be read: not while it is being read already.
 static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, BaseChain *link) {
-    if (file->path && stat(file->path, &link->status))
-        link->status = (struct stat){0};
+    if (file->path && stat(file->path, &link->status)) link->status = (struct stat){0};
     for (const BaseChain *outer = link->outer; outer; outer = outer->outer)
         if (outer->text == link->text || (file->path && outer->status.st_ino == link->status.st_ino &&
                                           outer->status.st_dev == link->status.st_dev)) {
@@ -118,8 +110,7 @@ static bool chain_open(Reader *reader, const Node *node, const SceneFile *file, 
                         shown_path(link->text->name).text, shown_path(reader->chain->text->name).text);
             return false;
         }
-    if (link->depth <= BASES_MAX)
-        return true;
+    if (link->depth <= BASES_MAX) return true;
     message_add(reader->messages, reader->text, node->location, "materials begin as each other more than %d deep",
                 BASES_MAX);
     return false;
@@ -142,8 +133,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
         return;
     SceneText *text = from_file ? base_file(reader, row, node, &file) : base_builtin(reader, node);
     BaseChain link = {.outer = reader->chain, .text = text, .depth = reader->chain ? reader->chain->depth + 1 : 1};
-    if (!text || !chain_open(reader, node, &file, &link))
-        return;
+    if (!text || !chain_open(reader, node, &file, &link)) return;
     Reader inner = *reader;
     inner.chain = &link;
     inner.prefix = base_folder(reader->arena, &file);
@@ -152,8 +142,7 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
                                (SceneLocation){.file = text->number}, reader->messages);
     text->was_read = true;
     Node *root = text->root;
-    if (!root || !inner.prefix)
-        return;
+    if (!root || !inner.prefix) return;
     char seen[NODE_WORDS];
     if (root->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, root->location, "a material must be a map (key: value), not %s",
@@ -162,6 +151,5 @@ void read_base(Reader *reader, const SchemaRow *row, const Node *node, SceneMate
     }
     schema_spell_out(reader->arena, &schema_material, root);
     schema_read(&inner, &schema_material, root, material);
-    if (!node_find(root, "name"))
-        material->name = base_stem(reader->arena, text->name);
+    if (!node_find(root, "name")) material->name = base_stem(reader->arena, text->name);
 }

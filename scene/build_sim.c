@@ -14,8 +14,10 @@ typedef struct SceneBuilder {
     SceneMessages *messages;
 } SceneBuilder;
 
-static SingeResult build_fail(SceneBuilder *builder, SingeResult result, SceneLocation location, const SingeError *error) {
-    message_add(builder->messages, builder->scene->text, location, "%s: %s", error->stage[0] ? error->stage : "simulation",
+static SingeResult build_fail(SceneBuilder *builder, SingeResult result, SceneLocation location,
+                              const SingeError *error) {
+    message_add(builder->messages, builder->scene->text, location, "%s: %s",
+                error->stage[0] ? error->stage : "simulation",
                 error->message[0] ? error->message : singe_result_name(result));
     return result;
 }
@@ -25,8 +27,7 @@ static SingePoseKey *poses(const SceneKey *keys, uint32_t count) {
     SingePoseKey *path = calloc(count ? count : 1, sizeof *path);
     for (uint32_t i = 0; i < count && path; i++) {
         path[i].time = keys[i].time;
-        for (int c = 0; c < 3; c++)
-            path[i].position[c] = keys[i].position[c];
+        for (int c = 0; c < 3; c++) path[i].position[c] = keys[i].position[c];
         rotation_quaternion(keys[i].rotation, path[i].rotation);
     }
     return path;
@@ -57,8 +58,7 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     SceneParam param;
     for (int i = 0; scene_param(i, &param); i++)
         scene_param_at(&def->material, &param)->texture = assets->params[index][param.slot];
-    for (int c = 0; c < 3; c++)
-        def->velocity[c] = sheet->velocity[c];
+    for (int c = 0; c < 3; c++) def->velocity[c] = sheet->velocity[c];
     def->drop_pieces_below = sheet->drop_pieces_below;
 }
 
@@ -73,10 +73,9 @@ static SingeResult build_sheets(SceneBuilder *builder) {
         location = scene->sheets[i].location;
         result = singe_sim_add_sheet(builder->sim, &def, &builder->sheets[i]);
     }
-    if (!result && (result = singe_sim_commit(builder->sim)) && scene->sheet_count > 1)
-        location = (SceneLocation){0};
-    if (result && (result == SINGE_ERROR_MEMORY ||
-                   !sheet_faults(scene, builder->assets, FAULTS_OF_SHEETS, builder->messages)))
+    if (!result && (result = singe_sim_commit(builder->sim)) && scene->sheet_count > 1) location = (SceneLocation){0};
+    if (result &&
+        (result == SINGE_ERROR_MEMORY || !sheet_faults(scene, builder->assets, FAULTS_OF_SHEETS, builder->messages)))
         return build_fail(builder, result, location, singe_sim_error(builder->sim));
     return result;
 }
@@ -85,8 +84,7 @@ static SingeResult build_source(SceneBuilder *builder, uint32_t index) {
     const SceneSource *source = &builder->scene->sources[index];
     SingeSourceDef def = source->def;
     SingePoseKey *path = poses(source->keys, source->key_count);
-    if (!path)
-        return no_memory(builder, source->location);
+    if (!path) return no_memory(builder, source->location);
     def.path_count = source->key_count;
     def.path = path;
     def.texture = builder->assets->source_textures[index];
@@ -102,8 +100,7 @@ static SingeResult build_collider(SceneBuilder *builder, uint32_t index) {
     const SceneCollider *collider = &builder->scene->colliders[index];
     SingeColliderDef def = collider->def;
     SingePoseKey *path = poses(collider->keys, collider->key_count);
-    if (!path)
-        return no_memory(builder, collider->location);
+    if (!path) return no_memory(builder, collider->location);
     def.path_count = collider->key_count;
     def.path = path;
     const SceneSolid *solid = &builder->assets->solids[index];
@@ -131,14 +128,11 @@ static uint32_t *sheet_vertices(const Mesh *mesh, const ScenePin *pin, uint32_t 
     *found = 0;
     for (uint32_t i = 0; i < pin->vertex_count && held && list; i++) {
         uint32_t v = pin->vertices[i], now = v < mesh->source_count ? mesh->became[v] : UINT32_MAX;
-        if (now == UINT32_MAX)
-            *bad = v;
-        else
-            held[mesh->source[now]] = 1;
+        if (now == UINT32_MAX) *bad = v;
+        else held[mesh->source[now]] = 1;
     }
     for (uint32_t v = 0; v < mesh->vertex_count && held && list; v++)
-        if (mesh->source[v] >= 0 && held[mesh->source[v]])
-            list[(*found)++] = v;
+        if (mesh->source[v] >= 0 && held[mesh->source[v]]) list[(*found)++] = v;
     if (!held) {
         free(list);
         list = NULL;
@@ -152,8 +146,7 @@ static SingeResult pin_by_file(SceneBuilder *builder, const ScenePin *pin, Singe
     uint32_t bad = UINT32_MAX;
     SingePinId id;
     uint32_t *vertices = sheet_vertices(&builder->assets->meshes[pin->sheet_index], pin, &def->vertex_count, &bad);
-    if (!vertices)
-        return no_memory(builder, pin->location);
+    if (!vertices) return no_memory(builder, pin->location);
     SingeResult result = SINGE_ERROR_ARGUMENT;
     def->vertices = vertices;
     if (bad != UINT32_MAX)
@@ -169,8 +162,7 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
     const ScenePin *pin = &builder->scene->pins[index];
     SingePinDef def = singe_default_pin();
     SingePoseKey *path = poses(pin->keys, pin->key_count);
-    if (!path)
-        return no_memory(builder, pin->location);
+    if (!path) return no_memory(builder, pin->location);
     def.sheet = builder->sheets[pin->sheet_index];
     def.point_count = pin->point_count;
     def.points = pin->points ? pin->points->position : NULL; // points lie one after the other
@@ -193,12 +185,9 @@ static SingeResult build_pin(SceneBuilder *builder, uint32_t index) {
 static SingeResult build_all(SceneBuilder *builder) {
     const Scene *scene = builder->scene;
     SingeResult result = build_sheets(builder);
-    for (uint32_t i = 0; i < scene->source_count && !result; i++)
-        result = build_source(builder, i);
-    for (uint32_t i = 0; i < scene->collider_count && !result; i++)
-        result = build_collider(builder, i);
-    for (uint32_t i = 0; i < scene->pin_count && !result; i++)
-        result = build_pin(builder, i);
+    for (uint32_t i = 0; i < scene->source_count && !result; i++) result = build_source(builder, i);
+    for (uint32_t i = 0; i < scene->collider_count && !result; i++) result = build_collider(builder, i);
+    for (uint32_t i = 0; i < scene->pin_count && !result; i++) result = build_pin(builder, i);
     return result;
 }
 
@@ -213,19 +202,13 @@ SingeResult scene_build(const Scene *scene, const SceneAssets *assets, const Sin
     def.tasks = hooks->tasks;
     def.thread_count = hooks->thread_count;
     builder.sheets = calloc(scene->sheet_count ? scene->sheet_count : 1, sizeof *builder.sheets);
-    if (!builder.sheets)
-        return no_memory(&builder, (SceneLocation){0});
+    if (!builder.sheets) return no_memory(&builder, (SceneLocation){0});
     SingeResult result = singe_sim_create(&def, &builder.sim, &error);
-    if (result)
-        build_fail(&builder, result, (SceneLocation){0}, &error);
-    else
-        result = build_all(&builder);
+    if (result) build_fail(&builder, result, (SceneLocation){0}, &error);
+    else result = build_all(&builder);
     free(builder.sheets);
-    if (result)
-        singe_sim_destroy(builder.sim);
-    else
-        *sim = builder.sim;
-    if (!result)
-        scene_warn(scene, assets, &hooks->log);
+    if (result) singe_sim_destroy(builder.sim);
+    else *sim = builder.sim;
+    if (!result) scene_warn(scene, assets, &hooks->log);
     return result;
 }

@@ -19,8 +19,7 @@ static bool sheets_box(const SceneAssets *assets, Box *box) {
             box->high[v % 3] = fmax(box->high[v % 3], x);
         }
     double size = 0;
-    for (int i = 0; i < 3; i++)
-        size += box->high[i] - box->low[i];
+    for (int i = 0; i < 3; i++) size += box->high[i] - box->low[i];
     return isfinite(size) && size > 0;
 }
 
@@ -35,8 +34,7 @@ static void cross3(const double a[3], const double b[3], double out[3]) {
 
 static void unit3(double v[3]) {
     double length = sqrt(dot3(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
+    for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
 /// Unit vectors from the box to the camera and, across it, to the right and up in the picture. What lies flat is
@@ -44,8 +42,7 @@ static void unit3(double v[3]) {
 static void camera_look(const Box *box, const float up[3], double back[3], double right[3], double top[3]) {
     double vertical[3] = {(double)up[0], (double)up[1], (double)up[2]}, front[3] = {0, -1, 0}, height = 0, max = 0;
     unit3(vertical);
-    if (fabs(vertical[1]) > 0.9)
-        front[1] = 0, front[2] = 1;
+    if (fabs(vertical[1]) > 0.9) front[1] = 0, front[2] = 1;
     for (int i = 0; i < 3; i++) {
         height += fabs(vertical[i]) * (box->high[i] - box->low[i]);
         max = fmax(max, box->high[i] - box->low[i]);
@@ -54,8 +51,7 @@ static void camera_look(const Box *box, const float up[3], double back[3], doubl
     cross3(vertical, front, right); // for the picture's right, seen from the front
     unit3(right);
     cross3(right, vertical, front);
-    for (int i = 0; i < 3; i++)
-        back[i] = front[i] + 0.25 * right[i] + lift * vertical[i];
+    for (int i = 0; i < 3; i++) back[i] = front[i] + 0.25 * right[i] + lift * vertical[i];
     unit3(back);
     cross3(vertical, back, right);
     unit3(right);
@@ -65,15 +61,13 @@ static void camera_look(const Box *box, const float up[3], double back[3], doubl
 void scene_frame(Scene *scene, const SceneAssets *assets) {
     PreviewCamera *camera = &scene->preview.camera;
     Box box;
-    if (scene->preview.camera_given || !sheets_box(assets, &box))
-        return;
+    if (scene->preview.camera_given || !sheets_box(assets, &box)) return;
     double back[3], right[3], top[3], distance = 0;
     camera_look(&box, camera->up, back, right, top);
     double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
     for (int corner = 0; corner < 8; corner++) {
         double d[3]; // from the middle to the corner
-        for (int i = 0; i < 3; i++)
-            d[i] = 0.5 * (box.high[i] - box.low[i]) * (corner >> i & 1 ? 1 : -1);
+        for (int i = 0; i < 3; i++) d[i] = 0.5 * (box.high[i] - box.low[i]) * (corner >> i & 1 ? 1 : -1);
         double across = fmax(fabs(dot3(d, right)) / aspect, fabs(dot3(d, top)));
         distance = fmax(distance, dot3(d, back) + 1.15 * across / half); // a margin of 15 %
     }
@@ -81,8 +75,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     for (int i = 0; i < 3; i++) {
         target[i] = 0.5 * (box.low[i] + box.high[i]);
         eye[i] = target[i] + distance * back[i];
-        if (fabs(eye[i]) > farthest)
-            return;
+        if (fabs(eye[i]) > farthest) return;
     }
     for (int i = 0; i < 3; i++) {
         camera->target[i] = (float)target[i];

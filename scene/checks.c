@@ -39,8 +39,7 @@ void finish_material(Reader *reader, const Node *map, void *object) {
     SceneMaterial *material = object;
     const Node *measured = node_find(map, "measured");
     for (const Node *child = map->first; child && !measured && node_find(map, "base"); child = child->next)
-        if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0)
-            material->measured = (SceneMeasured){0};
+        if (strcmp(child->key, "base") != 0 && strcmp(child->key, "name") != 0) material->measured = (SceneMeasured){0};
     const float *ranges[] = {material->measured.speed, material->measured.temperature, material->measured.residue};
     static const char *const keys[] = {"speed", "temperature", "residue"};
     for (int i = 0; i < 3; i++)
@@ -56,18 +55,15 @@ void finish_material(Reader *reader, const Node *map, void *object) {
 void finish_sheet(Reader *reader, const Node *map, void *object) {
     SceneSheet *sheet = object;
     const Node *mesh = node_find(map, "mesh"), *grid = node_find(map, "grid");
-    if (mesh && grid)
-        complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
-    if (!mesh && !grid)
-        complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
+    if (mesh && grid) complain(reader, grid->key_location, "'grid' and 'mesh' exclude each other; give one");
+    if (!mesh && !grid) complain(reader, map->location, "a sheet needs 'mesh' (a file) or 'grid' (size and cells)");
     if (grid && (double)sheet->grid.cells[0] * sheet->grid.cells[1] > 100e6)
         complain(reader, grid->location, "a grid has at most 100 million cells");
 }
 
 void finish_source(Reader *reader, const Node *map, void *object) {
     SceneSource *source = object;
-    if (!node_find(map, "kind"))
-        return;
+    if (!node_find(map, "kind")) return;
     if (source->def.kind == SINGE_SOURCE_BALL && !check_path(reader, map, source->keys, source->key_count))
         complain(reader, map->location, "a ball needs 'path' or 'position'");
     const Node *end = node_find(map, "end");
@@ -80,10 +76,8 @@ void finish_collider(Reader *reader, const Node *map, void *object) {
     SceneCollider *collider = object;
     check_path(reader, map, collider->keys, collider->key_count);
     const Node *mesh = node_find(map, "mesh"), *motion = node_find(map, "motion");
-    if (!node_find(map, "kind") || collider->def.kind != SINGE_COLLIDER_MESH)
-        return;
-    if (mesh && motion)
-        complain(reader, motion->key_location, "'mesh' and 'motion' exclude each other; give one");
+    if (!node_find(map, "kind") || collider->def.kind != SINGE_COLLIDER_MESH) return;
+    if (mesh && motion) complain(reader, motion->key_location, "'mesh' and 'motion' exclude each other; give one");
     if (!mesh && !motion)
         complain(reader, map->location, "a mesh needs 'mesh' (a file) or 'motion' (a file for each frame)");
 }
@@ -94,8 +88,7 @@ void finish_pin(Reader *reader, const Node *map, void *object) {
         complain(reader, map->location, "a pin needs 'points' or 'vertices'");
     const Node *path = node_find(map, "path"), *motion = node_find(map, "motion");
     check_times(reader, path, pin->keys, sizeof *pin->keys, pin->key_count);
-    if (path && motion)
-        complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
+    if (path && motion) complain(reader, motion->key_location, "'path' and 'motion' exclude each other; give one");
 }
 
 /// Whether the scene says where the camera is; otherwise scene_frame places it.
@@ -117,12 +110,9 @@ void finish_camera(Reader *reader, const Node *map, void *object) {
     const double min = 1.1e-12; // as the preview has it, which squares floats
     if ((double)up[0] * (double)up[0] + (double)up[1] * (double)up[1] + (double)up[2] * (double)up[2] < min)
         complain(reader, map->location, "the camera's up must be longer than 1e-6");
-    else if (!camera_given(map))
-        return;
-    else if (length < min)
-        complain(reader, map->location, "the camera's eye and target are the same point");
-    else if (!(across > 0))
-        complain(reader, map->location, "the camera's up must point away from the line of sight");
+    else if (!camera_given(map)) return;
+    else if (length < min) complain(reader, map->location, "the camera's eye and target are the same point");
+    else if (!(across > 0)) complain(reader, map->location, "the camera's up must point away from the line of sight");
 }
 
 void finish_preview(Reader *reader, const Node *map, void *object) {
@@ -156,8 +146,7 @@ static void check_names(Reader *reader, const Node *list, Scene *scene) {
 static bool sheet_number(const char *text, uint32_t *number) {
     uint32_t value = 0;
     for (const char *c = text; *c; c++) {
-        if (*c < '0' || *c > '9' || c - text > 8)
-            return false;
+        if (*c < '0' || *c > '9' || c - text > 8) return false;
         value = value * 10 + (uint32_t)(*c - '0');
     }
     *number = value;
@@ -173,11 +162,9 @@ static void resolve_sheet(Reader *reader, const Node *node, const Scene *scene, 
             *index = i;
             return;
         }
-        if (name)
-            nearest_offer(&nearest, name);
+        if (name) nearest_offer(&nearest, name);
     }
-    if (sheet_number(word, index) && *index < scene->sheet_count)
-        return;
+    if (sheet_number(word, index) && *index < scene->sheet_count) return;
     const Node *sheet = node_find(node, "sheet");
     char hint[80];
     message_add(reader->messages, reader->text, sheet ? sheet->location : node->location, "there is no sheet '%s'%s",
@@ -195,10 +182,8 @@ static void check_probes(Reader *reader, const Node *list, Scene *scene) {
         SceneProbe *probe = &scene->probes[i];
         char name[24];
         const int length = snprintf(name, sizeof name, "probe%u", (unsigned)i + 1);
-        if (!probe->name)
-            probe->name = arena_text(reader->arena, name, (size_t)length);
-        if (probe->sheet && scene->sheet_count)
-            resolve_sheet(reader, node, scene, probe->sheet, &probe->sheet_index);
+        if (!probe->name) probe->name = arena_text(reader->arena, name, (size_t)length);
+        if (probe->sheet && scene->sheet_count) resolve_sheet(reader, node, scene, probe->sheet, &probe->sheet_index);
         for (uint32_t j = 0; j < i && probe->name; j++)
             if (scene->probes[j].name && strcmp(scene->probes[j].name, probe->name) == 0) {
                 const Node *given = node_find(node, "name");
@@ -213,8 +198,7 @@ static void check_probes(Reader *reader, const Node *list, Scene *scene) {
 static void check_step(Reader *reader, const Node *map, const Scene *scene) {
     double rate = (double)scene->fps * scene->steps;
     const Node *fps = node_find(map, "fps"), *steps = node_find(map, "steps"), *node = fps ? fps : steps;
-    if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6))
-        return;
+    if (rate >= 0.1 * (1 - 1e-6) && rate <= 1e9 * (1 + 1e-6)) return;
     message_add(reader->messages, reader->text, node ? node->location : map->location,
                 "%.6g frames a second of %d steps each are %.6g steps a second, which must be 0.1 to 1e9",
                 (double)scene->fps, scene->steps, rate);
@@ -226,18 +210,14 @@ void finish_scene(Reader *reader, const Node *map, void *object) {
     scene->sim.solver.tearing = scene->tearing && scene->sim.solver.method == SINGE_SOLVER_STRAND;
     const Node *sheets = node_find(map, "sheets"), *pins = node_find(map, "pins");
     if (sheets && sheets->kind == NODE_LIST) {
-        if (!sheets->count)
-            complain(reader, sheets->location, "a scene needs at least one sheet");
-        else if (sheets->count > 1000)
-            complain(reader, sheets->location, "a scene has at most 1000 sheets");
-        else
-            check_names(reader, sheets, scene);
+        if (!sheets->count) complain(reader, sheets->location, "a scene needs at least one sheet");
+        else if (sheets->count > 1000) complain(reader, sheets->location, "a scene has at most 1000 sheets");
+        else check_names(reader, sheets, scene);
     }
     const Node *node = pins && pins->kind == NODE_LIST ? pins->first : NULL;
     for (uint32_t i = 0; node && i < scene->pin_count; i++, node = node->next)
         if (scene->pins[i].sheet && scene->sheet_count && sheets && sheets->count <= 1000)
             resolve_sheet(reader, node, scene, scene->pins[i].sheet, &scene->pins[i].sheet_index);
     const Node *probes = node_find(map, "probes");
-    if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000))
-        check_probes(reader, probes, scene);
+    if (probes && probes->kind == NODE_LIST && (!sheets || sheets->count <= 1000)) check_probes(reader, probes, scene);
 }

@@ -69,16 +69,12 @@ static const char after_units[] =
 
 static void add_section(Sections *sections, const Schema *schema) {
     for (int i = 0; i < sections->count; i++)
-        if (sections->items[i] == schema)
-            return;
-    if (sections->count == SECTION_MAX)
-        return;
+        if (sections->items[i] == schema) return;
+    if (sections->count == SECTION_MAX) return;
     sections->items[sections->count++] = schema;
     for (int i = 0; i < schema->row_count; i++) {
-        if (schema->rows[i].sub)
-            add_section(sections, schema->rows[i].sub);
-        if (schema->rows[i].type == ROW_PARAM)
-            add_section(sections, &schema_noise);
+        if (schema->rows[i].sub) add_section(sections, schema->rows[i].sub);
+        if (schema->rows[i].type == ROW_PARAM) add_section(sections, &schema_noise);
     }
 }
 
@@ -96,8 +92,7 @@ static void put_link(FILE *file, const Schema *schema) {
     const char *title = bare_title(schema);
     fprintf(file, "[%s](#", title);
     for (const char *c = title; *c; c++)
-        if (*c != '\'')
-            fputc(*c == ' ' ? '-' : *c, file);
+        if (*c != '\'') fputc(*c == ' ' ? '-' : *c, file);
     fputc(')', file);
 }
 
@@ -106,18 +101,16 @@ static void put_type(FILE *file, const SchemaRow *row) {
         [ROW_BOOL] = "yes or no",      [ROW_INT] = "whole number",
         [ROW_UINT32] = "whole number", [ROW_UINT64] = "whole number",
         [ROW_TEXT] = "text",           [ROW_NAME] = "name",
-        [ROW_FILE] = "file",           [ROW_BASE] = "material or file", [ROW_ORDER] = "4 colours",
-        [ROW_FORMATS] = "list of formats",
+        [ROW_FILE] = "file",           [ROW_BASE] = "material or file",
+        [ROW_ORDER] = "4 colours",     [ROW_FORMATS] = "list of formats",
         [ROW_POINTS] = "points, m",    [ROW_INDICES] = "whole numbers",
     };
     const char *unit = quantity_unit(row->dimension);
     if (row->sub) {
-        if (row->type != ROW_MAP)
-            fputs(row->type == ROW_STRENGTH ? "number, or list of " : "list of ", file);
+        if (row->type != ROW_MAP) fputs(row->type == ROW_STRENGTH ? "number, or list of " : "list of ", file);
         put_link(file, row->sub);
     } else if (row->type == ROW_ENUM) {
-        for (int i = 0; row->names[i]; i++)
-            fprintf(file, "%s`%s`", i ? ", " : "", row->names[i]);
+        for (int i = 0; row->names[i]; i++) fprintf(file, "%s`%s`", i ? ", " : "", row->names[i]);
     } else if (row->type == ROW_INTS) {
         fprintf(file, "%d whole numbers", row->length);
     } else if (row->type == ROW_FLOAT || row->type == ROW_PARAM) {
@@ -159,8 +152,7 @@ static void put_table(FILE *file, const Schema *schema, const void *object, unsi
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         bool common = !row->kinds;
-        if (shared ? common : !common && row_allowed(row, kind))
-            put_row(file, row, object);
+        if (shared ? common : !common && row_allowed(row, kind)) put_row(file, row, object);
     }
 }
 
@@ -168,15 +160,12 @@ static void put_table(FILE *file, const Schema *schema, const void *object, unsi
 static void put_section(FILE *file, const Schema *schema, const void *object) {
     put_heading(file, schema);
     put_table(file, schema, object, ~0u, true);
-    if (!schema->kind_offset)
-        return;
+    if (!schema->kind_offset) return;
     const char *const *names = schema->rows[0].names;
     for (int kind = 0; names[kind]; kind++) {
         bool any = false;
-        for (int i = 0; i < schema->row_count; i++)
-            any = any || (schema->rows[i].kinds & 1u << kind);
-        if (!any)
-            continue;
+        for (int i = 0; i < schema->row_count; i++) any = any || (schema->rows[i].kinds & 1u << kind);
+        if (!any) continue;
         fprintf(file, "\nOnly `%s`:\n\n", names[kind]);
         put_table(file, schema, object, 1u << kind, false);
     }
@@ -184,17 +173,14 @@ static void put_section(FILE *file, const Schema *schema, const void *object) {
 
 // An object of a schema with its defaults, found by way of the objects that hold it.
 static const void *default_object(SceneArena *arena, const Schema *wanted, const Schema *schema, void *object) {
-    if (wanted == schema)
-        return object;
+    if (wanted == schema) return object;
     for (int i = 0; i < schema->row_count && object; i++) {
         const SchemaRow *row = &schema->rows[i];
         SchemaRow noise = {.type = ROW_LIST, .sub = &schema_noise}; // what a ROW_PARAM may hold
-        if (row->type == ROW_PARAM)
-            row = &noise;
+        if (row->type == ROW_PARAM) row = &noise;
         void *begun = row->sub ? row_begin(arena, row, object) : NULL;
         const void *found = begun ? default_object(arena, wanted, row->sub, begun) : NULL;
-        if (found)
-            return found;
+        if (found) return found;
     }
     return NULL;
 }

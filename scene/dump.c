@@ -12,7 +12,9 @@ typedef struct Dumper {
 
 static const void *dump_at(const void *object, size_t offset) { return (const char *)object + offset; }
 
-static uint32_t count_at(const void *object, const SchemaRow *row) { return *(const uint32_t *)dump_at(object, row->extra); }
+static uint32_t count_at(const void *object, const SchemaRow *row) {
+    return *(const uint32_t *)dump_at(object, row->extra);
+}
 
 static const void *items_at(const void *object, const SchemaRow *row) {
     const void *items;
@@ -23,12 +25,9 @@ static const void *items_at(const void *object, const SchemaRow *row) {
 static void put_text(FILE *file, const char *text) {
     fputc('"', file);
     for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            fprintf(file, "\\%c", *c);
-        else if (*c < 0x20 || *c == 0x7f)
-            fprintf(file, "\\u%04x", *c);
-        else
-            fputc(*c, file);
+        if (*c == '"' || *c == '\\') fprintf(file, "\\%c", *c);
+        else if (*c < 0x20 || *c == 0x7f) fprintf(file, "\\u%04x", *c);
+        else fputc(*c, file);
     }
     fputc('"', file);
 }
@@ -76,8 +75,7 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
 static void put_order(FILE *file, const SingeColour *order) {
     static const char *const names[] = {
         [SINGE_RED] = "red", [SINGE_GREEN] = "green", [SINGE_BLUE] = "blue", [SINGE_YELLOW] = "yellow"};
-    for (int i = 0; i < SINGE_COLOUR_COUNT; i++)
-        fprintf(file, "%s\"%s\"", i ? ", " : "[", names[order[i]]);
+    for (int i = 0; i < SINGE_COLOUR_COUNT; i++) fprintf(file, "%s\"%s\"", i ? ", " : "[", names[order[i]]);
     fputc(']', file);
 }
 
@@ -85,8 +83,7 @@ static void put_formats(FILE *file, OutputSet set) {
     bool first = true;
     fputc('[', file);
     for (int i = 0; i < OUTPUT_COUNT; i++) {
-        if (!output_has(set, i))
-            continue;
+        if (!output_has(set, i)) continue;
         fprintf(file, "%s\"%s\"", first ? "" : ", ", output_formats[i].name);
         first = false;
     }
@@ -112,8 +109,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     case ROW_FLOAT: put_number(file, *(const float *)field, row->dimension); break;
     case ROW_VECTOR: put_numbers(file, field, row->length, row->dimension); break;
     case ROW_INTS:
-        for (int i = 0; i < row->length; i++)
-            fprintf(file, "%s%d", i ? ", " : "[", ((const int *)field)[i]);
+        for (int i = 0; i < row->length; i++) fprintf(file, "%s%d", i ? ", " : "[", ((const int *)field)[i]);
         fputc(']', file);
         break;
     case ROW_TEXT:
@@ -131,8 +127,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
     case ROW_POINTS: put_points(file, items_at(object, row), count_at(object, row)); break;
     case ROW_INDICES: {
         const uint32_t *indices = items_at(object, row);
-        for (uint32_t i = 0; i < count_at(object, row); i++)
-            fprintf(file, "%s%" PRIu32, i ? ", " : "[", indices[i]);
+        for (uint32_t i = 0; i < count_at(object, row); i++) fprintf(file, "%s%" PRIu32, i ? ", " : "[", indices[i]);
         fputs(count_at(object, row) ? "]" : "[]", file);
         break;
     }
@@ -147,8 +142,7 @@ void dump_value(const SchemaRow *row, const void *object, FILE *file) {
 
 // Short keys, and what is absent, are left out.
 static bool row_present(const SchemaRow *row, unsigned kind, const void *object) {
-    if (!row_allowed(row, kind) || (row->flags & ROW_SHORT))
-        return false;
+    if (!row_allowed(row, kind) || (row->flags & ROW_SHORT)) return false;
     switch (row->type) {
     case ROW_TEXT:
     case ROW_NAME: return *(char *const *)dump_at(object, row->offset) != NULL;
@@ -170,26 +164,21 @@ static void dump_list(const Dumper *dumper, const SchemaRow *row, const void *ob
     const char *items = items_at(object, row);
     uint32_t count = count_at(object, row);
     for (uint32_t i = 0; i < count; i++) {
-        if (dumper->json)
-            fputs(i ? "," : "[", dumper->file);
+        if (dumper->json) fputs(i ? "," : "[", dumper->file);
         dump_line(dumper, indent);
-        if (!dumper->json)
-            fputs("- ", dumper->file);
+        if (!dumper->json) fputs("- ", dumper->file);
         dump_map(dumper, row->sub, items + i * row->sub->size, dumper->json ? indent : indent + 2, true);
     }
-    if (dumper->json)
-        fputc(']', dumper->file);
+    if (dumper->json) fputc(']', dumper->file);
 }
 
 static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *object, int indent) {
     fprintf(dumper->file, dumper->json ? "\"%s\":" : "%s:", row->key);
     if (row->type == ROW_MAP) {
-        if (dumper->json)
-            fputc(' ', dumper->file);
+        if (dumper->json) fputc(' ', dumper->file);
         dump_map(dumper, row->sub, dump_at(object, row->offset), indent + 2, dumper->json);
     } else if (row->type == ROW_LIST || row->type == ROW_STRENGTH) {
-        if (dumper->json)
-            fputc(' ', dumper->file);
+        if (dumper->json) fputc(' ', dumper->file);
         dump_list(dumper, row, object, indent + 2);
     } else {
         fputc(' ', dumper->file);
@@ -201,16 +190,12 @@ static void dump_row(const Dumper *dumper, const SchemaRow *row, const void *obj
 static void dump_map(const Dumper *dumper, const Schema *schema, const void *object, int indent, bool inline_first) {
     unsigned kind = schema_kind(schema, object);
     bool first = true;
-    if (dumper->json)
-        fputc('{', dumper->file);
+    if (dumper->json) fputc('{', dumper->file);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (!row_present(row, kind, object))
-            continue;
-        if (!first && dumper->json)
-            fputc(',', dumper->file);
-        if (!first || !inline_first || dumper->json)
-            dump_line(dumper, indent + (dumper->json ? 2 : 0));
+        if (!row_present(row, kind, object)) continue;
+        if (!first && dumper->json) fputc(',', dumper->file);
+        if (!first || !inline_first || dumper->json) dump_line(dumper, indent + (dumper->json ? 2 : 0));
         dump_row(dumper, row, object, indent);
         first = false;
     }
@@ -223,6 +208,5 @@ static void dump_map(const Dumper *dumper, const Schema *schema, const void *obj
 void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file) {
     Dumper dumper = {file, syntax == SCENE_JSON};
     dump_map(&dumper, &schema_scene, scene, indent, true);
-    if (!indent)
-        fputc('\n', file);
+    if (!indent) fputc('\n', file);
 }

@@ -19,8 +19,7 @@ static const double program_bytes = 40e6;
 
 static uint64_t sheet_cells(const Scene *scene, const SceneAssets *assets, uint32_t index) {
     const SceneSheet *sheet = &scene->sheets[index];
-    if (assets)
-        return assets->meshes[index].cell_count;
+    if (assets) return assets->meshes[index].cell_count;
     return sheet->grid.given ? (uint64_t)sheet->grid.cells[0] * (uint64_t)sheet->grid.cells[1] : 0;
 }
 
@@ -46,8 +45,7 @@ static void box_add_sheet(Box *box, const SceneSheet *sheet, const Mesh *mesh) {
         low[i] = (double)sheet->translate[i] - half;
         high[i] = (double)sheet->translate[i] + half;
     }
-    if (sheet->grid.given)
-        box_add(box, low, high);
+    if (sheet->grid.given) box_add(box, low, high);
     for (uint32_t v = 0; mesh && !sheet->grid.given && v < mesh->vertex_count; v++) {
         const float *p = mesh->positions + 3 * (size_t)v;
         const double point[3] = {(double)p[0], (double)p[1], (double)p[2]};
@@ -57,8 +55,7 @@ static void box_add_sheet(Box *box, const SceneSheet *sheet, const Mesh *mesh) {
 
 static double gas_cells(const Scene *scene, const SceneAssets *assets) {
     const double cell = (double)scene->sim.gas.cell_size;
-    if (!(cell > 0))
-        return gas_cells_usual;
+    if (!(cell > 0)) return gas_cells_usual;
     Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < scene->sheet_count; i++)
         box_add_sheet(&box, &scene->sheets[i], assets ? &assets->meshes[i] : NULL);
@@ -101,8 +98,7 @@ SceneSize scene_size(const Scene *scene, const SceneAssets *assets) {
     }
     size.memory += (double)size.cells * (cell_bytes + (scene->sim.contact.enabled ? contact_bytes : 0));
     size.memory += pictures_memory(scene);
-    if (scene->sim.gas.enabled)
-        size.memory += gas_bytes * gas_cells(scene, assets);
+    if (scene->sim.gas.enabled) size.memory += gas_bytes * gas_cells(scene, assets);
     return size;
 }
 
@@ -121,12 +117,12 @@ static const SceneCollider *largest_heights(const Scene *scene, double wanted) {
         const double count = height_pixels(&scene->colliders[i]);
         if (count > pixels) largest = &scene->colliders[i], pixels = count;
     }
-    return pixels * (height_bytes + (largest && largest->visible ? drawn_height_bytes : 0)) > 0.5 * wanted ? largest : NULL;
+    return pixels * (height_bytes + (largest && largest->visible ? drawn_height_bytes : 0)) > 0.5 * wanted ? largest
+                                                                                                           : NULL;
 }
 
 bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, double room, SceneMessages *messages) {
-    if (!(room > 0) || wanted <= room)
-        return true;
+    if (!(room > 0) || wanted <= room) return true;
     const SceneCollider *heights = largest_heights(scene, wanted);
     if (heights) {
         message_add(messages, scene->text, heights->picture.location,
@@ -136,8 +132,7 @@ bool scene_fits(const Scene *scene, const SceneAssets *assets, double wanted, do
     }
     uint32_t largest = 0;
     for (uint32_t i = 1; i < scene->sheet_count; i++)
-        if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest))
-            largest = i;
+        if (sheet_cells(scene, assets, i) > sheet_cells(scene, assets, largest)) largest = i;
     message_add(messages, scene->text, scene->sheets[largest].location, // there is at least one
                 "the scene needs about %.1f GB of memory, and there are %.1f GB: give its sheets fewer cells",
                 1e-9 * wanted, 1e-9 * room);

@@ -55,8 +55,7 @@ static size_t expected_add(char *buffer, size_t size, const char *text) {
 
 static void add_names(char *buffer, size_t size, const char *const *names) {
     for (int i = 0; names[i]; i++) {
-        if (i)
-            expected_add(buffer, size, names[i + 1] ? ", " : " or ");
+        if (i) expected_add(buffer, size, names[i + 1] ? ", " : " or ");
         expected_add(buffer, size, names[i]);
     }
 }
@@ -77,10 +76,8 @@ static void add_quantity(char *buffer, size_t size, const SchemaRow *row) {
         expected_add(buffer, size, units);
         expected_add(buffer, size, ")");
     }
-    if (row->flags & ROW_INF)
-        expected_add(buffer, size, " or inf");
-    if (row->flags & ROW_NONE)
-        expected_add(buffer, size, " or none");
+    if (row->flags & ROW_INF) expected_add(buffer, size, " or inf");
+    if (row->flags & ROW_NONE) expected_add(buffer, size, " or none");
 }
 
 void row_expected(const SchemaRow *row, char *buffer, size_t size) {
@@ -97,16 +94,14 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_PARAM:
         expected_add(buffer, size, "a ");
         add_quantity(buffer, size, row);
-        if (row->type == ROW_PARAM)
-            expected_add(buffer, size, " or a map {from, to, texture | attribute | noise}");
+        if (row->type == ROW_PARAM) expected_add(buffer, size, " or a map {from, to, texture | attribute | noise}");
         break;
     case ROW_POSITION:
     case ROW_ROTATION:
     case ROW_VECTOR:
         expected_add(buffer, size, count);
         expected_add(buffer, size, row->dimension ? "numbers, each a " : "numbers");
-        if (row->dimension)
-            add_quantity(buffer, size, row);
+        if (row->dimension) add_quantity(buffer, size, row);
         break;
     case ROW_INTS:
         expected_add(buffer, size, count);
@@ -114,7 +109,9 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         break;
     case ROW_TEXT: expected_add(buffer, size, "a text"); break;
     case ROW_NAME:
-        expected_add(buffer, size, "a name of at most 100 characters and 200 bytes, all of them printable, without / \\ : * ? \" < > | % or a "
+        expected_add(
+            buffer, size,
+            "a name of at most 100 characters and 200 bytes, all of them printable, without / \\ : * ? \" < > | % or a "
             "dot in front");
         break;
     case ROW_FILE: expected_add(buffer, size, "the name of a file"); break;
@@ -124,8 +121,7 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
     case ROW_FORMATS:
         expected_add(buffer, size, "a list of ");
         for (int i = 0; i < OUTPUT_COUNT; i++) {
-            if (i)
-                expected_add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
+            if (i) expected_add(buffer, size, i + 1 < OUTPUT_COUNT ? ", " : " and ");
             expected_add(buffer, size, output_formats[i].name);
         }
         expected_add(buffer, size, ", each at most once");
@@ -135,12 +131,9 @@ void row_expected(const SchemaRow *row, char *buffer, size_t size) {
         for (int i = 0; row->sub && row->sub->choice && i < row->sub->row_count; i++)
             if (strcmp(row->sub->rows[i].key, row->sub->choice) == 0) {
                 expected_add(buffer, size, " or ");
-                if (row->sub->rows[i].type == ROW_BASE)
-                    add_base(buffer, size);
-                else if (row->sub->rows[i].type == ROW_BOOL)
-                    expected_add(buffer, size, "yes or no");
-                else
-                    add_names(buffer, size, row->sub->rows[i].names);
+                if (row->sub->rows[i].type == ROW_BASE) add_base(buffer, size);
+                else if (row->sub->rows[i].type == ROW_BOOL) expected_add(buffer, size, "yes or no");
+                else add_names(buffer, size, row->sub->rows[i].names);
             }
         break;
     case ROW_LIST: expected_add(buffer, size, "a list of maps"); break;

@@ -12,13 +12,10 @@ static SingeResult sheet_try(const SingeSheetDef *def, SingeError *error) {
     SingeSim *sim;
     SingeSheetId id;
     SingeResult result = singe_sim_create(&sim_def, &sim, error);
-    if (result)
-        return result;
+    if (result) return result;
     result = singe_sim_add_sheet(sim, def, &id);
-    if (!result)
-        result = singe_sim_commit(sim);
-    if (result)
-        *error = *singe_sim_error(sim);
+    if (!result) result = singe_sim_commit(sim);
+    if (result) *error = *singe_sim_error(sim);
     singe_sim_destroy(sim);
     return result;
 }
@@ -27,13 +24,10 @@ static SingeResult sheet_try(const SingeSheetDef *def, SingeError *error) {
 static uint32_t fault_cell(const Mesh *mesh, const SingeError *error) {
     char cell[40];
     snprintf(cell, sizeof cell, "cell %lld", (long long)error->element);
-    if (error->element < 0)
-        return mesh->cell_count;
-    if (strstr(error->message, cell))
-        return (uint32_t)error->element;
+    if (error->element < 0) return mesh->cell_count;
+    if (strstr(error->message, cell)) return (uint32_t)error->element;
     size_t corners = 4 * (size_t)mesh->cell_count, i = 0;
-    while (i < corners && mesh->cells[i] != error->element)
-        i++;
+    while (i < corners && mesh->cells[i] != error->element) i++;
     return (uint32_t)(i / 4);
 }
 
@@ -60,8 +54,7 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
     for (uint32_t i = 0; i < scene->sheet_count; i++) {
         SingeSheetDef def;
         SingeError error = {0};
-        if (!assets->meshes[i].positions)
-            continue;
+        if (!assets->meshes[i].positions) continue;
         scene_sheet_def(scene, assets, i, &def);
         def.name = "mesh";
         SceneParam which;
@@ -71,13 +64,10 @@ bool sheet_faults(const Scene *scene, const SceneAssets *assets, FaultScope scop
         }
         SingeResult result = sheet_try(&def, &error);
         bool mesh = result == SINGE_ERROR_MESH;
-        if (!result || result == SINGE_ERROR_MEMORY || (scope == FAULTS_OF_MESHES && !mesh))
-            continue;
+        if (!result || result == SINGE_ERROR_MEMORY || (scope == FAULTS_OF_MESHES && !mesh)) continue;
         const char *what = error.message;
-        if (strncmp(what, prefix, sizeof prefix - 1) == 0)
-            what += sizeof prefix - 1;
-        if (mesh)
-            mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);
+        if (strncmp(what, prefix, sizeof prefix - 1) == 0) what += sizeof prefix - 1;
+        if (mesh) mesh_fault(scene, i, &assets->meshes[i], &error, what, messages);
         else
             message_add(messages, scene->text, scene->sheets[i].location, "%s",
                         what[0] ? what : singe_result_name(result));

@@ -26,7 +26,8 @@ static bool foot_inside(const double p[3], const double corner[3][3], double wei
     double u[3], v[3], w[3];
     for (int k = 0; k < 3; k++)
         u[k] = corner[1][k] - corner[0][k], v[k] = corner[2][k] - corner[0][k], w[k] = p[k] - corner[0][k];
-    const double uu = foot_dot(u, u), uv = foot_dot(u, v), vv = foot_dot(v, v), wu = foot_dot(w, u), wv = foot_dot(w, v);
+    const double uu = foot_dot(u, u), uv = foot_dot(u, v), vv = foot_dot(v, v), wu = foot_dot(w, u),
+                 wv = foot_dot(w, v);
     const double area = uu * vv - uv * uv;
     if (!(area > 1e-12 * uu * vv)) return false;
     weight[1] = (vv * wu - uv * wv) / area, weight[2] = (uu * wv - uv * wu) / area;

@@ -4,8 +4,8 @@
 
 static inline double foot_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The square of the distance from p to a triangle, and the weights of its corners at the nearest point: inside it, on an
-/// edge or at a corner. A triangle without area has its edges alone.
+/// The square of the distance from p to a triangle, and the weights of its corners at the nearest point: inside it, on
+/// an edge or at a corner. A triangle without area has its edges alone.
 double foot_on_triangle(const double p[3], const double corner[3][3], double weight[3]);
 
 #endif

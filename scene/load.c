@@ -20,8 +20,7 @@ typedef struct Loader {
 
 static SingeResult loader_fail(Loader *loader, const SceneFile *file, SingeResult result, const char *why) {
     message_add(loader->messages, loader->scene->text, file->location, "%s", why);
-    if (result == SINGE_ERROR_MEMORY)
-        loader->no_memory = true;
+    if (result == SINGE_ERROR_MEMORY) loader->no_memory = true;
     return result;
 }
 
@@ -29,8 +28,7 @@ static SingeResult load_image(Loader *loader, const SceneFile *file, Image *imag
     Bytes bytes = {0};
     SingeError error = {0};
     SingeResult result = file_read(file->path, (SingeAllocator){0}, &bytes, &error);
-    if (!result)
-        result = image_read(file->path, bytes.data, bytes.size, (SingeAllocator){0}, image, &error);
+    if (!result) result = image_read(file->path, bytes.data, bytes.size, (SingeAllocator){0}, image, &error);
     bytes_free(&bytes);
     return result ? loader_fail(loader, file, result, error.message) : SINGE_OK;
 }
@@ -38,11 +36,9 @@ static SingeResult load_image(Loader *loader, const SceneFile *file, Image *imag
 static void load_luminance(Loader *loader, const SceneFile *file, SingeTexture *picture) {
     Image image = {0};
     SingeError error = {0};
-    if (load_image(loader, file, &image))
-        return;
+    if (load_image(loader, file, &image)) return;
     SingeResult result = image_luminance(&image, (SingeAllocator){0}, picture, &error);
-    if (result)
-        loader_fail(loader, file, result, error.message);
+    if (result) loader_fail(loader, file, result, error.message);
     image_free(&image);
 }
 
@@ -51,8 +47,11 @@ static const float location_max = 1e4f;
 
 /// Grids are in metres.
 double metres_per_unit(int unit, float scale) {
-    static const double units[] = {[SCENE_UNITS_M] = 1, [SCENE_UNITS_CM] = 0.01, [SCENE_UNITS_MM] = 0.001,
-                                   [SCENE_UNITS_IN] = 0.0254, [SCENE_UNITS_FT] = 0.3048};
+    static const double units[] = {[SCENE_UNITS_M] = 1,
+                                   [SCENE_UNITS_CM] = 0.01,
+                                   [SCENE_UNITS_MM] = 0.001,
+                                   [SCENE_UNITS_IN] = 0.0254,
+                                   [SCENE_UNITS_FT] = 0.3048};
     return units[unit] * (double)scale;
 }
 
@@ -71,8 +70,7 @@ static bool transform(const SceneSheet *sheet, float *positions, uint32_t count)
             y = -z, z = up;
         }
         double q[3] = {x, y, z};
-        for (int i = 0; i < 3 && turned; i++)
-            q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
+        for (int i = 0; i < 3 && turned; i++) q[i] = r[3 * i] * x + r[3 * i + 1] * y + r[3 * i + 2] * z;
         for (int i = 0; i < 3; i++)
             near = fabsf(p[i] = (float)(q[i] + (double)sheet->translate[i])) < location_max && near;
     }
@@ -95,8 +93,7 @@ static SingeResult load_file(const SceneSheet *sheet, Mesh *mesh, MeshReport *re
         snprintf(error->message, sizeof error->message, "%s", too_far);
         result = SINGE_ERROR_MESH;
     }
-    if (!result)
-        result = mesh_make(sheet->mesh.path, &polygons, &options, (SingeAllocator){0}, mesh, report, error);
+    if (!result) result = mesh_make(sheet->mesh.path, &polygons, &options, (SingeAllocator){0}, mesh, report, error);
     polygons_free(&polygons);
     return result;
 }
@@ -116,18 +113,15 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
             mesh_grid_wear(mesh, (uint32_t)sheet->grid.cells[0], (uint32_t)sheet->grid.cells[1], &sheet->grid.wear);
         near = result || transform(sheet, mesh->positions, mesh->vertex_count);
     }
-    if (result)
-        loader_fail(loader, &file, result, error.message);
-    else if (!near)
-        message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
+    if (result) loader_fail(loader, &file, result, error.message);
+    else if (!near) message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
 }
 
 static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
                             const Mesh *mesh) {
     Nearest nearest = {.word = param->attribute};
     for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        if (strcmp(mesh->attributes[i].name, param->attribute) == 0)
-            return;
+        if (strcmp(mesh->attributes[i].name, param->attribute) == 0) return;
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
@@ -167,8 +161,7 @@ static void load_sheet(Loader *loader, uint32_t index) {
 static void load_motion(Loader *loader, const SceneMotion *motion, SceneSequence *sequence) {
     SingeError error = {0};
     SingeResult result = sequence_read(motion, loader->scene->frames, sequence, &error);
-    if (result)
-        loader_fail(loader, &motion->mesh, result, error.message);
+    if (result) loader_fail(loader, &motion->mesh, result, error.message);
 }
 
 /// A collider's mesh or heights.
@@ -191,12 +184,10 @@ static void load_solid(Loader *loader, uint32_t index) {
         SingeTexture picture = {0};
         file = &collider->picture;
         load_luminance(loader, file, &picture);
-        if (picture.values)
-            result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
+        if (picture.values) result = solid_make_heights(&picture, collider->def.size, collider->heights, solid, &error);
         free((void *)picture.values);
     }
-    if (result)
-        loader_fail(loader, file, result, error.message);
+    if (result) loader_fail(loader, file, result, error.message);
 }
 
 static void *many(Loader *loader, size_t count, size_t size) {
@@ -208,8 +199,10 @@ static void *many(Loader *loader, size_t count, size_t size) {
 SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *messages) {
     Loader loader = {scene, assets, messages, false};
     uint32_t before = message_total(messages), first = messages->count;
-    *assets = (SceneAssets){.sheet_count = scene->sheet_count, .source_count = scene->source_count,
-                            .collider_count = scene->collider_count, .pin_count = scene->pin_count};
+    *assets = (SceneAssets){.sheet_count = scene->sheet_count,
+                            .source_count = scene->source_count,
+                            .collider_count = scene->collider_count,
+                            .pin_count = scene->pin_count};
     assets->meshes = many(&loader, scene->sheet_count, sizeof *assets->meshes);
     assets->reports = many(&loader, scene->sheet_count, sizeof *assets->reports);
     assets->images = many(&loader, scene->sheet_count, sizeof *assets->images);
@@ -222,26 +215,19 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->probes = many(&loader, scene->probe_count, sizeof *assets->probes);
     assets->collider_motions = many(&loader, scene->collider_count, sizeof *assets->collider_motions);
     assets->pin_motions = many(&loader, scene->pin_count, sizeof *assets->pin_motions);
-    if (loader.no_memory)
-        message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
-    for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++)
-        load_sheet(&loader, i);
+    if (loader.no_memory) message_add(messages, scene->text, (SceneLocation){0}, "out of memory");
+    for (uint32_t i = 0; i < scene->sheet_count && !loader.no_memory; i++) load_sheet(&loader, i);
     for (uint32_t i = 0; i < scene->source_count && !loader.no_memory; i++)
         if (scene->sources[i].texture.name)
             load_luminance(&loader, &scene->sources[i].texture, &assets->source_textures[i]);
-    for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++)
-        load_solid(&loader, i);
+    for (uint32_t i = 0; i < scene->collider_count && !loader.no_memory; i++) load_solid(&loader, i);
     for (uint32_t i = 0; i < scene->pin_count && !loader.no_memory; i++)
-        if (scene->pins[i].motion.given)
-            load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
+        if (scene->pins[i].motion.given) load_motion(&loader, &scene->pins[i].motion, &assets->pin_motions[i]);
     if (scene->preview.environment_picture.name && !loader.no_memory)
         (void)load_image(&loader, &scene->preview.environment_picture, &assets->sky);
-    if (message_total(messages) == before && !loader.no_memory)
-        probes_find(scene, assets, messages);
-    if (message_total(messages) == before && !loader.no_memory)
-        return SINGE_OK;
-    if (!loader.no_memory)
-        sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
+    if (message_total(messages) == before && !loader.no_memory) probes_find(scene, assets, messages);
+    if (message_total(messages) == before && !loader.no_memory) return SINGE_OK;
+    if (!loader.no_memory) sheet_faults(scene, assets, FAULTS_OF_MESHES, messages);
     messages_sort(messages, first);
     scene_assets_free(assets);
     return loader.no_memory ? SINGE_ERROR_MEMORY : SINGE_ERROR_FORMAT;
@@ -254,21 +240,16 @@ static void picture_free(SingeTexture *picture) {
 
 void scene_assets_free(SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
-        if (assets->meshes)
-            mesh_free(&assets->meshes[i]);
-        if (assets->images)
-            image_free(&assets->images[i]);
-        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->params; p++)
-            picture_free(&assets->params[i][p]);
+        if (assets->meshes) mesh_free(&assets->meshes[i]);
+        if (assets->images) image_free(&assets->images[i]);
+        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->params; p++) picture_free(&assets->params[i][p]);
     }
     for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
         picture_free(&assets->source_textures[i]);
-    for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++)
-        solid_free(&assets->solids[i]);
+    for (uint32_t i = 0; i < assets->collider_count && assets->solids; i++) solid_free(&assets->solids[i]);
     for (uint32_t i = 0; i < assets->collider_count && assets->collider_motions; i++)
         sequence_free(&assets->collider_motions[i]);
-    for (uint32_t i = 0; i < assets->pin_count && assets->pin_motions; i++)
-        sequence_free(&assets->pin_motions[i]);
+    for (uint32_t i = 0; i < assets->pin_count && assets->pin_motions; i++) sequence_free(&assets->pin_motions[i]);
     image_free(&assets->sky);
     free(assets->collider_motions);
     free(assets->pin_motions);

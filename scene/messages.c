@@ -13,13 +13,10 @@ static char *text_printable(const char *text, size_t length) {
     const char *end = text + length;
     char *copy = malloc(PRINTABLE_PIECE * length + 1);
     size_t used = 0;
-    if (!copy)
-        return NULL;
+    if (!copy) return NULL;
     while (text < end)
-        if (*text == '\t')
-            copy[used++] = ' ', text++;
-        else
-            used += printable_character(&text, end, copy + used);
+        if (*text == '\t') copy[used++] = ' ', text++;
+        else used += printable_character(&text, end, copy + used);
     copy[used] = 0;
     char *fit = realloc(copy, used + 1);
     return fit ? fit : copy;
@@ -31,8 +28,7 @@ static char *text_format(const char *format, va_list arguments) {
     int length = vsnprintf(NULL, 0, format, again);
     va_end(again);
     char *text = length < 0 ? NULL : malloc((size_t)length + 1);
-    if (!text)
-        return NULL;
+    if (!text) return NULL;
     vsnprintf(text, (size_t)length + 1, format, arguments);
     char *printable = text_printable(text, strlen(text));
     free(text);
@@ -46,28 +42,22 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
     const char *start = text->bytes, *stop = text->bytes + text->size;
     for (int i = 1; i < line; i++) {
         const char *end = start < stop ? memchr(start, '\n', (size_t)(stop - start)) : NULL;
-        if (!end)
-            return NULL;
+        if (!end) return NULL;
         start = end + 1;
     }
     const char *end = start < stop ? memchr(start, '\n', (size_t)(stop - start)) : NULL;
-    if (!end)
-        end = stop;
-    if (end > start && end[-1] == '\r')
-        end--;
-    for (; column > LINE_WIDTH - 20 && start < end; column--)
-        do
+    if (!end) end = stop;
+    if (end > start && end[-1] == '\r') end--;
+    for (; column > LINE_WIDTH - 20 && start < end; column--) do
             start++;
         while (start < end && !starts_character(*start));
     if (end - start > LINE_WIDTH) {
         end = start + LINE_WIDTH;
-        while (end > start && !starts_character(*end))
-            end--;
+        while (end > start && !starts_character(*end)) end--;
     }
     // the caret counts characters as they are shown
     const char *at = start;
-    for (int i = 1; i < column && at < end; i++)
-        do
+    for (int i = 1; i < column && at < end; i++) do
             at++;
         while (at < end && !starts_character(*at));
     char *before = text_printable(start, (size_t)(at - start));
@@ -79,8 +69,7 @@ static char *source_line(const SceneText *text, int line, int column, int *caret
 // The file that a place is in.
 static const SceneText *text_of(const SceneText *text, SceneLocation location) {
     const SceneText *file = text && location.file ? text->files : text;
-    while (file && file->number != location.file)
-        file = file->next;
+    while (file && file->number != location.file) file = file->next;
     return file;
 }
 
@@ -92,8 +81,7 @@ static char *text_origin(const SceneText *text, SceneLocation location) {
         snprintf(origin, sizeof origin, "--set %s", shown(text->sets[location.set - 1]).text);
     else if (location.line > 0)
         snprintf(origin, sizeof origin, "%s:%d:%d", shown_path(name).text, location.line, location.column);
-    else
-        snprintf(origin, sizeof origin, "%s", shown_path(name).text);
+    else snprintf(origin, sizeof origin, "%s", shown_path(name).text);
     return text_printable(origin, strlen(origin));
 }
 
@@ -146,8 +134,7 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
     va_end(arguments);
     const size_t size = what && origin ? strlen(what) + strlen(origin) + 3 : 0;
     char *line = size ? malloc(size) : NULL;
-    if (line)
-        snprintf(line, size, "%s: %s", origin, what);
+    if (line) snprintf(line, size, "%s: %s", origin, what);
     if (log->write) // without memory it comes without its place
         log->write(log->context, SINGE_LOG_WARNING, line ? line : format);
     free(line);
@@ -156,10 +143,8 @@ void message_warn(const SingeLog *log, const SceneText *text, SceneLocation loca
 }
 
 static bool location_before(SceneLocation a, SceneLocation b) {
-    if (a.set != b.set)
-        return a.set < b.set;
-    if (a.file != b.file)
-        return a.file < b.file;
+    if (a.set != b.set) return a.set < b.set;
+    if (a.file != b.file) return a.file < b.file;
     return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
@@ -177,11 +162,9 @@ void scene_messages_print(const SceneMessages *messages, FILE *file) {
     for (uint32_t i = 0; i < messages->count; i++) {
         const SceneMessage *message = &messages->items[i];
         fprintf(file, "%s: error: %s\n", message->origin, message->text);
-        if (message->source)
-            fprintf(file, "    %s\n    %*s\n", message->source, message->caret, "^");
+        if (message->source) fprintf(file, "    %s\n    %*s\n", message->source, message->caret, "^");
     }
-    if (messages->left_out)
-        fprintf(file, "... and %u more\n", (unsigned)messages->left_out);
+    if (messages->left_out) fprintf(file, "... and %u more\n", (unsigned)messages->left_out);
 }
 
 void scene_messages_free(SceneMessages *messages) {

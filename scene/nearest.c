@@ -11,10 +11,8 @@ static int smaller(int a, int b) { return a < b ? a : b; }
 
 static int word_distance(const char *a, const char *b) {
     int m = (int)strlen(a), n = (int)strlen(b), d[WORD_MAX + 1][WORD_MAX + 1];
-    for (int i = 0; i <= m; i++)
-        d[i][0] = i;
-    for (int j = 0; j <= n; j++)
-        d[0][j] = j;
+    for (int i = 0; i <= m; i++) d[i][0] = i;
+    for (int j = 0; j <= n; j++) d[0][j] = j;
     for (int i = 1; i <= m; i++)
         for (int j = 1; j <= n; j++) {
             bool same = lower(a[i - 1]) == lower(b[j - 1]);
@@ -27,12 +25,10 @@ static int word_distance(const char *a, const char *b) {
 
 void nearest_offer(Nearest *nearest, const char *candidate) {
     size_t length = strlen(nearest->word), other = strlen(candidate);
-    if (!length || length > WORD_MAX || other > WORD_MAX)
-        return;
+    if (!length || length > WORD_MAX || other > WORD_MAX) return;
     int distance = word_distance(nearest->word, candidate);
     int max = (int)(length > other ? length : other) / 3;
-    if (distance <= (max > 1 ? max : 1) && distance < (int)other &&
-        (!nearest->best || distance < nearest->distance)) {
+    if (distance <= (max > 1 ? max : 1) && distance < (int)other && (!nearest->best || distance < nearest->distance)) {
         nearest->best = candidate;
         nearest->distance = distance;
     }
@@ -40,7 +36,6 @@ void nearest_offer(Nearest *nearest, const char *candidate) {
 
 const char *nearest_hint(const Nearest *nearest, char *buffer, size_t size) {
     buffer[0] = 0;
-    if (nearest->best)
-        snprintf(buffer, size, "; did you mean '%s'?", nearest->best);
+    if (nearest->best) snprintf(buffer, size, "; did you mean '%s'?", nearest->best);
     return buffer;
 }

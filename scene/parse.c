@@ -12,11 +12,9 @@ static SceneText *keep_text(SceneArena *arena, const SceneText *text) {
     char *name = arena_text(arena, text->name, strlen(text->name));
     char *bytes = arena_text(arena, text->bytes, text->size);
     const char **sets = arena_new(arena, (size_t)text->set_count + 1, sizeof *sets);
-    if (!kept || !name || !bytes || !sets)
-        return NULL;
+    if (!kept || !name || !bytes || !sets) return NULL;
     for (int i = 0; i < text->set_count; i++)
-        if (!(sets[i] = arena_text(arena, text->sets[i], strlen(text->sets[i]))))
-            return NULL;
+        if (!(sets[i] = arena_text(arena, text->sets[i], strlen(text->sets[i])))) return NULL;
     *kept = (SceneText){.name = name, .bytes = bytes, .size = text->size, .sets = sets, .set_count = text->set_count};
     return kept;
 }
@@ -57,8 +55,7 @@ static void scene_fill(Reader *reader, const Node *root) {
     }
     default_scene(reader->arena, scene);
     schema_read(reader, &schema_scene, root, scene);
-    if (!scene->name)
-        take_name(reader, root);
+    if (!scene->name) take_name(reader, root);
     scene->sim.time_step = (float)(1 / ((double)scene->fps * scene->steps));
 }
 
@@ -67,25 +64,18 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
     SceneText *text = keep_text(arena, given);
     Scene *scene = arena_new(arena, 1, sizeof *scene);
     char *folder = base_dir ? arena_text(arena, base_dir, strlen(base_dir)) : NULL;
-    if (!text || !scene || (base_dir && !folder))
-        return SINGE_ERROR_MEMORY;
+    if (!text || !scene || (base_dir && !folder)) return SINGE_ERROR_MEMORY;
     uint32_t before = message_total(messages), first = messages->count;
     Node *root = tree_read(arena, text, text->bytes, text->size, (SceneLocation){0}, messages);
-    if (root)
-        schema_spell_out(arena, &schema_scene, root);
-    if (root && !tree_set(arena, text, root, messages))
-        return SINGE_ERROR_MEMORY;
-    Reader reader = {.arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "",
-                     .scene = scene};
-    if (root)
-        scene_fill(&reader, root);
-    if (arena_failed(arena))
-        return SINGE_ERROR_MEMORY;
+    if (root) schema_spell_out(arena, &schema_scene, root);
+    if (root && !tree_set(arena, text, root, messages)) return SINGE_ERROR_MEMORY;
+    Reader reader = {
+        .arena = arena, .text = text, .messages = messages, .base_dir = folder, .prefix = "", .scene = scene};
+    if (root) scene_fill(&reader, root);
+    if (arena_failed(arena)) return SINGE_ERROR_MEMORY;
     messages_sort(messages, first);
-    if (message_total(messages) != before)
-        return SINGE_ERROR_FORMAT;
-    if (!root)
-        return SINGE_ERROR_MEMORY;
+    if (message_total(messages) != before) return SINGE_ERROR_FORMAT;
+    if (!root) return SINGE_ERROR_MEMORY;
     scene->text = text;
     scene->arena = arena;
     *result = scene;
@@ -94,19 +84,21 @@ static SingeResult parse_into(SceneArena *arena, const SceneText *given, const c
 
 SingeResult scene_parse(const char *name, const char *bytes, size_t size, const char *base_dir, const char *const *sets,
                         int set_count, Scene **scene, SceneMessages *messages) {
-    SceneText text = {.name = name ? name : "scene", .bytes = bytes, .size = size, .sets = sets,
+    SceneText text = {.name = name ? name : "scene",
+                      .bytes = bytes,
+                      .size = size,
+                      .sets = sets,
                       .set_count = set_count > 0 ? set_count : 0};
     *scene = NULL;
     if (size > SCENE_BYTES_MAX) {
-        message_add(messages, &text, (SceneLocation){.line = 1, .column = 1}, "a scene has at most 1 MiB, this one has %zu bytes", size);
+        message_add(messages, &text, (SceneLocation){.line = 1, .column = 1},
+                    "a scene has at most 1 MiB, this one has %zu bytes", size);
         return SINGE_ERROR_LIMIT;
     }
     SceneArena *arena = arena_create();
     SingeResult result = arena ? parse_into(arena, &text, base_dir, scene, messages) : SINGE_ERROR_MEMORY;
-    if (result == SINGE_ERROR_MEMORY)
-        message_add(messages, &text, (SceneLocation){0}, "out of memory");
-    if (result)
-        arena_destroy(arena);
+    if (result == SINGE_ERROR_MEMORY) message_add(messages, &text, (SceneLocation){0}, "out of memory");
+    if (result) arena_destroy(arena);
     return result;
 }
 
@@ -128,8 +120,7 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
         message_add(messages, &text, (SceneLocation){0}, "the path is too long");
         result = SINGE_ERROR_LIMIT;
     } else {
-        if (slash)
-            snprintf(folder, sizeof folder, "%.*s", (int)length, slash == path ? "/." : path);
+        if (slash) snprintf(folder, sizeof folder, "%.*s", (int)length, slash == path ? "/." : path);
         result = scene_parse(path, (const char *)bytes.data, bytes.size, slash == path ? "/." : folder, sets, set_count,
                              scene, messages);
     }
@@ -138,6 +129,5 @@ SingeResult scene_read(const char *path, const char *const *sets, int set_count,
 }
 
 void scene_free(Scene *scene) {
-    if (scene)
-        arena_destroy(scene->arena);
+    if (scene) arena_destroy(scene->arena);
 }

@@ -31,26 +31,21 @@ static void write_float(FILE *out, float value) {
     }
     for (int digits = 1; digits <= 9; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value)
-            break;
+        if (strtof(text, NULL) == value) break;
     }
     fprintf(out, strpbrk(text, ".e") ? "%sf" : "%s", text);
 }
 
 static bool same(const SingeParam *a, const SingeParam *b) {
-    if (a->field != b->field || a->value != b->value)
-        return false;
-    return a->field == SINGE_FIELD_NONE ||
-           (a->to == b->to && a->noise.scale == b->noise.scale && a->noise.octaves == b->noise.octaves &&
-            a->noise.seed == b->noise.seed);
+    if (a->field != b->field || a->value != b->value) return false;
+    return a->field == SINGE_FIELD_NONE || (a->to == b->to && a->noise.scale == b->noise.scale &&
+                                            a->noise.octaves == b->noise.octaves && a->noise.seed == b->noise.seed);
 }
 
 static void write_param(FILE *out, const PresetRow *row, int colour, const SingeParam *param) {
     char name[80];
-    if (row->colours)
-        snprintf(name, sizeof name, "%s[%d]", row->name, colour);
-    else
-        snprintf(name, sizeof name, "%s", row->name);
+    if (row->colours) snprintf(name, sizeof name, "%s[%d]", row->name, colour);
+    else snprintf(name, sizeof name, "%s", row->name);
     fprintf(out, "    preset_%s(&def->%s, ", param->field == SINGE_FIELD_NOISE ? "noise" : "even", name);
     write_float(out, param->value);
     if (param->field == SINGE_FIELD_NOISE) {
@@ -66,8 +61,7 @@ static void write_param(FILE *out, const PresetRow *row, int colour, const Singe
 static void write_material(FILE *out, const char *name, const SingeMaterialDef *def) {
     const SingeMaterialDef standard = singe_default_material();
     fprintf(out, "static void ");
-    for (const char *c = name; *c; c++)
-        fputc(*c == '-' ? '_' : *c, out);
+    for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
     fprintf(out, "(SingeMaterialDef *def) {\n    (void)def;\n");
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         for (int colour = 0; colour < (params[i].colours ? params[i].colours : 1); colour++) {
@@ -87,8 +81,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     }
     if (def->heat_operator != standard.heat_operator)
         fprintf(out, "    def->heat_operator = (SingeHeatOperator)%d;\n", (int)def->heat_operator);
-    if (def->ablate != standard.ablate)
-        fprintf(out, "    def->ablate = %s;\n", def->ablate ? "true" : "false");
+    if (def->ablate != standard.ablate) fprintf(out, "    def->ablate = %s;\n", def->ablate ? "true" : "false");
     fprintf(out, "}\n\n");
 }
 
@@ -109,16 +102,14 @@ static bool write_presets(FILE *out) {
                  "// `build/scene/scene_presets > materials/presets.c`.\n#include \"materials/preset.h\"\n\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
         Scene *scene;
-        if (!read_material(name, &scene))
-            return false;
+        if (!read_material(name, &scene)) return false;
         write_material(out, name, &scene->sheets[0].material.def);
         scene_free(scene);
     }
     fprintf(out, "const MaterialPreset material_presets[] = {\n");
     for (int i = 0; (name = scene_material_name(i)); i++) {
         fprintf(out, "    {\"%s\", ", name);
-        for (const char *c = name; *c; c++)
-            fputc(*c == '-' ? '_' : *c, out);
+        for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
         fprintf(out, "},\n");
     }
     fprintf(out, "    {0},\n};\n");
@@ -133,8 +124,7 @@ static int compare(const char *path, const char *text, size_t size) {
         return 1;
     }
     bool equal = bytes.size == size && memcmp(bytes.data, text, size) == 0;
-    if (!equal)
-        fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", path, path);
+    if (!equal) fprintf(stderr, "%s: differs from the material files; run scene_presets > %s\n", path, path);
     bytes_free(&bytes);
     return equal ? 0 : 1;
 }
@@ -144,13 +134,10 @@ int main(int argc, char **argv) {
     size_t size = 0;
     FILE *memory = open_memstream(&text, &size);
     bool ok = memory && write_presets(memory);
-    if (memory && fclose(memory))
-        ok = false;
+    if (memory && fclose(memory)) ok = false;
     int status = 1;
-    if (ok && argc > 1)
-        status = compare(argv[1], text, size);
-    else if (ok)
-        status = fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
+    if (ok && argc > 1) status = compare(argv[1], text, size);
+    else if (ok) status = fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0 ? 0 : 1;
     free(text);
     return status;
 }

@@ -9,20 +9,18 @@ static void *read_at(void *object, size_t offset) { return (char *)object + offs
 
 static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param) {
     if (node->kind != NODE_MAP) {
-        message_add(reader->messages, reader->text, node->location, "%s.noise must be a map {scale: , octaves: , seed: }",
-                    row->key);
+        message_add(reader->messages, reader->text, node->location,
+                    "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
         return;
     }
-    if (default_noise(reader->arena, &param->noise))
-        schema_read(reader, &schema_noise, node, &param->noise);
+    if (default_noise(reader->arena, &param->noise)) schema_read(reader, &schema_noise, node, &param->noise);
 }
 
 // What the parameter follows; returns how many such keys there are.
 static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeParam *param, SceneFile *file) {
     const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
-    if (!texture)
-        texture = node_find(map, "picture"); // its name before
+    if (!texture) texture = node_find(map, "picture"); // its name before
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
         param->field = SINGE_FIELD_TEXTURE;
@@ -32,10 +30,8 @@ static int read_field(Reader *reader, const SchemaRow *row, const Node *map, Sin
         SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
         param->field = SINGE_FIELD_ATTRIBUTE;
         file->location = attribute->location;
-        if (value_is_text(attribute))
-            param->attribute = attribute->text;
-        else
-            value_wrong(reader, attribute, &part);
+        if (value_is_text(attribute)) param->attribute = attribute->text;
+        else value_wrong(reader, attribute, &part);
     }
     if (noise) {
         param->field = SINGE_FIELD_NOISE;
@@ -61,8 +57,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         const char *name = renamed(reader, RENAMED_PARAM, child->key, child->key_location);
         Nearest nearest = {.word = name};
         int i = 0;
-        for (; i < 5 && strcmp(name, keys[i]) != 0; i++)
-            nearest_offer(&nearest, keys[i]);
+        for (; i < 5 && strcmp(name, keys[i]) != 0; i++) nearest_offer(&nearest, keys[i]);
         char hint[80], key[NODE_WORDS];
         if (i == 5)
             message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
@@ -70,8 +65,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
         else if (given & 1u << i)
             message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", keys[i],
                         row->key);
-        else
-            given |= 1u << i;
+        else given |= 1u << i;
     }
     const Node *from = node_find(node, "from"), *to = node_find(node, "to");
     SchemaRow end = *row; // no line leads to infinity
@@ -83,8 +77,7 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     if (!from || !to || fields != 1)
         message_add(reader->messages, reader->text, node->location,
                     "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);
-    else if (good)
-        *param = result;
+    else if (good) *param = result;
 }
 
 // ---- lists
@@ -104,10 +97,8 @@ static void read_list(Reader *reader, const SchemaRow *row, const Node *node, vo
     }
     char *items = list_new(reader, object, row, node->count, schema->size);
     for (const Node *child = node->first; items && child; child = child->next, items += schema->size) {
-        if (schema->defaults && !schema->defaults(reader->arena, items))
-            return;
-        if (schema->location)
-            *schema->location(items) = child->location;
+        if (schema->defaults && !schema->defaults(reader->arena, items)) return;
+        if (schema->location) *schema->location(items) = child->location;
         if (child->kind == NODE_MAP) {
             schema_read(reader, schema, child, items);
         } else {
@@ -124,11 +115,9 @@ static void read_strength(Reader *reader, const SchemaRow *row, const Node *node
         return;
     }
     float value;
-    if (!value_float(reader, row, node, &value))
-        return;
+    if (!value_float(reader, row, node, &value)) return;
     SingeValueKey *items = list_new(reader, object, row, 1, sizeof *items);
-    if (items)
-        items[0] = (SingeValueKey){0, value};
+    if (items) items[0] = (SingeValueKey){0, value};
 }
 
 static void read_points(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
@@ -158,13 +147,13 @@ static void read_indices(Reader *reader, const SchemaRow *row, const Node *node,
 static SceneKey *only_key(Reader *reader, const SchemaRow *row, void *object) {
     SceneKey *keys;
     memcpy(&keys, read_at(object, row->offset), sizeof keys);
-    return keys && *(uint32_t *)read_at(object, row->extra) == 1 ? keys : list_new(reader, object, row, 1, sizeof *keys);
+    return keys && *(uint32_t *)read_at(object, row->extra) == 1 ? keys
+                                                                 : list_new(reader, object, row, 1, sizeof *keys);
 }
 
 static void read_key_part(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
     SceneKey *key = only_key(reader, row, object);
-    if (key)
-        value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
+    if (key) value_vector(reader, row, node, row->type == ROW_POSITION ? key->position : key->rotation);
 }
 
 // ---- maps
@@ -173,8 +162,7 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
 
 static const SchemaRow *choice_row(const Schema *schema) {
     const SchemaRow *row = schema->rows;
-    while (strcmp(row->key, schema->choice) != 0)
-        row++;
+    while (strcmp(row->key, schema->choice) != 0) row++;
     return row;
 }
 
@@ -182,8 +170,7 @@ static const SchemaRow *choice_row(const Schema *schema) {
 static void read_choice(Reader *reader, const Schema *schema, const Node *node, void *object) {
     uint32_t before = message_total(reader->messages);
     read_row(reader, choice_row(schema), node, object);
-    if (message_total(reader->messages) == before && schema->chosen)
-        schema->chosen(object);
+    if (message_total(reader->messages) == before && schema->chosen) schema->chosen(object);
 }
 
 void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
@@ -193,16 +180,11 @@ void *row_begin(SceneArena *arena, const SchemaRow *row, void *object) {
 
 static void read_submap(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
     void *inner = row_begin(reader->arena, row, object); // nothing of what it was before, where it has own defaults
-    if (!inner)
-        return;
-    if (row->extra)
-        *(bool *)read_at(object, row->extra) = true;
-    if (node->kind == NODE_MAP)
-        schema_read(reader, row->sub, node, inner);
-    else if (row->sub->choice && node->kind == NODE_VALUE)
-        read_choice(reader, row->sub, node, inner);
-    else
-        value_wrong(reader, node, row);
+    if (!inner) return;
+    if (row->extra) *(bool *)read_at(object, row->extra) = true;
+    if (node->kind == NODE_MAP) schema_read(reader, row->sub, node, inner);
+    else if (row->sub->choice && node->kind == NODE_VALUE) read_choice(reader, row->sub, node, inner);
+    else value_wrong(reader, node, row);
 }
 
 static void read_row(Reader *reader, const SchemaRow *row, const Node *node, void *object) {
@@ -214,24 +196,20 @@ static void read_row(Reader *reader, const SchemaRow *row, const Node *node, voi
     case ROW_UINT64: value_integer(reader, row, node, field); break;
     case ROW_FLOAT: {
         float value;
-        if (value_float(reader, row, node, &value))
-            *(float *)field = value;
+        if (value_float(reader, row, node, &value)) *(float *)field = value;
         break;
     }
     case ROW_VECTOR: value_vector(reader, row, node, field); break;
     case ROW_INTS: value_ints(reader, row, node, field); break;
     case ROW_TEXT:
-        if (value_is_text(node))
-            *(char **)field = node->text;
-        else
-            value_wrong(reader, node, row);
+        if (value_is_text(node)) *(char **)field = node->text;
+        else value_wrong(reader, node, row);
         break;
     case ROW_NAME: value_name(reader, row, node, field); break;
     case ROW_FILE: value_file(reader, row, node, field); break;
     case ROW_ENUM: {
         int value;
-        if (value_word(reader, row, node, row->names, &value))
-            memcpy(field, &value, sizeof value);
+        if (value_word(reader, row, node, row->names, &value)) memcpy(field, &value, sizeof value);
         break;
     }
     case ROW_BASE: read_base(reader, row, node, field); break;
@@ -258,16 +236,14 @@ static void unknown_key(Reader *reader, const Schema *schema, unsigned kind, con
     if (other) {
         const char *const *names = schema->rows[0].names; // the row "kind" is the first
         int mine = 0;
-        while (kind > 1u << mine)
-            mine++;
+        while (kind > 1u << mine) mine++;
         message_add(reader->messages, reader->text, child->key_location, "a %s has no '%s'", names[mine], other->key);
         return;
     }
     char hint[80], key[NODE_WORDS];
     Nearest nearest = {.word = child->key};
     for (int i = 0; i < schema->row_count; i++)
-        if (row_allowed(&schema->rows[i], kind))
-            nearest_offer(&nearest, schema->rows[i].key);
+        if (row_allowed(&schema->rows[i], kind)) nearest_offer(&nearest, schema->rows[i].key);
     message_add(reader->messages, reader->text, child->key_location, "unknown key%s in %s%s",
                 node_key(child, key, sizeof key), schema->title, nearest_hint(&nearest, hint, sizeof hint));
 }
@@ -278,8 +254,7 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
     const char *key = renamed(reader, schema->title, child->key, child->key_location);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
-        if (strcmp(row->key, key) != 0)
-            continue;
+        if (strcmp(row->key, key) != 0) continue;
         if (!row_allowed(row, kind)) {
             other = row;
             continue;
@@ -287,8 +262,7 @@ static void read_child(Reader *reader, const Schema *schema, unsigned kind, cons
         if (*given & 1ull << i)
             message_add(reader->messages, reader->text, child->key_location, "'%s' is given twice in %s", row->key,
                         schema->title);
-        else
-            read_row(reader, row, child, object);
+        else read_row(reader, row, child, object);
         *given |= 1ull << i;
         return;
     }
@@ -311,8 +285,7 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
         given |= 1ull << (choice_row(schema) - schema->rows);
     }
     for (const Node *child = map->first; child; child = child->next)
-        if (child != first && !arena_failed(reader->arena))
-            read_child(reader, schema, kind, child, object, &given);
+        if (child != first && !arena_failed(reader->arena)) read_child(reader, schema, kind, child, object, &given);
     for (int i = 0; i < schema->row_count; i++) {
         const SchemaRow *row = &schema->rows[i];
         bool due = (row->flags & ROW_REQUIRED) && row_allowed(row, kind) && (kind != ~0u || !row->kinds);
@@ -320,15 +293,13 @@ void schema_read(Reader *reader, const Schema *schema, const Node *map, void *ob
             message_add(reader->messages, reader->text, map->location, "%s needs '%s': %s", schema->title, row->key,
                         row->doc);
     }
-    if (schema->finish)
-        schema->finish(reader, map, object);
+    if (schema->finish) schema->finish(reader, map, object);
 }
 
 static void spell_out_word(SceneArena *arena, const Schema *schema, Node *node) {
     Node *word = arena_new(arena, 1, sizeof *word);
     char *key = arena_text(arena, schema->choice, strlen(schema->choice));
-    if (!word || !key)
-        return;
+    if (!word || !key) return;
     *word = *node;
     word->next = NULL;
     word->key = key;
@@ -343,12 +314,10 @@ void schema_spell_out(SceneArena *arena, const Schema *schema, Node *map) {
     for (Node *child = map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
         for (int i = 0; i < schema->row_count; i++) {
             const SchemaRow *row = &schema->rows[i];
-            if (!row->sub || strcmp(row->key, child->key) != 0)
-                continue;
+            if (!row->sub || strcmp(row->key, child->key) != 0) continue;
             if (row->type == ROW_MAP && row->sub->choice && value_is_text(child))
                 spell_out_word(arena, row->sub, child);
-            else if (child->kind == NODE_MAP)
-                schema_spell_out(arena, row->sub, child);
+            else if (child->kind == NODE_MAP) schema_spell_out(arena, row->sub, child);
             for (Node *entry = child->kind == NODE_LIST ? child->first : NULL; entry; entry = entry->next)
                 schema_spell_out(arena, row->sub, entry);
             break;

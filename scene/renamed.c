@@ -15,8 +15,7 @@ static const struct {
 
 const char *renamed(Reader *reader, const char *in, const char *word, SceneLocation location) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (strcmp(names[i].in, in) != 0 || strcmp(names[i].before, word) != 0)
-            continue;
+        if (strcmp(names[i].in, in) != 0 || strcmp(names[i].before, word) != 0) continue;
         SceneRenamed *entry = reader->scene ? arena_new(reader->arena, 1, sizeof *entry) : NULL;
         if (entry) {
             *entry = (SceneRenamed){location, names[i].before, names[i].now, reader->text, reader->scene->renamed};

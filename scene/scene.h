@@ -64,7 +64,7 @@ typedef struct SceneKey {
 /// A sheet made by the program.
 typedef struct SceneGrid {
     bool given;
-    float size[2];  ///< m
+    float size[2]; ///< m
     int cells[2];
     GridWear wear;
 } SceneGrid;
@@ -97,32 +97,32 @@ typedef enum SceneUp { SCENE_UP_Z, SCENE_UP_Y } SceneUp;
 typedef struct SceneSheet {
     SceneLocation location;
     char *name;
-    SceneFile mesh;       ///< or grid
+    SceneFile mesh; ///< or grid
     SceneGrid grid;
-    SceneFile picture;    ///< drawn on both sides, may be absent
-    float colour[3];      ///< linear tint
-    float transmittance;  ///< share of light that comes through, in the preview
-    float scale;          ///< times what `units` says
-    int units;            ///< SceneUnits of the mesh file
-    int up;               ///< SceneUp of the mesh file
-    float weld;           ///< m, or 0 for MESH_WELD of the size
-    int quads;            ///< MeshQuads
-    float rotate[3];      ///< radians about x, then y, then z, after the scaling
-    float translate[3];   ///< m, after the rotation
-    float velocity[3];    ///< m/s at the start
+    SceneFile picture;       ///< drawn on both sides, may be absent
+    float colour[3];         ///< linear tint
+    float transmittance;     ///< share of light that comes through, in the preview
+    float scale;             ///< times what `units` says
+    int units;               ///< SceneUnits of the mesh file
+    int up;                  ///< SceneUp of the mesh file
+    float weld;              ///< m, or 0 for MESH_WELD of the size
+    int quads;               ///< MeshQuads
+    float rotate[3];         ///< radians about x, then y, then z, after the scaling
+    float translate[3];      ///< m, after the rotation
+    float velocity[3];       ///< m/s at the start
     float drop_pieces_below; ///< m2
     SceneMaterial material;
 } SceneSheet;
 
 typedef struct SceneSource {
     SceneLocation location;
-    SingeSourceDef def;   ///< path, texture and strength pointers are empty
+    SingeSourceDef def; ///< path, texture and strength pointers are empty
     uint32_t key_count;
     SceneKey *keys;
     SceneFile texture;
     uint32_t strength_count;
     SingeValueKey *strength;
-    bool visible;         ///< balls: drawn in the preview
+    bool visible; ///< balls: drawn in the preview
 } SceneSource;
 
 /// A mesh that moves: a file for each frame.
@@ -146,7 +146,7 @@ typedef struct SceneCollider {
     float heights[2];     ///< m, where the picture is black and where it is white
     uint32_t key_count;   ///< at least 1
     SceneKey *keys;
-    float colour[3];      ///< linear, in the preview
+    float colour[3]; ///< linear, in the preview
     bool visible;
 } SceneCollider;
 
@@ -156,16 +156,16 @@ typedef struct ScenePoint {
 
 typedef struct ScenePin {
     SceneLocation location;
-    char *sheet;          ///< a sheet's name or number from 0; NULL is the first
+    char *sheet; ///< a sheet's name or number from 0; NULL is the first
     uint32_t sheet_index;
     uint32_t point_count;
-    ScenePoint *points;   ///< m, in the world at rest
+    ScenePoint *points; ///< m, in the world at rest
     float radius;
     uint32_t vertex_count;
     uint32_t *vertices;
     uint32_t key_count;
     SceneKey *keys;
-    SceneMotion motion;   ///< in place of keys
+    SceneMotion motion; ///< in place of keys
 } ScenePin;
 
 /// How a probe's place is given.
@@ -175,11 +175,11 @@ typedef enum SceneProbeKind { SCENE_PROBE_UV, SCENE_PROBE_POINT } SceneProbeKind
 typedef struct SceneProbe {
     SceneLocation location;
     char *name;
-    char *sheet;          ///< as a pin's
+    char *sheet; ///< as a pin's
     uint32_t sheet_index;
-    int kind;             ///< SceneProbeKind
+    int kind; ///< SceneProbeKind
     float uv[2];
-    float point[3];       ///< m, in the world at the start
+    float point[3]; ///< m, in the world at the start
 } SceneProbe;
 
 typedef struct ScenePreview {
@@ -189,9 +189,9 @@ typedef struct ScenePreview {
     bool camera_given; ///< its eye or target; otherwise scene_frame places it
     float light_direction[3], light_angle, light_colour[3];
     float sky[3];
-    PreviewSky environment;        ///< of the sky, if it has no picture
+    PreviewSky environment; ///< of the sky, if it has no picture
     SceneFile environment_picture;
-    float environment_turn;        ///< radians
+    float environment_turn; ///< radians
     PreviewGround ground;
     float ground_height; ///< -INFINITY for none
     float ground_colour[3];
@@ -218,12 +218,12 @@ typedef struct SceneRenamed {
 
 typedef struct Scene {
     SceneRenamed *renamed; ///< the last one first
-    char *name;   ///< of the outputs; the scene file's name without its ending by default
-    int frames;   ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
-    float fps;    ///< frames a second
-    int steps;    ///< steps a frame
-    bool tearing; ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
-    SingeSimDef sim; ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
+    char *name;            ///< of the outputs; the scene file's name without its ending by default
+    int frames;            ///< frames to make, at least 1: frame 1 is the start, and N of them span (N - 1)/fps
+    float fps;             ///< frames a second
+    int steps;             ///< steps a frame
+    bool tearing;          ///< sheets tear (sim.solver.tearing, whatever the solver's other keys say)
+    SingeSimDef sim;       ///< time_step is 1/(fps * steps); hooks and thread_count are not the scene's
     uint32_t sheet_count, source_count, collider_count, pin_count, probe_count;
     SceneSheet *sheets;
     SceneSource *sources;
@@ -290,27 +290,27 @@ typedef struct SceneBond {
 typedef struct SceneSequence {
     uint32_t vertex_count, triangle_count, frame_count; ///< 0: there is none
     uint32_t *triangles;
-    PreviewSolid *frames;  ///< [frame_count] with vertices of their own
+    PreviewSolid *frames; ///< [frame_count] with vertices of their own
     uint32_t bond_count;
-    SceneBond *bonds;      ///< of a pin; NULL until scene_follow has made them
+    SceneBond *bonds; ///< of a pin; NULL until scene_follow has made them
 } SceneSequence;
 
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count, pin_count;
-    Mesh *meshes;                 ///< [sheet_count]
-    MeshReport *reports;          ///< [sheet_count] what was done to those of files
-    Image *images;                ///< [sheet_count], zeroed where there is none
-    const Image **pictures;       ///< [sheet_count], for PreviewDef: NULL where there is none
-    float (*colours)[3];          ///< [sheet_count], for PreviewDef
-    float *transmittances;        ///< the same
+    Mesh *meshes;                              ///< [sheet_count]
+    MeshReport *reports;                       ///< [sheet_count] what was done to those of files
+    Image *images;                             ///< [sheet_count], zeroed where there is none
+    const Image **pictures;                    ///< [sheet_count], for PreviewDef: NULL where there is none
+    float (*colours)[3];                       ///< [sheet_count], for PreviewDef
+    float *transmittances;                     ///< the same
     SingeTexture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
-    SingeTexture *source_textures; ///< [source_count]
-    SceneSolid *solids;           ///< [collider_count], zeroed where they are primitives
-    SceneSequence *collider_motions; ///< [collider_count]
-    SceneSequence *pin_motions;      ///< [pin_count]
-    Image sky;                    ///< zeroed where there is none
-    SceneProbePlace *probes;      ///< [Scene.probe_count]
+    SingeTexture *source_textures;             ///< [source_count]
+    SceneSolid *solids;                        ///< [collider_count], zeroed where they are primitives
+    SceneSequence *collider_motions;           ///< [collider_count]
+    SceneSequence *pin_motions;                ///< [pin_count]
+    Image sky;                                 ///< zeroed where there is none
+    SceneProbePlace *probes;                   ///< [Scene.probe_count]
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at

@@ -3,9 +3,12 @@
 
 #include <string.h>
 
-static const char *const method_names[] = {
-    [SINGE_SOLVER_STRAND] = "strand", [SINGE_SOLVER_PAPER] = "paper", [SINGE_SOLVER_PAPER_LITERAL] = "paper-literal",
-    [SINGE_SOLVER_ALL_AT_ONCE] = "all-at-once", [SINGE_SOLVER_MASS_SPRING] = "mass-spring", NULL};
+static const char *const method_names[] = {[SINGE_SOLVER_STRAND] = "strand",
+                                           [SINGE_SOLVER_PAPER] = "paper",
+                                           [SINGE_SOLVER_PAPER_LITERAL] = "paper-literal",
+                                           [SINGE_SOLVER_ALL_AT_ONCE] = "all-at-once",
+                                           [SINGE_SOLVER_MASS_SPRING] = "mass-spring",
+                                           NULL};
 
 static const SchemaRow wind_rows[] = {
     {"velocity", ROW_VECTOR, DIM_SPEED, AT(SingeWindDef, velocity), .length = 3, WITHIN(-1000, 1000),
@@ -20,23 +23,29 @@ static const Schema schema_wind = {
     .title = "the wind", .size = sizeof(SingeWindDef), ROWS(wind_rows), .doc = "The air's motion."};
 
 #define FLOOR(name, colour, text) \
-    {name, ROW_FLOAT, DIM_NONE, .offset = (colour) * sizeof(float), WITHIN(1e-6, 1e6), .doc = text}
+    { name, ROW_FLOAT, DIM_NONE, .offset = (colour) * sizeof(float), WITHIN(1e-6, 1e6), .doc = text }
 static const SchemaRow regularisation_rows[] = {
-    FLOOR("red", SINGE_RED, "centre to corner"), FLOOR("green", SINGE_GREEN, "centre to centre"),
-    FLOOR("blue", SINGE_BLUE, "mesh edges"), FLOOR("yellow", SINGE_YELLOW, "diagonals"),
+    FLOOR("red", SINGE_RED, "centre to corner"),
+    FLOOR("green", SINGE_GREEN, "centre to centre"),
+    FLOOR("blue", SINGE_BLUE, "mesh edges"),
+    FLOOR("yellow", SINGE_YELLOW, "diagonals"),
 };
 static const Schema schema_regularisation = {
-    .title = "regularisations", .size = 4 * sizeof(float), ROWS(regularisation_rows),
-    .doc = "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. It acts as a "
-           "compliance that grows with the square of the substep. The sheet's stiffness is the material's `compliance`."};
+    .title = "regularisations",
+    .size = 4 * sizeof(float),
+    ROWS(regularisation_rows),
+    .doc =
+        "The numerical floor on the solver's diagonal, by colour of spring, relative to w_a + w_b = 2. It acts as a "
+        "compliance that grows with the square of the substep. The sheet's stiffness is the material's `compliance`."};
 
 static const SchemaRow solver_rows[] = {
     {"method", ROW_ENUM, DIM_NONE, AT(SingeSolverDef, method), .names = method_names,
      .doc = "strand after strand; successive fast projection as the paper has it, or to its letter, which may fail; "
             "all colours in one system; or Hooke's law. The defaults below are those of `strand`"},
     {"substeps", ROW_INT, DIM_NONE, AT(SingeSolverDef, substeps), WITHIN(0, 1000),
-     .doc = "substeps of a step; stiff, thick sheets of small cells need more ([equations.md](equations.md#stiffness)); "
-            "0: as many as the red compliance needs"},
+     .doc =
+         "substeps of a step; stiff, thick sheets of small cells need more ([equations.md](equations.md#stiffness)); "
+         "0: as many as the red compliance needs"},
     {"projections", ROW_INT, DIM_NONE, AT(SingeSolverDef, projections), WITHIN(1, 1000),
      .doc = "projections of all colours per substep"},
     {"order", ROW_ORDER, DIM_NONE, AT(SingeSolverDef, order),
@@ -61,7 +70,10 @@ static const SchemaRow solver_rows[] = {
      .doc = "share of a height's error that is corrected in a substep"},
 };
 static const Schema schema_solver = {
-    .title = "the solver", .size = sizeof(SingeSolverDef), ROWS(solver_rows), .choice = "method",
+    .title = "the solver",
+    .size = sizeof(SingeSolverDef),
+    ROWS(solver_rows),
+    .choice = "method",
     .chosen = chosen_solver,
     .doc = "How springs are kept at their lengths. The name of a method is enough: `solver: paper`. Keys that are not "
            "given take the method's defaults ([equations.md](equations.md#the-papers-solver))."};
@@ -79,7 +91,10 @@ static const SchemaRow gas_rows[] = {
     {"soot", ROW_FLOAT, DIM_FRACTION, AT(SingeGasDef, soot), WITHIN(0, 1), .doc = "mass of smoke over the mass burnt"},
 };
 static const Schema schema_gas = {
-    .title = "the gas", .size = sizeof(SingeGasDef), ROWS(gas_rows), .choice = "enabled",
+    .title = "the gas",
+    .size = sizeof(SingeGasDef),
+    ROWS(gas_rows),
+    .choice = "enabled",
     .doc = "Burning releases hot gas. The gas rises, heats what is above, lifts ash and flakes, and carries flame and "
            "smoke. `gas: no` turns it off."};
 
@@ -91,14 +106,19 @@ static const SchemaRow contact_rows[] = {
     {"friction", ROW_FLOAT, DIM_NONE, AT(SingeContactDef, friction), WITHIN(0, 1000), .doc = "Coulomb's coefficient"},
 };
 static const Schema schema_contact = {
-    .title = "contact of sheets", .size = sizeof(SingeContactDef), ROWS(contact_rows), .choice = "enabled",
-    .doc = "Sheets do not pass through themselves or each other. With `contact: no` they do, as in the paper. Colliders "
-           "have their own friction."};
+    .title = "contact of sheets",
+    .size = sizeof(SingeContactDef),
+    ROWS(contact_rows),
+    .choice = "enabled",
+    .doc =
+        "Sheets do not pass through themselves or each other. With `contact: no` they do, as in the paper. Colliders "
+        "have their own friction."};
 
 static const SchemaRow output_rows[] = {
     {"formats", ROW_FORMATS, DIM_NONE, AT(SceneOutput, formats),
-     .doc = "of the frames, each in a folder of its own ([formats.md](formats.md)); `ply` is the cache, which is always "
-            "written"},
+     .doc =
+         "of the frames, each in a folder of its own ([formats.md](formats.md)); `ply` is the cache, which is always "
+         "written"},
     {"events", ROW_BOOL, DIM_NONE, AT(SceneOutput, events),
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
     {"texture_size", ROW_INT, DIM_NONE, AT(SceneOutput, texture_size), WITHIN(16, 8192),
@@ -107,7 +127,9 @@ static const SchemaRow output_rows[] = {
      .doc = "how many times finer along each side `singe convert --to gas` makes the cells of the gas"},
 };
 static const Schema schema_output = {
-    .title = "the output", .size = sizeof(SceneOutput), ROWS(output_rows),
+    .title = "the output",
+    .size = sizeof(SceneOutput),
+    ROWS(output_rows),
     .doc = "What a run writes for other programs. `singe convert` makes the same formats from a cache."};
 
 static const SchemaRow scene_rows[] = {
@@ -123,15 +145,15 @@ static const SchemaRow scene_rows[] = {
      .doc = "seed of ragged edges and of the preview; noise and wind have their own seeds"},
     {"ambient_temperature", ROW_FLOAT, DIM_TEMPERATURE, AT(Scene, sim.ambient_temperature), KELVIN,
      .doc = "temperature of the air and the surroundings"},
-    {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, WITHIN(-1e4, 1e4),
-     .doc = "z is up"},
+    {"gravity", ROW_VECTOR, DIM_ACCELERATION, AT(Scene, sim.gravity), .length = 3, WITHIN(-1e4, 1e4), .doc = "z is up"},
     {"air_density", ROW_FLOAT, DIM_DENSITY, AT(Scene, sim.air_density), WITHIN(0, 1000), .doc = "for drag and wind"},
     {"heat_tolerance", ROW_FLOAT, DIM_NONE, AT(Scene, sim.heat_tolerance), WITHIN(1e-9, 1),
      .doc = "relative tolerance of the heat equation; a step stops after 200 iterations and warns once"},
     {"detail", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_detail), WITHIN(0, 1000),
-     .doc = "resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a cell's side. "
-            "Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres, as in the "
-            "paper"},
+     .doc =
+         "resolution of the drawn mesh near the front: distance of the sample points, at least 1/23 of a cell's side. "
+         "Bent cells are drawn on a smooth surface. 0: flat cells, sampled at their corners and centres, as in the "
+         "paper"},
     {"raggedness", ROW_FLOAT, DIM_LENGTH, AT(Scene, sim.surface_raggedness), WITHIN(0, 1000),
      .doc = "maximum depth of noise at burnt edges, at most half a cell; needs `detail`"},
     {"sheets", ROW_LIST, DIM_NONE, AT(Scene, sheets), EXTRA(Scene, sheet_count), .sub = &schema_sheet,
@@ -140,7 +162,8 @@ static const SchemaRow scene_rows[] = {
      .doc = "heat sources"},
     {"colliders", ROW_LIST, DIM_NONE, AT(Scene, colliders), EXTRA(Scene, collider_count), .sub = &schema_collider,
      .doc = "solids that sheets collide with"},
-    {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin, .doc = "constraints that hold parts of a sheet"},
+    {"pins", ROW_LIST, DIM_NONE, AT(Scene, pins), EXTRA(Scene, pin_count), .sub = &schema_pin,
+     .doc = "constraints that hold parts of a sheet"},
     {"probes", ROW_LIST, DIM_NONE, AT(Scene, probes), EXTRA(Scene, probe_count), .sub = &schema_probe,
      .doc = "points of sheets that `probes.csv` follows, at most 1000"},
     {"wind", ROW_MAP, DIM_NONE, AT(Scene, sim.wind), .sub = &schema_wind, .doc = "the air's motion"},
@@ -157,13 +180,15 @@ static const SchemaRow scene_rows[] = {
     {"preview", ROW_MAP, DIM_NONE, AT(Scene, preview), .sub = &schema_preview, .doc = "how frames are drawn"},
     {"output", ROW_MAP, DIM_NONE, AT(Scene, output), .sub = &schema_output, .doc = "what is written of them"},
 };
-const Schema schema_scene = {
-    .title = "the scene", .size = sizeof(Scene), ROWS(scene_rows), .defaults = default_scene, .finish = finish_scene,
-    .doc = "The whole file is one map."};
+const Schema schema_scene = {.title = "the scene",
+                             .size = sizeof(Scene),
+                             ROWS(scene_rows),
+                             .defaults = default_scene,
+                             .finish = finish_scene,
+                             .doc = "The whole file is one map."};
 
 unsigned schema_kind(const Schema *schema, const void *object) {
-    if (!schema->kind_offset)
-        return ~0u;
+    if (!schema->kind_offset) return ~0u;
     int kind;
     memcpy(&kind, (const char *)object + schema->kind_offset, sizeof kind);
     return 1u << kind;

@@ -9,7 +9,7 @@
 
 typedef enum RowType {
     ROW_BOOL,
-    ROW_INT,      ///< int
+    ROW_INT, ///< int
     ROW_UINT32,
     ROW_UINT64,
     ROW_FLOAT,
@@ -34,12 +34,12 @@ typedef enum RowType {
 
 enum {
     ROW_REQUIRED = 1,
-    ROW_OPEN_MIN = 2,   ///< min itself is outside
+    ROW_OPEN_MIN = 2, ///< min itself is outside
     ROW_OPEN_MAX = 4,
-    ROW_INF = 8,        ///< "inf" is allowed
-    ROW_NONE = 16,      ///< "none" is allowed: -INFINITY
-    ROW_SHORT = 32,     ///< short for another key; not dumped
-    ROW_NUMBERED = 64,  ///< ROW_FILE: a name with a run of # in the place of a number
+    ROW_INF = 8,       ///< "inf" is allowed
+    ROW_NONE = 16,     ///< "none" is allowed: -INFINITY
+    ROW_SHORT = 32,    ///< short for another key; not dumped
+    ROW_NUMBERED = 64, ///< ROW_FILE: a name with a run of # in the place of a number
 };
 
 typedef struct SchemaRow {

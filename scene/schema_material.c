@@ -12,9 +12,11 @@ static const SchemaRow noise_rows[] = {
      .doc = "layers of detail, each half the size and half the strength of the one before"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SingeNoise, seed), .doc = "another seed, another noise"},
 };
-const Schema schema_noise = {
-    .title = "a noise", .size = sizeof(SingeNoise), ROWS(noise_rows), .defaults = default_noise,
-    .doc = "A random field from 0 to 1, smooth at its scale, fixed to the sheet."};
+const Schema schema_noise = {.title = "a noise",
+                             .size = sizeof(SingeNoise),
+                             ROWS(noise_rows),
+                             .defaults = default_noise,
+                             .doc = "A random field from 0 to 1, smooth at its scale, fixed to the sheet."};
 
 // The ranges of singe/material.def, as far as scenes go.
 #define POSITIVE OVER(0)
@@ -29,8 +31,10 @@ const Schema schema_noise = {
 
 // A value that may vary over the sheet; where its texture is kept follows from the member.
 #define PARAM(name, member, dim, text, ...)                                                                            \
-    {name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, textures[SCENE_PARAM_SLOT(member)]),    \
-     .doc = text, __VA_ARGS__}
+    {                                                                                                                  \
+        name, ROW_PARAM, dim, AT(SceneMaterial, def.member), EXTRA(SceneMaterial, textures[SCENE_PARAM_SLOT(member)]), \
+            .doc = text, __VA_ARGS__                                                                                   \
+    }
 static const SchemaRow weight_rows[] = {
     PARAM("red", weight[SINGE_RED], DIM_FRACTION, "centre to corner: thickness", WITHIN(0, 1)),
     PARAM("green", weight[SINGE_GREEN], DIM_FRACTION, "centre to centre: stretch of the back layer", WITHIN(0, 1)),
@@ -38,17 +42,24 @@ static const SchemaRow weight_rows[] = {
     PARAM("yellow", weight[SINGE_YELLOW], DIM_FRACTION, "diagonals: shear", WITHIN(0, 1)),
 };
 static const Schema schema_weight = {
-    .title = "weights", .size = sizeof(SceneMaterial), ROWS(weight_rows),
+    .title = "weights",
+    .size = sizeof(SceneMaterial),
+    ROWS(weight_rows),
     .doc = "Weight of the springs' constraints, W of eq 19, by colour of spring: 1 is full, smaller is softer."};
 
 static const SchemaRow compliance_rows[] = {
     PARAM("red", compliance[SINGE_RED], DIM_COMPLIANCE, "centre to corner: thickness, shear across it", FROM(0)),
-    PARAM("green", compliance[SINGE_GREEN], DIM_COMPLIANCE, "centre to centre: bending; the stiffness is thickness^2/compliance, in N m", FROM(0)),
-    PARAM("blue", compliance[SINGE_BLUE], DIM_COMPLIANCE, "mesh edges: stretch; the stiffness is 1/compliance. Above 0 the sheet has no attachments", FROM(0)),
-    PARAM("yellow", compliance[SINGE_YELLOW], DIM_COMPLIANCE, "diagonals: shear; the stiffness is 1/compliance", FROM(0)),
+    PARAM("green", compliance[SINGE_GREEN], DIM_COMPLIANCE,
+          "centre to centre: bending; the stiffness is thickness^2/compliance, in N m", FROM(0)),
+    PARAM("blue", compliance[SINGE_BLUE], DIM_COMPLIANCE,
+          "mesh edges: stretch; the stiffness is 1/compliance. Above 0 the sheet has no attachments", FROM(0)),
+    PARAM("yellow", compliance[SINGE_YELLOW], DIM_COMPLIANCE, "diagonals: shear; the stiffness is 1/compliance",
+          FROM(0)),
 };
 static const Schema schema_compliance = {
-    .title = "compliances", .size = sizeof(SceneMaterial), ROWS(compliance_rows),
+    .title = "compliances",
+    .size = sizeof(SceneMaterial),
+    ROWS(compliance_rows),
     .doc = "Elongation of a spring per force, by colour of spring; 0 is rigid. What it means for a sheet, and "
            "the substeps that stiff sheets need: [equations.md](equations.md#stiffness)."};
 
@@ -63,7 +74,9 @@ static const SchemaRow measured_rows[] = {
      .doc = "share of the mass that is left, from and to"},
 };
 static const Schema schema_measured = {
-    .title = "what is measured", .size = sizeof(SceneMeasured), ROWS(measured_rows),
+    .title = "what is measured",
+    .size = sizeof(SceneMeasured),
+    ROWS(measured_rows),
     .defaults = default_measured,
     .doc = "What sources say of the material's fire, for `singe bench front`; nothing is computed from it. 0 and 0 "
            "where they say nothing."};
@@ -105,10 +118,8 @@ static bool param_in(const Schema *schema, const char *prefix, int *index, Scene
         const SchemaRow *row = &schema->rows[i];
         char inner[32];
         snprintf(inner, sizeof inner, "%s.", row->key);
-        if (row->type == ROW_MAP && param_in(row->sub, inner, index, param))
-            return true;
-        if (row->type != ROW_PARAM || (*index)--)
-            continue;
+        if (row->type == ROW_MAP && param_in(row->sub, inner, index, param)) return true;
+        if (row->type != ROW_PARAM || (*index)--) continue;
         snprintf(param->key, sizeof param->key, "%s%s", prefix, row->key);
         param->offset = row->offset - offsetof(SceneMaterial, def);
         param->slot = (row->extra - offsetof(SceneMaterial, textures)) / sizeof(SceneFile);

@@ -3,22 +3,29 @@
 
 static const char *const source_names[] = {
     [SINGE_SOURCE_BALL] = "ball", [SINGE_SOURCE_TEXTURE] = "texture", [SINGE_SOURCE_SPOT] = "spot", NULL};
-static const char *const units_names[] = {
-    [SCENE_UNITS_M] = "m", [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm", [SCENE_UNITS_IN] = "in",
-    [SCENE_UNITS_FT] = "ft", NULL};
+static const char *const units_names[] = {[SCENE_UNITS_M] = "m",   [SCENE_UNITS_CM] = "cm", [SCENE_UNITS_MM] = "mm",
+                                          [SCENE_UNITS_IN] = "in", [SCENE_UNITS_FT] = "ft", NULL};
 static const char *const up_names[] = {[SCENE_UP_Z] = "z", [SCENE_UP_Y] = "y", NULL};
 static const char *const quads_names[] = {[MESH_QUADS_PAIR] = "pair", [MESH_QUADS_SPLIT] = "split", NULL};
-static const char *const collider_names[] = {
-    [SINGE_COLLIDER_PLANE] = "plane", [SINGE_COLLIDER_SPHERE] = "sphere", [SINGE_COLLIDER_BOX] = "box",
-    [SINGE_COLLIDER_CAPSULE] = "capsule", [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield", [SINGE_COLLIDER_MESH] = "mesh",
-    NULL};
+static const char *const collider_names[] = {[SINGE_COLLIDER_PLANE] = "plane",
+                                             [SINGE_COLLIDER_SPHERE] = "sphere",
+                                             [SINGE_COLLIDER_BOX] = "box",
+                                             [SINGE_COLLIDER_CAPSULE] = "capsule",
+                                             [SINGE_COLLIDER_HEIGHTFIELD] = "heightfield",
+                                             [SINGE_COLLIDER_MESH] = "mesh",
+                                             NULL};
 static const char *const sides_names[] = {[SINGE_SIDES_TOUCHING] = "touching", [SINGE_SIDES_BOTH] = "both", NULL};
 
 enum {
-    BALL = 1 << SINGE_SOURCE_BALL, TEXTURE = 1 << SINGE_SOURCE_TEXTURE, SPOT = 1 << SINGE_SOURCE_SPOT,
-    PLANE = 1 << SINGE_COLLIDER_PLANE, SPHERE = 1 << SINGE_COLLIDER_SPHERE,
-    BOX = 1 << SINGE_COLLIDER_BOX, CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
-    HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD, MESH = 1 << SINGE_COLLIDER_MESH,
+    BALL = 1 << SINGE_SOURCE_BALL,
+    TEXTURE = 1 << SINGE_SOURCE_TEXTURE,
+    SPOT = 1 << SINGE_SOURCE_SPOT,
+    PLANE = 1 << SINGE_COLLIDER_PLANE,
+    SPHERE = 1 << SINGE_COLLIDER_SPHERE,
+    BOX = 1 << SINGE_COLLIDER_BOX,
+    CAPSULE = 1 << SINGE_COLLIDER_CAPSULE,
+    HEIGHTFIELD = 1 << SINGE_COLLIDER_HEIGHTFIELD,
+    MESH = 1 << SINGE_COLLIDER_MESH,
     DRAWN = SPHERE | BOX | CAPSULE | HEIGHTFIELD | MESH,
 };
 
@@ -31,7 +38,9 @@ static const SchemaRow key_rows[] = {
      .doc = "turned about the x axis, then y, then z, all fixed in the world"},
 };
 static const Schema schema_key = {
-    .title = "a path's entry", .size = sizeof(SceneKey), ROWS(key_rows),
+    .title = "a path's entry",
+    .size = sizeof(SceneKey),
+    ROWS(key_rows),
     .doc = "Where something is at a time. Positions move in straight lines from entry to entry and rest before the "
            "first and after the last; times must increase."};
 
@@ -41,7 +50,9 @@ static const SchemaRow strength_rows[] = {
      .doc = "how strong, 1 being the full flux"},
 };
 static const Schema schema_strength = {
-    .title = "a strength's entry", .size = sizeof(SingeValueKey), ROWS(strength_rows),
+    .title = "a strength's entry",
+    .size = sizeof(SingeValueKey),
+    ROWS(strength_rows),
     .doc = "How strong a texture source is at a time; straight lines in between. Times must increase."};
 
 static const SchemaRow motion_rows[] = {
@@ -57,15 +68,18 @@ static const SchemaRow motion_rows[] = {
      .doc = "the files' axis that points up; files whose y is up are turned by 90 degrees about x"},
 };
 static const Schema schema_motion = {
-    .title = "a motion", .size = sizeof(SceneMotion), ROWS(motion_rows), .defaults = default_motion,
+    .title = "a motion",
+    .size = sizeof(SceneMotion),
+    ROWS(motion_rows),
+    .defaults = default_motion,
     .doc = "A mesh that moves frame by frame, as animation programs write it. Vertices go in straight lines from frame "
            "to frame, with the velocity that this takes."};
 
 // ---- sheets
 
 static const SchemaRow grid_rows[] = {
-    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4),
-     .flags = ROW_REQUIRED, .doc = "along x and y"},
+    {"size", ROW_VECTOR, DIM_LENGTH, AT(SceneGrid, size), .length = 2, WITHIN(1e-6, 1e4), .flags = ROW_REQUIRED,
+     .doc = "along x and y"},
     {"cells", ROW_INTS, DIM_NONE, AT(SceneGrid, cells), .length = 2, .flags = ROW_REQUIRED, WITHIN(1, 20000),
      .doc = "how many cells along x and y"},
     {"jitter", ROW_FLOAT, DIM_FRACTION, AT(SceneGrid, wear.jitter), WITHIN(0, 0.3),
@@ -75,9 +89,11 @@ static const SchemaRow grid_rows[] = {
      .doc = "root mean square displacement of the rest shape by smooth waves; 0 is flat"},
     {"seed", ROW_UINT32, DIM_NONE, AT(SceneGrid, wear.seed), .doc = "another seed, another sheet"},
 };
-static const Schema schema_grid = {
-    .title = "a grid", .size = sizeof(SceneGrid), ROWS(grid_rows), .defaults = default_grid,
-    .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
+static const Schema schema_grid = {.title = "a grid",
+                                   .size = sizeof(SceneGrid),
+                                   ROWS(grid_rows),
+                                   .defaults = default_grid,
+                                   .doc = "A rectangle around the origin in the x-y plane, facing up (+z)."};
 
 static SceneLocation *sheet_location(void *object) { return &((SceneSheet *)object)->location; }
 static const SchemaRow sheet_rows[] = {
@@ -115,19 +131,22 @@ static const SchemaRow sheet_rows[] = {
      .doc = "loose pieces smaller than this vanish; 0 keeps all"},
     {"material", ROW_MAP, DIM_NONE, AT(SceneSheet, material), .sub = &schema_material, .doc = "what it is made of"},
 };
-const Schema schema_sheet = {
-    .title = "a sheet", .size = sizeof(SceneSheet), ROWS(sheet_rows), .defaults = default_sheet, .finish = finish_sheet,
-    .location = sheet_location, .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
+const Schema schema_sheet = {.title = "a sheet",
+                             .size = sizeof(SceneSheet),
+                             ROWS(sheet_rows),
+                             .defaults = default_sheet,
+                             .finish = finish_sheet,
+                             .location = sheet_location,
+                             .doc = "A piece of cloth or paper: a mesh, or a grid, and a material."};
 
 // ---- sources, colliders, pins
 
 static SceneLocation *source_location(void *object) { return &((SceneSource *)object)->location; }
 #define SOURCE(name, member, dim, kinds_, range_, text) \
-    {name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text}
+    { name, ROW_FLOAT, dim, AT(SceneSource, def.member), .kinds = (kinds_), range_, .doc = text }
 static const SchemaRow source_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneSource, def.kind), .names = source_names, .flags = ROW_REQUIRED,
-     .doc =
-         "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `texture`: a flux drawn on the sheet"},
+     .doc = "`ball`: a hot ball on a path; `spot`: a hot ball that stands still; `texture`: a flux drawn on the sheet"},
     SOURCE("start", start, DIM_TIME, 0, FROM(0), "it heats from here"),
     {"end", ROW_FLOAT, DIM_TIME, AT(SceneSource, def.end), .flags = ROW_INF, FROM(0),
      .doc = "to here; `inf` is for ever"},
@@ -151,14 +170,18 @@ static const SchemaRow source_rows[] = {
      .doc = "multiplies the flux over time; 1 when not given"},
     {"visible", ROW_BOOL, DIM_NONE, AT(SceneSource, visible), .kinds = BALL, .doc = "drawn in the preview"},
 };
-const Schema schema_source = {
-    .title = "a source", .size = sizeof(SceneSource), ROWS(source_rows), .kind_offset = offsetof(SceneSource, def.kind),
-    .defaults = default_source, .finish = finish_source, .location = source_location,
-    .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
+const Schema schema_source = {.title = "a source",
+                              .size = sizeof(SceneSource),
+                              ROWS(source_rows),
+                              .kind_offset = offsetof(SceneSource, def.kind),
+                              .defaults = default_source,
+                              .finish = finish_source,
+                              .location = source_location,
+                              .doc = "Something that heats the sheets. Its `kind` decides which other keys it has."};
 
 static SceneLocation *collider_location(void *object) { return &((SceneCollider *)object)->location; }
 #define COLLIDER(name, member, dim, kinds_, range_, text) \
-    {name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text}
+    { name, ROW_FLOAT, dim, AT(SceneCollider, def.member), .kinds = (kinds_), range_, .doc = text }
 static const SchemaRow collider_rows[] = {
     {"kind", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.kind), .names = collider_names, .flags = ROW_REQUIRED,
      .doc = "`plane` (its normal is its own z axis), `sphere`, `box`, `capsule` (along its own z axis), `heightfield` "
@@ -173,8 +196,9 @@ static const SchemaRow collider_rows[] = {
             "turned; this or `motion`"},
     {"motion", ROW_MAP, DIM_NONE, AT(SceneCollider, motion), EXTRA(SceneCollider, motion.given), .kinds = MESH,
      .sub = &schema_motion,
-     .doc = "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
-            "by it"},
+     .doc =
+         "a mesh that deforms, such as a character, in the collider's own frame; sheets are pushed and carried along "
+         "by it"},
     {"scale", ROW_FLOAT, DIM_NONE, AT(SceneCollider, scale), .kinds = MESH, WITHIN(1e-6, 1e4),
      .doc = "times `units`: how large the mesh file is made"},
     {"units", ROW_ENUM, DIM_NONE, AT(SceneCollider, units), .kinds = MESH, .names = units_names,
@@ -201,10 +225,9 @@ static const SchemaRow collider_rows[] = {
     {"sides", ROW_ENUM, DIM_NONE, AT(SceneCollider, def.sides), .names = sides_names,
      .doc = "of a sheet's two layers in contact, `touching`: that which faces the collider exchanges heat; `both`: the "
             "one behind it as well, as if heat were through the sheet at once"},
-    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN,
-     WITHIN(0, 1), .doc = "linear red, green, blue in the preview"},
-    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN,
-     .doc = "drawn in the preview"},
+    {"colour", ROW_VECTOR, DIM_FRACTION, AT(SceneCollider, colour), .length = 3, .kinds = DRAWN, WITHIN(0, 1),
+     .doc = "linear red, green, blue in the preview"},
+    {"visible", ROW_BOOL, DIM_NONE, AT(SceneCollider, visible), .kinds = DRAWN, .doc = "drawn in the preview"},
 };
 const Schema schema_collider = {
     .title = "a collider",
@@ -230,12 +253,17 @@ static const SchemaRow pin_rows[] = {
     {"path", ROW_LIST, DIM_NONE, AT(ScenePin, keys), EXTRA(ScenePin, key_count), .sub = &schema_key,
      .doc = "how what is held moves, relative to the path's pose at the start; held still without"},
     {"motion", ROW_MAP, DIM_NONE, AT(ScenePin, motion), EXTRA(ScenePin, motion.given), .sub = &schema_motion,
-     .doc = "a moving mesh in the world that what is held follows, each particle by the triangle that is nearest to it at "
-            "frame 1; instead of `path`"},
+     .doc =
+         "a moving mesh in the world that what is held follows, each particle by the triangle that is nearest to it at "
+         "frame 1; instead of `path`"},
 };
-const Schema schema_pin = {
-    .title = "a pin", .size = sizeof(ScenePin), ROWS(pin_rows), .defaults = default_pin, .finish = finish_pin,
-    .location = pin_location, .doc = "Holds part of a sheet."};
+const Schema schema_pin = {.title = "a pin",
+                           .size = sizeof(ScenePin),
+                           ROWS(pin_rows),
+                           .defaults = default_pin,
+                           .finish = finish_pin,
+                           .location = pin_location,
+                           .doc = "Holds part of a sheet."};
 
 static const char *const probe_names[] = {[SCENE_PROBE_UV] = "uv", [SCENE_PROBE_POINT] = "point", NULL};
 static SceneLocation *probe_location(void *object) { return &((SceneProbe *)object)->location; }
@@ -248,8 +276,13 @@ static const SchemaRow probe_rows[] = {
     {"at", ROW_VECTOR, DIM_NONE, AT(SceneProbe, uv), .length = 2, .kinds = 1u << SCENE_PROBE_UV, .flags = ROW_REQUIRED,
      ANY, .doc = "[u, v]; the nearest place of the sheet, with a warning where that is not there"},
     {"at", ROW_VECTOR, DIM_LENGTH, AT(SceneProbe, point), .length = 3, .kinds = 1u << SCENE_PROBE_POINT,
-     .flags = ROW_REQUIRED, ANY, .doc = "[x, y, z]; the nearest place of the sheet, with a warning where it is far off"},
+     .flags = ROW_REQUIRED, ANY,
+     .doc = "[x, y, z]; the nearest place of the sheet, with a warning where it is far off"},
 };
-const Schema schema_probe = {
-    .title = "a probe", .size = sizeof(SceneProbe), ROWS(probe_rows), .kind_offset = offsetof(SceneProbe, kind),
-    .location = probe_location, .doc = "A point of a sheet, whose temperature, mass and position are written every frame."};
+const Schema schema_probe = {.title = "a probe",
+                             .size = sizeof(SceneProbe),
+                             ROWS(probe_rows),
+                             .kind_offset = offsetof(SceneProbe, kind),
+                             .location = probe_location,
+                             .doc =
+                                 "A point of a sheet, whose temperature, mass and position are written every frame."};

@@ -21,9 +21,11 @@ static const SchemaRow camera_rows[] = {
     {"focus", ROW_FLOAT, DIM_LENGTH, AT(PreviewCamera, focus), WITHIN(0, 1e4),
      .doc = "distance that is sharp, along the line of sight; 0: the target's"},
 };
-static const Schema schema_camera = {
-    .title = "the camera", .size = sizeof(PreviewCamera), ROWS(camera_rows), .finish = finish_camera,
-    .doc = "From where the preview is drawn."};
+static const Schema schema_camera = {.title = "the camera",
+                                     .size = sizeof(PreviewCamera),
+                                     ROWS(camera_rows),
+                                     .finish = finish_camera,
+                                     .doc = "From where the preview is drawn."};
 
 static const SchemaRow light_rows[] = {
     {"direction", ROW_VECTOR, DIM_NONE, AT(ScenePreview, light_direction), .length = 3, ANY,
@@ -46,7 +48,9 @@ static const SchemaRow environment_rows[] = {
      .doc = "about the z axis, counted from above; kinds follow the light without it"},
 };
 static const Schema schema_environment = {
-    .title = "the environment", .size = sizeof(ScenePreview), ROWS(environment_rows),
+    .title = "the environment",
+    .size = sizeof(ScenePreview),
+    ROWS(environment_rows),
     .doc = "Where the light of `sky` comes from, and what shiny things mirror. It is scaled so that what faces up gets "
            "as much of it as from an even sky."};
 
@@ -59,7 +63,9 @@ static const SchemaRow ground_rows[] = {
      .doc = "linear red, green, blue"},
 };
 static const Schema schema_ground = {
-    .title = "the ground", .size = sizeof(ScenePreview), ROWS(ground_rows),
+    .title = "the ground",
+    .size = sizeof(ScenePreview),
+    ROWS(ground_rows),
     .doc = "A floor that is drawn. To let sheets rest on it, add a plane to `colliders` as well."};
 
 static const SchemaRow preview_rows[] = {
@@ -80,6 +86,8 @@ static const SchemaRow preview_rows[] = {
     {"shutter", ROW_FLOAT, DIM_FRACTION, AT(ScenePreview, shutter), WITHIN(0, 1),
      .doc = "share of a frame's time during which what moves leaves its trace: film has 0.5; 0: nothing blurs"},
 };
-const Schema schema_preview = {
-    .title = "the preview", .size = sizeof(ScenePreview), ROWS(preview_rows), .finish = finish_preview,
-    .doc = "How frames are drawn. Nothing here changes the simulation."};
+const Schema schema_preview = {.title = "the preview",
+                               .size = sizeof(ScenePreview),
+                               ROWS(preview_rows),
+                               .finish = finish_preview,
+                               .doc = "How frames are drawn. Nothing here changes the simulation."};

@@ -50,13 +50,13 @@ static void sequence_place(const SceneMotion *motion, float *positions, uint32_t
 
 /// Reads a frame; the first one makes room for all.
 static SingeResult sequence_read_frame(const SceneMotion *motion, const char *path, int frame, int frames,
-                                     SceneSequence *sequence, SingeError *error) {
+                                       SceneSequence *sequence, SingeError *error) {
     Bytes bytes = {0};
     SceneSolid solid = {0};
     SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (!result)
-        result = solid_read_mesh(path, bytes.data, bytes.size, metres_per_unit(motion->units, motion->scale), &solid,
-                                 error);
+        result =
+            solid_read_mesh(path, bytes.data, bytes.size, metres_per_unit(motion->units, motion->scale), &solid, error);
     bytes_free(&bytes);
     const uint32_t vertices = solid.surface.vertex_count, triangles = solid.surface.triangle_count;
     if (!result && frame == 0) {
@@ -71,7 +71,8 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
     }
     if (!result) {
         sequence_place(motion, solid.surface.vertices, vertices);
-        sequence->frames[frame] = (PreviewSolid){vertices, triangles, solid.surface.vertices, sequence->triangles, true};
+        sequence->frames[frame] =
+            (PreviewSolid){vertices, triangles, solid.surface.vertices, sequence->triangles, true};
         sequence->frame_count = (uint32_t)frame + 1;
         solid.surface.vertices = NULL;
     }
@@ -82,8 +83,8 @@ static SingeResult sequence_read_frame(const SceneMotion *motion, const char *pa
 static SingeResult sequence_check_frame(const PreviewSolid *frame, const char *path, SingeError *error) {
     for (size_t k = 0; k < 3 * (size_t)frame->vertex_count; k++)
         if (!(fabsf(frame->vertices[k]) <= 1e4f))
-            return refuse(error, SINGE_ERROR_MESH, "scene", -1,
-                          "%s: vertex %zu (from 0) is not finite or beyond 10 km", short_name(path), k / 3);
+            return refuse(error, SINGE_ERROR_MESH, "scene", -1, "%s: vertex %zu (from 0) is not finite or beyond 10 km",
+                          short_name(path), k / 3);
     return SINGE_OK;
 }
 
@@ -139,13 +140,15 @@ void sequence_free(SceneSequence *sequence) {
 static void corners_of(const PreviewSolid *frame, uint32_t triangle, double v[3][3]) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            v[i][k] = (double)frame->vertices[3 * (size_t)frame->triangles[3 * (size_t)triangle + (size_t)i] + (size_t)k];
+            v[i][k] =
+                (double)frame->vertices[3 * (size_t)frame->triangles[3 * (size_t)triangle + (size_t)i] + (size_t)k];
 }
 
 static void axes_of(const double v[3][3], double e[3][3]) {
     double side[3], other[3];
     for (int k = 0; k < 3; k++) e[0][k] = side[k] = v[1][k] - v[0][k], other[k] = v[2][k] - v[0][k];
-    for (int k = 0; k < 3; k++) e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        e[2][k] = side[(k + 1) % 3] * other[(k + 2) % 3] - side[(k + 2) % 3] * other[(k + 1) % 3];
     for (int i = 0; i < 3; i += 2) {
         const double length = sqrt(foot_dot(e[i], e[i]));
         for (int k = 0; k < 3; k++) e[i][k] = length > 0 ? e[i][k] / length : 0; // one without extent has none

@@ -7,7 +7,7 @@
 /// Reads the files of a motion for at most `frames` frames, in metres. Each has the vertices and faces of the first. On
 /// failure *sequence is empty.
 SINGE_NODISCARD SingeResult sequence_read(const SceneMotion *motion, int frames, SceneSequence *sequence,
-                                        SingeError *error);
+                                          SingeError *error);
 void sequence_free(SceneSequence *sequence);
 
 /// Whether a file's name says where the frame's number goes: one run of #, behind the last slash.

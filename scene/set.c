@@ -17,23 +17,17 @@ typedef struct Setter {
 // The next step of the path; false at its end or where the path is badly formed (then *bad).
 static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
     const char *c = setter->rest;
-    if (c == setter->stop)
-        return false;
+    if (c == setter->stop) return false;
     bool bracket = *c == '[';
-    if (bracket || (*c == '.' && c > setter->path))
-        c++;
+    if (bracket || (*c == '.' && c > setter->path)) c++;
     size_t length = 0;
-    while (c < setter->stop && *c != '.' && *c != '[' && *c != ']' && length < STEP_MAX - 1)
-        step[length++] = *c++;
+    while (c < setter->stop && *c != '.' && *c != '[' && *c != ']' && length < STEP_MAX - 1) step[length++] = *c++;
     step[length] = 0;
     if (bracket) {
-        if (c == setter->stop || *c != ']')
-            *bad = true;
-        else
-            c++;
+        if (c == setter->stop || *c != ']') *bad = true;
+        else c++;
     }
-    if (!length || (c < setter->stop && *c != '.' && *c != '['))
-        *bad = true;
+    if (!length || (c < setter->stop && *c != '.' && *c != '[')) *bad = true;
     setter->rest = c;
     return !*bad;
 }
@@ -41,29 +35,23 @@ static bool setter_step(Setter *setter, char step[STEP_MAX], bool *bad) {
 static Node *child_at(const Node *list, const char *step) {
     uint32_t index = 0;
     for (const char *c = step; *c; c++) {
-        if (*c < '0' || *c > '9' || index > 100000000)
-            return NULL;
+        if (*c < '0' || *c > '9' || index > 100000000) return NULL;
         index = index * 10 + (uint32_t)(*c - '0');
     }
     Node *child = list->first;
-    while (child && index--)
-        child = child->next;
+    while (child && index--) child = child->next;
     return child;
 }
 
 static Node *child_new(Setter *setter, Node *map, const char *step) {
     Node *child = arena_new(setter->arena, 1, sizeof *child);
-    if (!child)
-        return NULL;
+    if (!child) return NULL;
     child->kind = NODE_MAP;
     child->location = child->key_location = setter->location;
     child->key = arena_text(setter->arena, step, strlen(step));
-    if (!child->key)
-        return NULL;
-    if (map->last)
-        map->last->next = child;
-    else
-        map->first = child;
+    if (!child->key) return NULL;
+    if (map->last) map->last->next = child;
+    else map->first = child;
     map->last = child;
     map->count++;
     return child;
@@ -87,15 +75,13 @@ static Node *setter_walk(Setter *setter, Node *root) {
             }
         } else if (node->kind == NODE_MAP) {
             child = node_find(node, step);
-            if (!child)
-                child = child_new(setter, node, step);
+            if (!child) child = child_new(setter, node, step);
         } else {
             message_add(setter->messages, setter->text, setter->location, "%s has no '%s' in it",
                         node_describe(node, seen, sizeof seen), step);
             return NULL;
         }
-        if (!child)
-            return NULL;
+        if (!child) return NULL;
         node = child;
     }
     return node;
@@ -104,8 +90,7 @@ static Node *setter_walk(Setter *setter, Node *root) {
 static bool setter_path_good(Setter *setter) {
     char step[STEP_MAX];
     bool bad = false, any = false;
-    while (setter_step(setter, step, &bad))
-        any = true;
+    while (setter_step(setter, step, &bad)) any = true;
     return any && !bad;
 }
 
@@ -119,8 +104,7 @@ static void set_one(SceneArena *arena, const SceneText *text, int index, Node *r
     // the value first: a bad one must leave no half-made maps behind
     Node *value = tree_read(arena, text, equals + 1, strlen(equals + 1), setter.location, messages);
     Node *target = value ? setter_walk(&setter, root) : NULL;
-    if (!target)
-        return;
+    if (!target) return;
     // the value takes the target's place among its siblings; its name is now the --set's
     value->key = target->key;
     value->key_location = setter.location;
@@ -129,7 +113,6 @@ static void set_one(SceneArena *arena, const SceneText *text, int index, Node *r
 }
 
 bool tree_set(SceneArena *arena, const SceneText *text, Node *root, SceneMessages *messages) {
-    for (int i = 0; i < text->set_count && !arena_failed(arena); i++)
-        set_one(arena, text, i, root, messages);
+    for (int i = 0; i < text->set_count && !arena_failed(arena); i++) set_one(arena, text, i, root, messages);
     return !arena_failed(arena);
 }

@@ -38,22 +38,19 @@ void scene_preview(const Scene *scene, const SceneAssets *assets, PreviewDef *de
 // As the library moves things: linear positions, normalised linear quaternions, held beyond the ends.
 static void shape_pose(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     uint32_t next = 0;
-    while (next < count && (double)keys[next].time <= time)
-        next++;
+    while (next < count && (double)keys[next].time <= time) next++;
     const SceneKey *a = &keys[next ? next - 1 : 0], *b = &keys[next < count ? next : count - 1];
     double span = (double)b->time - (double)a->time, s = span > 0 ? (time - (double)a->time) / span : 0;
     float qa[4], qb[4];
     rotation_quaternion(a->rotation, qa);
     rotation_quaternion(b->rotation, qb);
     double dot = 0, norm = 0, q[4];
-    for (int i = 0; i < 4; i++)
-        dot += (double)qa[i] * (double)qb[i];
+    for (int i = 0; i < 4; i++) dot += (double)qa[i] * (double)qb[i];
     for (int i = 0; i < 4; i++) {
         q[i] = (1 - s) * (double)qa[i] + s * (dot < 0 ? -(double)qb[i] : (double)qb[i]);
         norm += q[i] * q[i];
     }
-    for (int i = 0; i < 4; i++)
-        shape->rotation[i] = (float)(q[i] / sqrt(norm));
+    for (int i = 0; i < 4; i++) shape->rotation[i] = (float)(q[i] / sqrt(norm));
     for (int i = 0; i < 3; i++)
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
 }
@@ -71,8 +68,7 @@ static void shape_move(const SceneKey *keys, uint32_t count, double time, Previe
 static bool source_shape(const SceneSource *source, double time, PreviewShape *shape) {
     bool drawn = source->def.kind == SINGE_SOURCE_BALL && source->visible && source->key_count &&
                  source->def.radius > 0 && time >= (double)source->def.start && time <= (double)source->def.end;
-    if (!drawn)
-        return false;
+    if (!drawn) return false;
     *shape = (PreviewShape){.kind = SINGE_COLLIDER_SPHERE,
                             .radius = source->def.radius,
                             .colour = {0.05f, 0.05f, 0.05f},
@@ -84,10 +80,11 @@ static bool source_shape(const SceneSource *source, double time, PreviewShape *s
 static bool collider_shape(const Scene *scene, const SceneAssets *assets, uint32_t index, double time,
                            PreviewShape *shape) {
     const SceneCollider *collider = &scene->colliders[index];
-    if (collider->def.kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count)
-        return false;
+    if (collider->def.kind == SINGE_COLLIDER_PLANE || !collider->visible || !collider->key_count) return false;
     const SingeColliderDef *def = &collider->def;
-    *shape = (PreviewShape){.kind = def->kind, .radius = def->radius, .height = def->height,
+    *shape = (PreviewShape){.kind = def->kind,
+                            .radius = def->radius,
+                            .height = def->height,
                             .temperature = def->conductance > 0 ? def->temperature : scene->sim.ambient_temperature};
     if (def->kind == SINGE_COLLIDER_MESH || def->kind == SINGE_COLLIDER_HEIGHTFIELD)
         shape->solid = &assets->solids[index].surface;
@@ -103,8 +100,7 @@ static bool collider_shape(const Scene *scene, const SceneAssets *assets, uint32
 }
 
 bool scene_shape(const Scene *scene, const SceneAssets *assets, uint32_t slot, double time, PreviewShape *shape) {
-    if (slot < scene->collider_count)
-        return collider_shape(scene, assets, slot, time, shape);
+    if (slot < scene->collider_count) return collider_shape(scene, assets, slot, time, shape);
     return source_shape(&scene->sources[slot - scene->collider_count], time, shape);
 }
 
@@ -112,10 +108,8 @@ uint32_t scene_shapes(const Scene *scene, const SceneAssets *assets, double time
     uint32_t count = 0;
     PreviewShape shape;
     for (uint32_t i = 0; i < scene->collider_count + scene->source_count; i++) {
-        if (!scene_shape(scene, assets, i, time, &shape))
-            continue;
-        if (count < max)
-            shapes[count] = shape;
+        if (!scene_shape(scene, assets, i, time, &shape)) continue;
+        if (count < max) shapes[count] = shape;
         count++;
     }
     return count;

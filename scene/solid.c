@@ -110,21 +110,17 @@ SingeResult solid_read_mesh(const char *name, const uint8_t *bytes, size_t size,
                             SingeError *error) {
     Polygons polygons;
     SingeResult result = polygons_read(name, bytes, size, (SingeAllocator){0}, &polygons, error);
-    if (result)
-        return result;
+    if (result) return result;
     PreviewSolid *surface = &solid->surface;
     size_t count = (size_t)polygons.corner_count - 2 * (size_t)polygons.face_count;
     surface->vertices = malloc(3 * (size_t)polygons.vertex_count * sizeof *surface->vertices);
     surface->triangles = malloc(3 * count * sizeof *surface->triangles);
     surface->vertex_count = polygons.vertex_count;
-    if (count > INT32_MAX / 4)
-        result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
-    else if (!surface->vertices || !surface->triangles)
-        result = solid_no_memory(error);
+    if (count > INT32_MAX / 4) result = solid_fail(error, SINGE_ERROR_LIMIT, -1, "the collider's mesh is too large");
+    else if (!surface->vertices || !surface->triangles) result = solid_no_memory(error);
     for (size_t k = 0; !result && k < 3 * (size_t)polygons.vertex_count; k++)
         surface->vertices[k] = (float)((double)polygons.positions[k] * scale);
-    if (!result && !cut_faces(&polygons, surface))
-        result = solid_no_memory(error);
+    if (!result && !cut_faces(&polygons, surface)) result = solid_no_memory(error);
     polygons_free(&polygons);
     return result;
 }
@@ -192,8 +188,7 @@ SingeResult solid_make_heights(const SingeTexture *picture, const float size[2],
     solid->heights = malloc(nodes * sizeof *solid->heights);
     solid->surface.vertices = malloc(3 * (nodes + border) * sizeof *solid->surface.vertices);
     solid->surface.triangles = malloc(3 * (2 * (columns - 1) * (rows - 1) + 2 * border) * sizeof(uint32_t));
-    if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles)
-        return solid_no_memory(error);
+    if (!solid->heights || !solid->surface.vertices || !solid->surface.triangles) return solid_no_memory(error);
     for (size_t j = 0; j < rows; j++) // the picture's rows run from the top
         for (size_t i = 0; i < columns; i++)
             solid->heights[j * columns + i] =

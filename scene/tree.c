@@ -12,7 +12,7 @@ typedef struct Builder {
     SceneArena *arena;
     const SceneText *text;
     SceneMessages *messages;
-    SceneLocation origin; // --set or file, without line and column
+    SceneLocation origin;   // --set or file, without line and column
     Node *stack[DEPTH_MAX]; // open lists and maps
     char *keys[DEPTH_MAX];  // key that waits for its value, in each open map
     SceneLocation key_locations[DEPTH_MAX];
@@ -30,8 +30,7 @@ static void builder_fail(Builder *builder, SceneLocation location, const char *w
 // A line and column of a file; a --set has neither.
 static SceneLocation location_at(const Builder *builder, int line, int column) {
     SceneLocation location = builder->origin;
-    if (!location.set)
-        location.line = line, location.column = column;
+    if (!location.set) location.line = line, location.column = column;
     return location;
 }
 
@@ -49,10 +48,8 @@ static void builder_attach(Builder *builder, Node *node) {
         node->key_location = builder->key_locations[top];
         builder->keys[top] = NULL;
     }
-    if (parent->last)
-        parent->last->next = node;
-    else
-        parent->first = node;
+    if (parent->last) parent->last->next = node;
+    else parent->first = node;
     parent->last = node;
     parent->count++;
 }
@@ -119,8 +116,7 @@ static void builder_close(Builder *builder, SceneLocation location) {
     int top = builder->depth - 1;
     if (top < 0 || (builder->stack[top]->kind == NODE_MAP && builder->keys[top]))
         builder_fail(builder, location, not_read);
-    else
-        builder->depth--;
+    else builder->depth--;
 }
 
 static void builder_take(Builder *builder, const YamlEvent *event) {
@@ -130,14 +126,10 @@ static void builder_take(Builder *builder, const YamlEvent *event) {
         builder_fail(builder, location, "anchors and aliases (&name, *name) are not supported; write the value out");
     else if (event->flags & YAML_TAGGED)
         builder_fail(builder, location, "tags (!name) are not supported; each key knows the type of its value");
-    else if (node && builder->root && !builder->depth)
-        builder_fail(builder, location, not_read);
-    else if (event->kind == YAML_VALUE)
-        builder_value(builder, event, location);
-    else if (node)
-        builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, location);
-    else if (event->kind == YAML_CLOSE)
-        builder_close(builder, location);
+    else if (node && builder->root && !builder->depth) builder_fail(builder, location, not_read);
+    else if (event->kind == YAML_VALUE) builder_value(builder, event, location);
+    else if (node) builder_open(builder, event->kind == YAML_MAP ? NODE_MAP : NODE_LIST, location);
+    else if (event->kind == YAML_CLOSE) builder_close(builder, location);
     else if (event->kind == YAML_DOCUMENT && builder->documents++)
         builder_fail(builder, location, "a second document (---) begins here; a scene is one document");
     else if (event->kind == YAML_FAULT && (location.file || !event->length))
@@ -169,8 +161,7 @@ static bool bytes_are_text(Builder *builder, const char *bytes, size_t size) {
         bool mark = c == (const unsigned char *)bytes && length == 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0;
         begins = *c == '\n' || *c == '\r' || mark;
         column++;
-        if (*c == '\n')
-            line++, column = 1;
+        if (*c == '\n') line++, column = 1;
         c += length;
     }
     return true;
@@ -184,8 +175,7 @@ static void builder_run(Builder *builder, YamlEvents *events) {
             builder_fail(builder, location_at(builder, 1, 1), not_read);
             return;
         }
-        if (!builder->bad || event.kind == YAML_FAULT)
-            builder_take(builder, &event);
+        if (!builder->bad || event.kind == YAML_FAULT) builder_take(builder, &event);
     }
     if (!builder->bad && builder->depth)
         builder_fail(builder, location_at(builder, (int)event.line, (int)event.column), not_read);
@@ -194,8 +184,7 @@ static void builder_run(Builder *builder, YamlEvents *events) {
 // A --set's value that is a word or a number, with a unit perhaps, and so needs no YAML.
 static bool is_plain(const char *bytes, size_t size) {
     static const char inside[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789./%+-_() ";
-    if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ')
-        return false;
+    if (!size || strspn(bytes, inside) != size || bytes[size - 1] == ' ') return false;
     const char *first = bytes + (*bytes == '-' || *bytes == '+');
     return strspn(first, inside) > 0 && !strchr("-%() +_/", *first) && strncmp(first, "..", 2) != 0;
 }
@@ -203,8 +192,7 @@ static bool is_plain(const char *bytes, size_t size) {
 static Node *plain_node(SceneArena *arena, const char *bytes, size_t size, SceneLocation location) {
     Node *node = arena_new(arena, 1, sizeof *node);
     char *text = arena_text(arena, bytes, size);
-    if (!node || !text)
-        return NULL;
+    if (!node || !text) return NULL;
     node->location = location;
     node->text = text;
     return node;
@@ -215,8 +203,7 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
     Builder builder = {.arena = arena, .text = text, .messages = messages, .origin = origin};
     YamlEvents events;
     SingeError error = {0};
-    if (!bytes_are_text(&builder, bytes, size))
-        return NULL;
+    if (!bytes_are_text(&builder, bytes, size)) return NULL;
     if (origin.set && (!size || is_plain(bytes, size))) // PATH= with nothing behind it is a value, too
         return plain_node(arena, bytes, size, origin);
     if (size == 0) { // libfyaml takes length 0 for "count yourself"
@@ -229,13 +216,13 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
         return NULL;
     }
     if (result) {
-        message_add(messages, text, location_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s", error.message);
+        message_add(messages, text, location_at(&builder, 1, 1), "not valid YAML, or it cannot be read: %s",
+                    error.message);
         return NULL;
     }
     builder_run(&builder, &events);
     yaml_free(&events);
-    if (builder.bad)
-        return NULL;
+    if (builder.bad) return NULL;
     if (!builder.root && origin.set && !arena_failed(arena)) // a comment alone
         return plain_node(arena, "", 0, origin);
     if (!builder.root && !arena_failed(arena))
@@ -247,20 +234,17 @@ Node *tree_read(SceneArena *arena, const SceneText *text, const char *bytes, siz
 Node *node_find(const Node *map, const char *key) {
     Node *found = NULL;
     for (Node *child = map && map->kind == NODE_MAP ? map->first : NULL; child; child = child->next)
-        if (strcmp(child->key, key) == 0)
-            found = child;
+        if (strcmp(child->key, key) == 0) found = child;
     return found;
 }
 
 const char *node_describe(const Node *node, char *buffer, size_t size) {
-    if (node->kind == NODE_MAP)
-        return "a map";
+    if (node->kind == NODE_MAP) return "a map";
     if (node->kind == NODE_LIST) {
         snprintf(buffer, size, "a list of %u", (unsigned)node->count);
         return buffer;
     }
-    if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null")))
-        return "nothing";
+    if (!node->quoted && (!node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null"))) return "nothing";
     if (node->location.file) // what stands in other files than the scene is not reported
         return "this value";
     snprintf(buffer, size, "'%s'", shown(node->text).text);

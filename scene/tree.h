@@ -10,11 +10,11 @@ typedef enum NodeKind { NODE_VALUE, NODE_LIST, NODE_MAP } NodeKind;
 typedef struct Node {
     NodeKind kind;
     SceneLocation location;
-    bool quoted;          ///< value: it was written in quotes or as a block
-    char *text;           ///< value: zero-terminated, has no zero inside
-    char *key;            ///< its name when it is in a map
+    bool quoted; ///< value: it was written in quotes or as a block
+    char *text;  ///< value: zero-terminated, has no zero inside
+    char *key;   ///< its name when it is in a map
     SceneLocation key_location;
-    uint32_t count;       ///< of children
+    uint32_t count; ///< of children
     struct Node *first, *last, *next;
 } Node;
 

@@ -52,22 +52,18 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static size_t number_length(const char *text) {
     const char *c = text + (*text == '+' || *text == '-');
     const char *digits = c;
-    while (is_digit(*c))
-        c++;
+    while (is_digit(*c)) c++;
     size_t count = (size_t)(c - digits);
     if (*c == '.') {
         const char *point = ++c;
-        while (is_digit(*c))
-            c++;
+        while (is_digit(*c)) c++;
         count += (size_t)(c - point);
     }
-    if (!count)
-        return 0;
+    if (!count) return 0;
     if (*c == 'e' || *c == 'E') {
         const char *power = c + 1 + (c[1] == '+' || c[1] == '-');
         if (is_digit(*power)) {
-            while (is_digit(*power))
-                power++;
+            while (is_digit(*power)) power++;
             c = power;
         }
     }
@@ -78,9 +74,9 @@ static size_t number_length(const char *text) {
 static const struct Spelling {
     const char *piece, *text;
 } spellings[] = {
-    {"deg", "\u00b0"}, {"C", "\u00b0C"}, {"F", "\u00b0F"}, {"u", "\u00b5"}, {"u", "\u03bc"}, {"2", "\u00b2"},
-    {"2", "^2"},       {"3", "\u00b3"},  {"3", "^3"},       {" ", "\u00b7"}, {" ", "*"},      {" ", " "},
-    {" ", ""},
+    {"deg", "\u00b0"}, {"C", "\u00b0C"}, {"F", "\u00b0F"}, {"u", "\u00b5"}, {"u", "\u03bc"},
+    {"2", "\u00b2"},   {"2", "^2"},      {"3", "\u00b3"},  {"3", "^3"},     {" ", "\u00b7"},
+    {" ", "*"},        {" ", " "},       {" ", ""},
 };
 
 static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
@@ -93,10 +89,8 @@ static bool unit_spelt(const char *text, const char *name) {
             continue;
         }
         size_t i = 0, count = sizeof spellings / sizeof *spellings;
-        while (i < count && !(begins(name, spellings[i].piece) && begins(text, spellings[i].text)))
-            i++;
-        if (i == count)
-            return false;
+        while (i < count && !(begins(name, spellings[i].piece) && begins(text, spellings[i].text))) i++;
+        if (i == count) return false;
         name += strlen(spellings[i].piece);
         text += strlen(spellings[i].text);
     }
@@ -106,8 +100,7 @@ static bool unit_spelt(const char *text, const char *name) {
 // The unit of that spelling; the first where there is none; NULL for one that the dimension has not.
 static const Unit *unit_find(const DimensionRow *row, const char *text) {
     for (int i = 0; i < UNIT_MAX && row->units[i].name && *text; i++)
-        if (unit_spelt(text, row->units[i].name))
-            return &row->units[i];
+        if (unit_spelt(text, row->units[i].name)) return &row->units[i];
     return *text ? NULL : &row->units[0];
 }
 
@@ -116,11 +109,9 @@ NumberFault quantity_read(const char *text, Dimension dimension, double *value) 
     size_t length = number_length(text);
     const uint8_t *at = (const uint8_t *)text, *end = at + length;
     double bare = 0;
-    if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end)
-        return NUMBER_NOT_ONE;
+    if (!length || number_double(&at, end, &bare) != NUMBER_OK || at != end) return NUMBER_NOT_ONE;
     const Unit *unit = unit_find(row, text + length + strspn(text + length, " "));
-    if (!unit)
-        return NUMBER_BAD_UNIT;
+    if (!unit) return NUMBER_BAD_UNIT;
     *value = unit->factor * (bare + unit->offset);
     return NUMBER_GOOD;
 }
@@ -142,10 +133,8 @@ void quantity_units(Dimension dimension, char *buffer, size_t size) {
 static void point_mend(char *number) {
     char *to = number;
     for (const char *c = number; *c; c++) {
-        if (strchr("0123456789eE+-", *c))
-            *to++ = *c;
-        else if (to == number || to[-1] != '.')
-            *to++ = '.';
+        if (strchr("0123456789eE+-", *c)) *to++ = *c;
+        else if (to == number || to[-1] != '.') *to++ = '.';
     }
     *to = 0;
 }
@@ -154,12 +143,9 @@ static void point_mend(char *number) {
 static void number_print_plain(double bare, int digits, char *buffer, size_t size) {
     double magnitude = fabs(bare);
     int whole = 1;
-    for (double limit = 10; limit <= magnitude; limit *= 10)
-        whole++;
-    if (magnitude >= 1 && magnitude < 1e9)
-        snprintf(buffer, size, "%.*f", digits > whole ? digits - whole : 0, bare);
-    else
-        snprintf(buffer, size, "%.*g", digits, bare);
+    for (double limit = 10; limit <= magnitude; limit *= 10) whole++;
+    if (magnitude >= 1 && magnitude < 1e9) snprintf(buffer, size, "%.*f", digits > whole ? digits - whole : 0, bare);
+    else snprintf(buffer, size, "%.*g", digits, bare);
     point_mend(buffer);
 }
 
@@ -167,7 +153,6 @@ void quantity_print(float value, Dimension dimension, char *buffer, size_t size)
     double bare = (double)value / dimensions[dimension].units[0].factor, again = 0;
     for (int digits = 1; digits <= 17; digits++) {
         number_print_plain(bare, digits, buffer, size);
-        if (quantity_read(buffer, dimension, &again) == NUMBER_GOOD && (float)again == value)
-            return;
+        if (quantity_read(buffer, dimension, &again) == NUMBER_GOOD && (float)again == value) return;
     }
 }

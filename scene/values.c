@@ -117,11 +117,9 @@ bool value_vector(Reader *reader, const SchemaRow *row, const Node *node, float 
 void value_integer(Reader *reader, const SchemaRow *row, const Node *node, void *field) {
     int64_t value;
     if (row->type == ROW_UINT64) {
-        if (read_whole(reader, row, node, UINT64_MAX, false, &value))
-            *(uint64_t *)field = (uint64_t)value;
+        if (read_whole(reader, row, node, UINT64_MAX, false, &value)) *(uint64_t *)field = (uint64_t)value;
     } else if (row->type == ROW_UINT32) {
-        if (read_whole(reader, row, node, UINT32_MAX, false, &value))
-            *(uint32_t *)field = (uint32_t)value;
+        if (read_whole(reader, row, node, UINT32_MAX, false, &value)) *(uint32_t *)field = (uint32_t)value;
     } else if (read_whole(reader, row, node, INT32_MAX, true, &value)) {
         *(int *)field = (int)value;
     }
@@ -134,8 +132,7 @@ void value_ints(Reader *reader, const SchemaRow *row, const Node *node, int *fie
     }
     SchemaRow element = *row;
     element.type = ROW_INT;
-    for (const Node *child = node->first; child; child = child->next)
-        value_integer(reader, &element, child, field++);
+    for (const Node *child = node->first; child; child = child->next) value_integer(reader, &element, child, field++);
 }
 
 // ---- words
@@ -185,8 +182,7 @@ void value_order(Reader *reader, const SchemaRow *row, const Node *node, SingeCo
     int seen = 0;
     for (const Node *child = node->first; child; child = child->next) {
         int colour = 0;
-        if (!value_word(reader, row, child, names, &colour))
-            return;
+        if (!value_word(reader, row, child, names, &colour)) return;
         if (seen & 1 << colour) {
             message_add(reader->messages, reader->text, child->location, "'%s' is there twice; each colour comes once",
                         names[colour]);
@@ -203,13 +199,11 @@ void value_formats(Reader *reader, const SchemaRow *row, const Node *node, Outpu
         return;
     }
     const char *names[OUTPUT_COUNT + 1] = {NULL};
-    for (int i = 0; i < OUTPUT_COUNT; i++)
-        names[i] = output_formats[i].name;
+    for (int i = 0; i < OUTPUT_COUNT; i++) names[i] = output_formats[i].name;
     OutputSet set = 0;
     for (const Node *child = node->first; child; child = child->next) {
         int format = 0;
-        if (!value_word(reader, row, child, names, &format))
-            return;
+        if (!value_word(reader, row, child, names, &format)) return;
         if (output_has(set, format)) {
             message_add(reader->messages, reader->text, child->location, "'%s' is there twice", names[format]);
             return;
@@ -231,20 +225,16 @@ bool value_names_files(const char *text) {
 }
 
 void value_name(Reader *reader, const SchemaRow *row, const Node *node, char **field) {
-    if (value_is_text(node) && value_names_files(node->text))
-        *field = node->text;
-    else
-        value_wrong(reader, node, row);
+    if (value_is_text(node) && value_names_files(node->text)) *field = node->text;
+    else value_wrong(reader, node, row);
 }
 
 // A name behind a folder, unless it begins at the root. NULL when out of memory.
 static char *value_join(SceneArena *arena, const char *folder, const char *slash, char *name) {
     size_t length = strlen(folder) + strlen(slash) + strlen(name) + 1;
-    if (name[0] == '/' || !(folder[0] || slash[0]))
-        return name;
+    if (name[0] == '/' || !(folder[0] || slash[0])) return name;
     char *joined = arena_new(arena, length, 1);
-    if (joined)
-        snprintf(joined, length, "%s%s%s", folder, slash, name);
+    if (joined) snprintf(joined, length, "%s%s%s", folder, slash, name);
     return joined;
 }
 
@@ -261,20 +251,14 @@ void value_file(Reader *reader, const SchemaRow *row, const Node *node, SceneFil
     }
     field->location = node->location;
     field->name = field->path = value_join(reader->arena, reader->prefix, "", node->text);
-    if (!reader->base_dir || !field->name)
-        return;
-    if (reader->base_dir[0])
-        field->path = value_join(reader->arena, reader->base_dir, "/", field->name);
+    if (!reader->base_dir || !field->name) return;
+    if (reader->base_dir[0]) field->path = value_join(reader->arena, reader->base_dir, "/", field->name);
     struct stat status;
     const char *fault = NULL;
-    if (!field->path || row->flags & ROW_NUMBERED)
-        return;
-    if (stat(field->path, &status))
-        fault = "there is no such file";
-    else if (S_ISDIR(status.st_mode))
-        fault = "this is a folder";
-    else if (access(field->path, R_OK))
-        fault = "the file cannot be read";
+    if (!field->path || row->flags & ROW_NUMBERED) return;
+    if (stat(field->path, &status)) fault = "there is no such file";
+    else if (S_ISDIR(status.st_mode)) fault = "this is a folder";
+    else if (access(field->path, R_OK)) fault = "the file cannot be read";
     if (fault && node->location.file)
         message_add(reader->messages, reader->text, node->location, "%s: %s", row->key, fault);
     else if (fault)

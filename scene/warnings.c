@@ -39,11 +39,11 @@ static void warn_of_pin(const Scene *scene, const SceneAssets *assets, const Sce
     for (uint32_t k = 0; k < pin->point_count; k++) {
         const float *p = pin->points[k].position;
         const double gap = nearest_vertex(mesh, p);
-        if (!(gap > reach))
-            continue;
-        message_warn(log, scene->text, pin->location,
-                     "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds the nearest vertex alone, %.3g m away",
-                     (double)p[0], (double)p[1], (double)p[2], gap);
+        if (!(gap > reach)) continue;
+        message_warn(
+            log, scene->text, pin->location,
+            "the pin's point [%.6g, %.6g, %.6g] m misses the sheet: it holds the nearest vertex alone, %.3g m away",
+            (double)p[0], (double)p[1], (double)p[2], gap);
         return; // one of them is enough
     }
 }
@@ -73,8 +73,7 @@ static void warn_of_motion(const Scene *scene, const SceneMotion *motion, const 
 
 static bool is_weak(const SceneSource *source) {
     bool weak = source->strength_count > 0;
-    for (uint32_t i = 0; i < source->strength_count; i++)
-        weak = weak && source->strength[i].value == 0;
+    for (uint32_t i = 0; i < source->strength_count; i++) weak = weak && source->strength[i].value == 0;
     return weak;
 }
 
@@ -83,32 +82,24 @@ static void warn_of_source(const Scene *scene, const SceneSource *source, const 
     const SingeSourceDef *def = &source->def;
     const double end = (scene->frames - 1) / (double)scene->fps;
     const char *why = NULL;
-    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || is_weak(source)))
-        why = "its flux is 0";
-    else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0)
-        why = "its conductance is 0";
+    if (def->kind == SINGE_SOURCE_TEXTURE && (def->flux == 0 || is_weak(source))) why = "its flux is 0";
+    else if (def->kind != SINGE_SOURCE_TEXTURE && def->conductance == 0) why = "its conductance is 0";
     else if (def->kind != SINGE_SOURCE_TEXTURE && def->radius + def->falloff == 0)
         why = "its radius and its falloff are 0";
-    else if (def->end <= def->start)
-        why = "it ends as it starts";
-    else if (scene->frames > 1 && (double)def->start >= end)
-        why = "it starts after the last frame";
-    if (why)
-        message_warn(log, scene->text, source->location, "the source heats nothing: %s", why);
+    else if (def->end <= def->start) why = "it ends as it starts";
+    else if (scene->frames > 1 && (double)def->start >= end) why = "it starts after the last frame";
+    if (why) message_warn(log, scene->text, source->location, "the source heats nothing: %s", why);
 }
 
 void scene_warn(const Scene *scene, const SceneAssets *assets, const SingeLog *log) {
     for (const SceneRenamed *entry = scene->renamed; entry && log->write; entry = entry->next)
-        message_warn(log, entry->text, entry->location, "'%s' is called '%s' now; the old name is read in this release only",
-                     entry->before, entry->now);
-    for (uint32_t i = 0; i < scene->source_count && log->write; i++)
-        warn_of_source(scene, &scene->sources[i], log);
-    for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
-        warn_of_pin(scene, assets, &scene->pins[i], log);
+        message_warn(log, entry->text, entry->location,
+                     "'%s' is called '%s' now; the old name is read in this release only", entry->before, entry->now);
+    for (uint32_t i = 0; i < scene->source_count && log->write; i++) warn_of_source(scene, &scene->sources[i], log);
+    for (uint32_t i = 0; i < scene->pin_count && log->write; i++) warn_of_pin(scene, assets, &scene->pins[i], log);
     for (uint32_t i = 0; i < scene->collider_count && log->write; i++)
         warn_of_motion(scene, &scene->colliders[i].motion, &assets->collider_motions[i], log);
     for (uint32_t i = 0; i < scene->pin_count && log->write; i++)
         warn_of_motion(scene, &scene->pins[i].motion, &assets->pin_motions[i], log);
-    for (uint32_t i = 0; i < scene->probe_count && log->write; i++)
-        warn_of_probe(scene, assets, i, log);
+    for (uint32_t i = 0; i < scene->probe_count && log->write; i++) warn_of_probe(scene, assets, i, log);
 }

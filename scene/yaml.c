@@ -27,7 +27,7 @@ typedef struct Sink {
     IsolateAnswer *answer; ///< NULL: `out` grows instead
     char *out;
     size_t used, capacity;
-    uint32_t line, column; ///< where the last event was
+    uint32_t line, column;            ///< where the last event was
     uint32_t line_count, last_length; ///< of the text: lines, and characters of the last
     int depth;
     bool no_memory;
@@ -39,8 +39,7 @@ static void sink_flush(Sink *sink) {
 }
 
 static void sink_put(Sink *sink, const void *bytes, size_t size) {
-    if (sink->answer && sink->used + size > sink->capacity)
-        sink_flush(sink);
+    if (sink->answer && sink->used + size > sink->capacity) sink_flush(sink);
     if (sink->used + size > sink->capacity) {
         size_t capacity = 2 * (sink->used + size) + SINK_BYTES;
         char *out = realloc(sink->out, capacity);
@@ -64,8 +63,7 @@ static void sink_event(Sink *sink, YamlKind kind, unsigned flags, const char *te
 
 /// libfyaml ends a text whose last line does not: what it finds there is behind that line.
 static void sink_move(Sink *sink, int line, int column) {
-    if (line < 0 || column < 0)
-        return;
+    if (line < 0 || column < 0) return;
     sink->line = (uint32_t)line + 1;
     sink->column = (uint32_t)column + 1;
     if (sink->line > sink->line_count) {
@@ -75,31 +73,26 @@ static void sink_move(Sink *sink, int line, int column) {
 }
 
 static void sink_mark(Sink *sink, const struct fy_mark *mark) {
-    if (mark)
-        sink_move(sink, mark->line, mark->column);
+    if (mark) sink_move(sink, mark->line, mark->column);
 }
 
 static void sink_measure(Sink *sink) {
     sink->line_count = 1;
     for (size_t i = 0; i < sink->size; i++)
-        if (sink->bytes[i] == '\n')
-            sink->line_count++, sink->last_length = 0;
-        else
-            sink->last_length += ((unsigned char)sink->bytes[i] & 0xc0) != 0x80;
+        if (sink->bytes[i] == '\n') sink->line_count++, sink->last_length = 0;
+        else sink->last_length += ((unsigned char)sink->bytes[i] & 0xc0) != 0x80;
 }
 
 /// An event without a place of its own is where the last one ended.
 static void sink_location(Sink *sink, const struct fy_event *event, struct fy_token *tag, struct fy_token *anchor) {
     struct fy_token *value = event->type == FYET_SCALAR ? event->scalar.value : NULL;
     const struct fy_mark *mark = fy_event_start_mark((struct fy_event *)event);
-    if (!mark && (tag || anchor))
-        mark = fy_token_start_mark(tag ? tag : anchor);
+    if (!mark && (tag || anchor)) mark = fy_token_start_mark(tag ? tag : anchor);
     sink_mark(sink, mark);
     // libfyaml's mark of a quoted text lies behind the quote, that of an alias behind the star
     enum fy_scalar_style style = value ? fy_token_scalar_style(value) : FYSS_PLAIN;
     bool behind = style == FYSS_SINGLE_QUOTED || style == FYSS_DOUBLE_QUOTED || event->type == FYET_ALIAS;
-    if (mark && behind && sink->column > 1)
-        sink->column--;
+    if (mark && behind && sink->column > 1) sink->column--;
 }
 
 /// Returns whether there is more to say: an event that no scene has is the last.
@@ -128,10 +121,8 @@ static bool sink_take(Sink *sink, const struct fy_event *event) {
     }
     sink_location(sink, event, tag, anchor);
     unsigned flags = (tag ? YAML_TAGGED : 0) | (anchor ? YAML_ANCHORED : 0);
-    if (value && fy_token_scalar_style(value) != FYSS_PLAIN)
-        flags |= YAML_QUOTED;
-    if (kind == YAML_VALUE && !fy_event_start_mark((struct fy_event *)event))
-        flags |= YAML_ABSENT;
+    if (value && fy_token_scalar_style(value) != FYSS_PLAIN) flags |= YAML_QUOTED;
+    if (kind == YAML_VALUE && !fy_event_start_mark((struct fy_event *)event)) flags |= YAML_ABSENT;
     sink_event(sink, kind, flags, text, length);
     sink->depth += (kind == YAML_MAP || kind == YAML_LIST) - (kind == YAML_CLOSE);
     sink_mark(sink, fy_event_end_mark((struct fy_event *)event));
@@ -148,8 +139,7 @@ static void sink_faults(Sink *sink, struct fy_diag *diag) {
         sink_event(sink, YAML_FAULT, 0, found->msg, found->msg ? strlen(found->msg) : 0);
         any = true;
     }
-    if (!any)
-        sink_event(sink, YAML_FAULT, 0, NULL, 0);
+    if (!any) sink_event(sink, YAML_FAULT, 0, NULL, 0);
 }
 
 static void sink_run(Sink *sink, struct fy_diag *diag) {
@@ -170,8 +160,7 @@ static void sink_run(Sink *sink, struct fy_diag *diag) {
     if (more && (!ended || fy_parser_get_stream_error(parser))) {
         if (errno == ENOMEM) // libfyaml tells it no other way
             sink->no_memory = true;
-        else
-            sink_faults(sink, diag);
+        else sink_faults(sink, diag);
     }
     sink_event(sink, YAML_END, 0, NULL, 0);
     fy_parser_destroy(parser);
@@ -197,8 +186,7 @@ static SingeResult sink_work(void *context, IsolateAnswer *answer, SingeError *e
     }
     fy_diag_destroy(diag);
     arena_destroy(sink->arena);
-    if (answer)
-        sink_flush(sink);
+    if (answer) sink_flush(sink);
     *error = (SingeError){.code = sink->no_memory ? SINGE_ERROR_MEMORY : SINGE_OK, .element = -1};
     return error->code;
 }
@@ -228,22 +216,19 @@ SingeResult yaml_read(const char *name, const char *bytes, size_t size, YamlEven
     Sink sink = {.bytes = bytes, .size = size};
     *events = (YamlEvents){0};
     SingeResult result = yaml_run(name, &sink, events, error);
-    if (result)
-        yaml_free(events);
+    if (result) yaml_free(events);
     return result;
 }
 
 bool yaml_next(YamlEvents *events, YamlEvent *event) {
     Record record;
     size_t left = events->bytes.size - events->at;
-    if (left < sizeof record)
-        return false;
+    if (left < sizeof record) return false;
     memcpy(&record, events->bytes.data + events->at, sizeof record);
     left -= sizeof record;
     bool good = record.kind < YAML_KINDS && record.flags <= YAML_FLAGS && record.length < left;
     good = good && record.line > 0 && record.line < INT32_MAX && record.column > 0 && record.column < INT32_MAX;
-    if (!good)
-        return false;
+    if (!good) return false;
     const char *text = (const char *)events->bytes.data + events->at + sizeof record;
     *event = (YamlEvent){record.kind, record.flags, record.line, record.column, record.length, text};
     events->at += sizeof record + record.length + 1;

@@ -4,8 +4,8 @@
 # --check: also what fuzzing and all of make check need. --list: prints the names and installs nothing.
 set -euo pipefail
 
-# a|b: the first that the system's package lists have. No name has a version in it: compilers and their libraries are
-# the system's own.
+# a|b: the first that the system's package lists have. No name has a version in it, but for the formatter's, as each
+# breaks lines elsewhere: compilers and their libraries are the system's own.
 needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
         'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libcmocka-dev python3)
 # without these a run leaves no video and tests are skipped
@@ -13,7 +13,7 @@ useful=(ffmpeg python3-openvdb valgrind locales libsdl2-dev)
 only_list=false
 for argument in "$@"; do
     case $argument in
-    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels) ;; # fuzz targets; models to burn
+    --check) needed+=(clang libclang-rt-dev) useful+=(assimp-testmodels 'clang-format-14|clang-format') ;; # fuzz targets; models to burn
     --list) only_list=true ;;
     *) echo "usage: setup.sh [--check] [--list]" >&2; exit 2 ;;
     esac

@@ -151,7 +151,8 @@ int main(void) {
     }
     const SingeStats stats = singe_sim_stats(sim);
     printf("%d frames, %d steps, %.1f ms a frame, %.1f MiB, %zu allocations in steps, %.0f %% burnt\n", FRAMES, steps,
-           1e3 * (now() - begun) / FRAMES, (double)heap.bytes / (1 << 20), heap.calls - calls, 100 * stats.burnt_fraction);
+           1e3 * (now() - begun) / FRAMES, (double)heap.bytes / (1 << 20), heap.calls - calls,
+           100 * stats.burnt_fraction);
     singe_sim_destroy(sim);
     pthread_mutex_lock(&scheduler.mutex);
     scheduler.quit = true;

@@ -74,7 +74,8 @@ static int hold(Live *live, bool lit, float x, float y) {
 /// Paper, brown where it was hot, black where it is burnt, and glowing by its temperature.
 static SDL_Color colour_of(const SingeSurface *surface, uint32_t v) {
     const float brown = fminf(fmaxf((surface->temperature_peak[v] - 420) / 120, 0), 1);
-    const float black = fminf(surface->burn[v] * 1.6f, 1), glow = fminf(fmaxf((surface->temperature[v] - 750) / 350, 0), 1);
+    const float black = fminf(surface->burn[v] * 1.6f, 1),
+                glow = fminf(fmaxf((surface->temperature[v] - 750) / 350, 0), 1);
     const float slope = 0.55f + 0.45f * fabsf(surface->normal[v][1]);
     const float paper[3] = {238 - 118 * brown, 232 - 150 * brown, 215 - 165 * brown}, fire[3] = {255, 140, 40};
     float mixed[3];
@@ -96,7 +97,8 @@ static int draw(Live *live) {
     }
     for (size_t k = 0; k < count; k++) {
         const uint32_t v = surface->triangles[k / 3][k % 3];
-        const float x = (surface->position[v][0] / SHOWN + 0.5f) * WIDTH, y = (0.5f - surface->position[v][2] / SHOWN) * HEIGHT;
+        const float x = (surface->position[v][0] / SHOWN + 0.5f) * WIDTH,
+                    y = (0.5f - surface->position[v][2] / SHOWN) * HEIGHT;
         live->corners[k] = (SDL_Vertex){{x, y}, colour_of(surface, v), {0, 0}};
     }
     SDL_SetRenderDrawColor(live->renderer, 24, 26, 32, 255);
@@ -139,7 +141,8 @@ static int play(Live *live, int frames) {
 
 static void save_picture(Live *live, const char *path) {
     SDL_Surface *picture = SDL_CreateRGBSurfaceWithFormat(0, WIDTH, HEIGHT, 32, SDL_PIXELFORMAT_ARGB8888);
-    if (picture && !SDL_RenderReadPixels(live->renderer, NULL, picture->format->format, picture->pixels, picture->pitch))
+    if (picture &&
+        !SDL_RenderReadPixels(live->renderer, NULL, picture->format->format, picture->pixels, picture->pitch))
         SDL_SaveBMP(picture, path);
     SDL_FreeSurface(picture);
 }
@@ -150,7 +153,8 @@ int main(int argc, char **argv) {
     int status = 1;
     if (SDL_Init(SDL_INIT_VIDEO)) return fail("SDL", SDL_GetError());
     live.window = SDL_CreateWindow("Singe", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, WIDTH, HEIGHT, 0);
-    if (live.window) live.renderer = SDL_CreateRenderer(live.window, -1, frames ? SDL_RENDERER_SOFTWARE : SDL_RENDERER_PRESENTVSYNC);
+    if (live.window)
+        live.renderer = SDL_CreateRenderer(live.window, -1, frames ? SDL_RENDERER_SOFTWARE : SDL_RENDERER_PRESENTVSYNC);
     if (!live.renderer) fail("SDL", SDL_GetError());
     else if (!make(&live)) status = play(&live, frames);
     if (!status && argc > 2) save_picture(&live, argv[2]);

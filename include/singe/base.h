@@ -4,9 +4,9 @@
 /// has the size that the caller's header knows. Fields are only ever appended; a smaller Def from an older
 /// header is accepted and the fields it lacks take their defaults, of a larger one from a newer header the
 /// unknown fields are not read. This holds for a Def inside another, too. What a simulation gives (views,
-/// statistics, timers, counts, ranges, surfaces, gas) grows at its end as well: it is filled by a function that takes the
-/// caller's sizeof and writes no more, and 0 in what the library does not know yet; an inline function beside it returns
-/// the struct by value. All other structs keep their size while SINGE_VERSION_MAJOR does: what Defs are made of
+/// statistics, timers, counts, ranges, surfaces, gas) grows at its end as well: it is filled by a function that takes
+/// the caller's sizeof and writes no more, and 0 in what the library does not know yet; an inline function beside it
+/// returns the struct by value. All other structs keep their size while SINGE_VERSION_MAJOR does: what Defs are made of
 /// (parameters, textures, keys, hooks). Enumerators keep their values for ever. tests/abi/abi.txt has all of them.
 ///
 /// Units are SI and kelvin throughout. Nothing here depends on the locale.
@@ -53,16 +53,16 @@ extern "C" {
 /// What a fallible function returns. Zero is success.
 typedef enum SingeResult {
     SINGE_OK = 0,
-    SINGE_ERROR_ARGUMENT = 1,  ///< a Def field or argument is out of its range
-    SINGE_ERROR_MEMORY = 2,    ///< the allocator returned NULL
-    SINGE_ERROR_MESH = 3,      ///< the mesh is degenerate, non-manifold or indexes out of range
-    SINGE_ERROR_HANDLE = 4,    ///< the handle is stale or was never given out
-    SINGE_ERROR_STATE = 5,     ///< the call is not allowed now (a sheet added after the first step)
-    SINGE_ERROR_DIVERGED = 6,  ///< a stage produced a value that is not finite; state rolled back
-    SINGE_ERROR_FORMAT = 7,    ///< bytes do not follow their format (file, snapshot, scene)
-    SINGE_ERROR_VERSION = 8,   ///< a snapshot of another version
-    SINGE_ERROR_FILE = 9,      ///< the operating system refused a file
-    SINGE_ERROR_LIMIT = 10,    ///< an input larger than the format or the index type allows
+    SINGE_ERROR_ARGUMENT = 1, ///< a Def field or argument is out of its range
+    SINGE_ERROR_MEMORY = 2,   ///< the allocator returned NULL
+    SINGE_ERROR_MESH = 3,     ///< the mesh is degenerate, non-manifold or indexes out of range
+    SINGE_ERROR_HANDLE = 4,   ///< the handle is stale or was never given out
+    SINGE_ERROR_STATE = 5,    ///< the call is not allowed now (a sheet added after the first step)
+    SINGE_ERROR_DIVERGED = 6, ///< a stage produced a value that is not finite; state rolled back
+    SINGE_ERROR_FORMAT = 7,   ///< bytes do not follow their format (file, snapshot, scene)
+    SINGE_ERROR_VERSION = 8,  ///< a snapshot of another version
+    SINGE_ERROR_FILE = 9,     ///< the operating system refused a file
+    SINGE_ERROR_LIMIT = 10,   ///< an input larger than the format or the index type allows
 } SingeResult;
 
 /// The short English name of a result ("out of memory").
@@ -110,10 +110,18 @@ typedef struct SingeTasks {
 
 /// Handles: an index with a generation, so that a handle to a removed object is noticed. Zeroed
 /// handles are never valid.
-typedef struct SingeSheetId { uint32_t index, generation; } SingeSheetId;
-typedef struct SingeSourceId { uint32_t index, generation; } SingeSourceId;
-typedef struct SingeColliderId { uint32_t index, generation; } SingeColliderId;
-typedef struct SingePinId { uint32_t index, generation; } SingePinId;
+typedef struct SingeSheetId {
+    uint32_t index, generation;
+} SingeSheetId;
+typedef struct SingeSourceId {
+    uint32_t index, generation;
+} SingeSourceId;
+typedef struct SingeColliderId {
+    uint32_t index, generation;
+} SingeColliderId;
+typedef struct SingePinId {
+    uint32_t index, generation;
+} SingePinId;
 
 #ifdef __cplusplus
 }

@@ -17,9 +17,9 @@ typedef struct SingeTexture {
 
 /// Seeded value noise in [0, 1], evaluated at the rest position.
 typedef struct SingeNoise {
-    float scale;    ///< m, the size of its largest features, > 0
-    int octaves;    ///< 1 to 8, each half the size and half the strength of the one before
-    uint32_t seed;  ///< any
+    float scale;   ///< m, the size of its largest features, > 0
+    int octaves;   ///< 1 to 8, each half the size and half the strength of the one before
+    uint32_t seed; ///< any
 } SingeNoise;
 
 /// A named value per vertex of a sheet's mesh.
@@ -40,8 +40,8 @@ typedef enum SingeFieldKind {
 /// Centres of cells take a texture or noise at their own position and the mean of their corners'
 /// attributes.
 typedef struct SingeParam {
-    float value;           ///< in the parameter's unit and range, as `to` and all between
-    float to;              ///< needs a field; finite
+    float value; ///< in the parameter's unit and range, as `to` and all between
+    float to;    ///< needs a field; finite
     SingeFieldKind field;
     SingeTexture texture;  ///< needs the sheet's uv
     const char *attribute; ///< the name of one of the sheet's attributes

@@ -19,7 +19,7 @@ typedef enum SingeMeshQuads {
 /// after the call.
 typedef struct SingeMeshDef {
     size_t struct_size;
-    const char *name;           ///< for messages; NULL, the default, is "mesh"
+    const char *name; ///< for messages; NULL, the default, is "mesh"
     uint32_t vertex_count;
     const float *positions;     ///< [3 * vertex_count] m, finite
     uint32_t face_count;        ///< at least 1
@@ -29,11 +29,11 @@ typedef struct SingeMeshDef {
     const float *corner_uv;     ///< [2 * corners] in place of uv where a mesh has seams, or NULL
     uint32_t attribute_count;
     const SingeAttribute *attributes; ///< [attribute_count] of the vertices; carried to the sheet's
-    SingeMeshQuads quads;       ///< SINGE_MESH_PAIR
+    SingeMeshQuads quads;             ///< SINGE_MESH_PAIR
     float weld;     ///< m, vertices on open edges that are this near become one, >= 0; 0, the default: 1e-5 of the size
     float smallest; ///< sides below this share of the median side shrink to a point, 0 (none) to 1; 0.02
-    SingeAllocator allocator;   ///< zeroed: libc's
-    SingeLog log;               ///< receives what the mesh is and each repair; zeroed: nobody
+    SingeAllocator allocator; ///< zeroed: libc's
+    SingeLog log;             ///< receives what the mesh is and each repair; zeroed: nobody
 } SingeMeshDef;
 
 SINGE_API void singe_init_mesh(SingeMeshDef *def, size_t struct_size);
@@ -44,7 +44,8 @@ static inline SingeMeshDef singe_default_mesh(void) {
     return def;
 }
 
-/// A flat rectangle of cells about the origin of the x-y plane, front upwards, with uv from (0, 0) at its lowest x and y.
+/// A flat rectangle of cells about the origin of the x-y plane, front upwards, with uv from (0, 0) at its lowest x and
+/// y.
 typedef struct SingeGridDef {
     size_t struct_size;
     float size[2];      ///< m along x and y, > 0; 0.2
@@ -68,8 +69,8 @@ static inline SingeGridDef singe_default_grid(void) {
 typedef struct SingeMesh SingeMesh;
 
 /// Makes quads of a mesh: vertices are welded, what is broken is repaired or refused. A mesh of quads without faults
-/// keeps its vertices, its cells and their order. To be freed by singe_mesh_destroy. On failure *mesh is NULL and *error
-/// (may be NULL) says why: SINGE_ERROR_MESH with the face or vertex in `element`, SINGE_ERROR_ARGUMENT,
+/// keeps its vertices, its cells and their order. To be freed by singe_mesh_destroy. On failure *mesh is NULL and
+/// *error (may be NULL) says why: SINGE_ERROR_MESH with the face or vertex in `element`, SINGE_ERROR_ARGUMENT,
 /// SINGE_ERROR_LIMIT or SINGE_ERROR_MEMORY.
 SINGE_API SINGE_NODISCARD SingeResult singe_mesh_create(const SingeMeshDef *def, SingeMesh **mesh, SingeError *error);
 
@@ -84,16 +85,17 @@ SINGE_API void singe_mesh_destroy(SingeMesh *mesh);
 typedef struct SingeMeshView {
     size_t struct_size;
     uint32_t vertex_count, cell_count, attribute_count;
-    uint32_t source_count;    ///< vertices of the SingeMeshDef; 0 without source_vertex
-    const float *positions;   ///< [3 * vertex_count] m
-    const uint32_t *cells;    ///< [4 * cell_count]
-    const float *uv;          ///< [2 * vertex_count], or NULL
-    const float *corner_uv;   ///< [8 * cell_count], or NULL where those of the vertices hold
+    uint32_t source_count;               ///< vertices of the SingeMeshDef; 0 without source_vertex
+    const float *positions;              ///< [3 * vertex_count] m
+    const uint32_t *cells;               ///< [4 * cell_count]
+    const float *uv;                     ///< [2 * vertex_count], or NULL
+    const float *corner_uv;              ///< [8 * cell_count], or NULL where those of the vertices hold
     const SingeAttribute *attributes;    ///< [attribute_count]
     const int32_t *source_vertex;        ///< [vertex_count] of the SingeMeshDef, -1 for a new one; NULL: the same
     const int32_t *corner_source_vertex; ///< [4 * cell_count] the same of the cells' corners, or NULL
-    const uint32_t *became; ///< [source_count] what each vertex of the SingeMeshDef is now, UINT32_MAX: of no face; NULL
-                            ///< with source_vertex
+    const uint32_t
+        *became; ///< [source_count] what each vertex of the SingeMeshDef is now, UINT32_MAX: of no face; NULL
+                 ///< with source_vertex
 } SingeMeshView;
 
 /// Fills `struct_size` bytes of a view, the caller's sizeof. Its fields that this library does not know become 0.
@@ -121,7 +123,8 @@ static inline void singe_mesh_fill_sheet(const SingeMesh *mesh, SingeSheetDef *s
     sheet->corner_source_vertex = view.corner_source_vertex;
 }
 
-/// What a vertex of the SingeMeshDef is now, for pins; UINT32_MAX where no face has it, or there is none of this number.
+/// What a vertex of the SingeMeshDef is now, for pins; UINT32_MAX where no face has it, or there is none of this
+/// number.
 static inline uint32_t singe_mesh_vertex(const SingeMesh *mesh, uint32_t vertex) {
     const SingeMeshView view = singe_mesh_view(mesh);
     if (view.became) return vertex < view.source_count ? view.became[vertex] : UINT32_MAX;

@@ -21,7 +21,7 @@ typedef struct SingeNetworkDef {
     size_t struct_size;
     SingeAllocator allocator;
     SingeTasks tasks;
-    int thread_count;             ///< 1 to 64; results do not depend on it
+    int thread_count; ///< 1 to 64; results do not depend on it
     uint32_t particle_count;
     const double *positions;      ///< [3 * particle_count] m
     const double *inverse_masses; ///< [particle_count] 1/kg, >= 0, or NULL: 1 each
@@ -29,18 +29,18 @@ typedef struct SingeNetworkDef {
     /// inverse mass of 0 is another thing: the system knows that it cannot move.
     const uint8_t *held;
     uint32_t spring_count;
-    const uint32_t *ends;         ///< [2 * spring_count] two different particles each
-    const double *lengths;        ///< [spring_count] m, targets, > 0
-    const double *weights;        ///< [spring_count] W of eq 19, 0 (not there) to 1, or NULL: 1 each
-    const double *compliances;    ///< [spring_count] m/N, >= 0, or NULL: 0 each
-    uint32_t set_count;           ///< at least 1
-    const uint32_t *sets;         ///< [spring_count] the set of each spring, or NULL: all are in set 0
+    const uint32_t *ends;      ///< [2 * spring_count] two different particles each
+    const double *lengths;     ///< [spring_count] m, targets, > 0
+    const double *weights;     ///< [spring_count] W of eq 19, 0 (not there) to 1, or NULL: 1 each
+    const double *compliances; ///< [spring_count] m/N, >= 0, or NULL: 0 each
+    uint32_t set_count;        ///< at least 1
+    const uint32_t *sets;      ///< [spring_count] the set of each spring, or NULL: all are in set 0
     /// C = |d|^2/l - l as eq 10 has it, without regularisation and compliance; else C = (|d|^2 - l^2)/(2 |d|)
     bool literal;
-    double regularisation;        ///< added to the diagonal, relative to the mean of w_a and w_b, >= 0
-    double time_step;             ///< s, h in compliance/h^2, > 0
-    double tolerance;             ///< residual of the conjugate gradients, relative to the right-hand side, > 0 to 1
-    int iterations;               ///< of the conjugate gradients, at most; 1 to 1e6
+    double regularisation; ///< added to the diagonal, relative to the mean of w_a and w_b, >= 0
+    double time_step;      ///< s, h in compliance/h^2, > 0
+    double tolerance;      ///< residual of the conjugate gradients, relative to the right-hand side, > 0 to 1
+    int iterations;        ///< of the conjugate gradients, at most; 1 to 1e6
 } SingeNetworkDef;
 
 SINGE_API void singe_init_network(SingeNetworkDef *def, size_t struct_size);

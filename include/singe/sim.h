@@ -55,11 +55,11 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_collider(SingeSim *sim, Sin
                                                               const SingePoseKey *path);
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_move_pin(SingeSim *sim, SingePinId id, uint32_t path_count,
                                                          const SingePoseKey *path);
-/// Where the vertices of a deforming collider are at `time` (s of the simulation): vertices[3 * vertex_count of its Def],
-/// m in its own frame, each within 1e4. They go there from where they are now in straight lines, with the velocity that
-/// this takes, and stay. A host calls it before the steps of each frame, with the frame's end. A `time` that is not
-/// later than now: they are there at once, without a velocity. The mesh must not pass through itself; a triangle may
-/// lose its area.
+/// Where the vertices of a deforming collider are at `time` (s of the simulation): vertices[3 * vertex_count of its
+/// Def], m in its own frame, each within 1e4. They go there from where they are now in straight lines, with the
+/// velocity that this takes, and stay. A host calls it before the steps of each frame, with the frame's end. A `time`
+/// that is not later than now: they are there at once, without a velocity. The mesh must not pass through itself; a
+/// triangle may lose its area.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_collider_vertices(SingeSim *sim, SingeColliderId id,
                                                                       const float *vertices, double time);
 /// Where what a pin holds is at `time`, in place of a path: positions[3 * count of singe_sim_pin_particles], m, in that
@@ -67,12 +67,12 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_collider_vertices(SingeSim *
 /// before the commit.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_pin_positions(SingeSim *sim, SingePinId id, const float *positions,
                                                                   double time);
-/// The particles that a pin holds, increasing, *count of them: vertices, and centres of cells where it was made by points
-/// with a radius. NULL and 0 for a stale handle and before the commit. They stay as long as the pin.
+/// The particles that a pin holds, increasing, *count of them: vertices, and centres of cells where it was made by
+/// points with a radius. NULL and 0 for a stale handle and before the commit. They stay as long as the pin.
 SINGE_API const uint32_t *singe_sim_pin_particles(const SingeSim *sim, SingePinId id, uint32_t *count);
 
-/// The handles of all objects there are: writes at most `capacity` of them, in the order of their slots, and returns how
-/// many there are. `ids` may be NULL where `capacity` is 0. After a load they are those of the saved simulation.
+/// The handles of all objects there are: writes at most `capacity` of them, in the order of their slots, and returns
+/// how many there are. `ids` may be NULL where `capacity` is 0. After a load they are those of the saved simulation.
 SINGE_API uint32_t singe_sim_sheets(const SingeSim *sim, SingeSheetId *ids, uint32_t capacity);
 SINGE_API uint32_t singe_sim_sources(const SingeSim *sim, SingeSourceId *ids, uint32_t capacity);
 SINGE_API uint32_t singe_sim_colliders(const SingeSim *sim, SingeColliderId *ids, uint32_t capacity);
@@ -121,11 +121,11 @@ SINGE_API SINGE_NODISCARD SingeResult singe_sim_set_material(SingeSim *sim, Sing
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_step(SingeSim *sim);
 
 /// Makes as many steps as fit in `seconds` (0 to 1e6) plus the remainder of earlier calls. What is left, less than one
-/// step, is the new remainder; snapshots have it. A remainder within 1 % of a step counts as a step. At most `steps_max`
-/// steps are made (0: any number) and whole steps beyond them are dropped, so that a host that falls behind slows down.
-/// *steps (may be NULL) is the number of steps made. The first call allocates room for events; singe_sim_events then has
-/// those of all steps of the call. A step that fails ends the call as in singe_sim_step; the steps before it stay, and
-/// the time that is left stays in the remainder.
+/// step, is the new remainder; snapshots have it. A remainder within 1 % of a step counts as a step. At most
+/// `steps_max` steps are made (0: any number) and whole steps beyond them are dropped, so that a host that falls behind
+/// slows down. *steps (may be NULL) is the number of steps made. The first call allocates room for events;
+/// singe_sim_events then has those of all steps of the call. A step that fails ends the call as in singe_sim_step; the
+/// steps before it stay, and the time that is left stays in the remainder.
 SINGE_API SINGE_NODISCARD SingeResult singe_sim_advance(SingeSim *sim, double seconds, uint32_t steps_max,
                                                         uint32_t *steps);
 
@@ -135,8 +135,8 @@ SINGE_API double singe_sim_remainder(const SingeSim *sim);
 
 /// Flags of a particle, spring or cell.
 enum {
-    SINGE_ALIVE = 1,   ///< still part of the shell
-    SINGE_PINNED = 2,  ///< particle held by a pin
+    SINGE_ALIVE = 1,  ///< still part of the shell
+    SINGE_PINNED = 2, ///< particle held by a pin
 };
 
 /// Read-only arrays of the shell. Pointers stay valid until the simulation is destroyed; contents
@@ -144,28 +144,28 @@ enum {
 /// tear, vertices are in reserve at the end of each sheet's and springs at the end of the blue ones: not
 /// SINGE_ALIVE till a tear makes something of them; `cells` and `springs` then change, too.
 typedef struct SingeView {
-    size_t struct_size;                 ///< of what the library has filled in; callbacks get it by pointer
-    double time;                        ///< s
-    uint64_t step;                      ///< steps done
+    size_t struct_size; ///< of what the library has filled in; callbacks get it by pointer
+    double time;        ///< s
+    uint64_t step;      ///< steps done
     uint64_t topology_version;
     uint32_t particle_count, vertex_count, cell_count;
     uint32_t spring_count[SINGE_COLOUR_COUNT];
-    const float (*position)[4];         ///< [particle_count] m; fourth is unused
-    const float (*velocity)[4];         ///< [particle_count] m/s
-    const float (*rest_position)[4];    ///< [particle_count] m
-    const float (*uv)[2];               ///< [particle_count], centres at the mean of their corners
-    const float *area;                  ///< [particle_count] m2 at rest, of the particle's own layer
-    const float *mass;                  ///< [particle_count] fraction of the initial mass
-    const float *fuel;                  ///< [particle_count] 1 unburnt, 0 where all has pyrolysed to char and ash
-    const float *temperature;           ///< [particle_count] K
-    const float *temperature_peak;      ///< [particle_count] K, highest so far
-    const float *burn_rate;             ///< [particle_count] 1/s, mass fraction lost per second
-    const float *time_ignited;          ///< [particle_count] s, -1 before
-    const float *time_burnt;            ///< [particle_count] s, when its mass fell below m_loss, -1 before
-    const int32_t *piece;               ///< [particle_count] id of its connected piece, -1 if gone
-    const uint8_t *particle_flags;      ///< [particle_count] SINGE_ALIVE, SINGE_PINNED
-    const uint8_t *cell_flags;          ///< [cell_count] SINGE_ALIVE
-    const uint32_t (*cells)[4];         ///< [cell_count] corners
+    const float (*position)[4];      ///< [particle_count] m; fourth is unused
+    const float (*velocity)[4];      ///< [particle_count] m/s
+    const float (*rest_position)[4]; ///< [particle_count] m
+    const float (*uv)[2];            ///< [particle_count], centres at the mean of their corners
+    const float *area;               ///< [particle_count] m2 at rest, of the particle's own layer
+    const float *mass;               ///< [particle_count] fraction of the initial mass
+    const float *fuel;               ///< [particle_count] 1 unburnt, 0 where all has pyrolysed to char and ash
+    const float *temperature;        ///< [particle_count] K
+    const float *temperature_peak;   ///< [particle_count] K, highest so far
+    const float *burn_rate;          ///< [particle_count] 1/s, mass fraction lost per second
+    const float *time_ignited;       ///< [particle_count] s, -1 before
+    const float *time_burnt;         ///< [particle_count] s, when its mass fell below m_loss, -1 before
+    const int32_t *piece;            ///< [particle_count] id of its connected piece, -1 if gone
+    const uint8_t *particle_flags;   ///< [particle_count] SINGE_ALIVE, SINGE_PINNED
+    const uint8_t *cell_flags;       ///< [cell_count] SINGE_ALIVE
+    const uint32_t (*cells)[4];      ///< [cell_count] corners
     const uint32_t (*springs[SINGE_COLOUR_COUNT])[2]; ///< [spring_count[c]] ends
     const float *spring_length[SINGE_COLOUR_COUNT];   ///< [spring_count[c]] m, target length, eq 6
     const float *spring_rest[SINGE_COLOUR_COUNT];     ///< [spring_count[c]] m, initial length
@@ -177,14 +177,14 @@ typedef struct SingeView {
 } SingeView;
 
 /// Where a sheet's elements are in the arrays of a view. These numbers never change: vertex v of the sheet's Def is
-/// particle vertex_first + v, cell c is cell cell_first + c and its centre particle centre_first + c, for as long as the
-/// simulation lives. Tears make vertices of the sheet's reserve, in order, from vertex_first + vertex_count on, each
-/// with the source_vertex of the one that it was split from.
+/// particle vertex_first + v, cell c is cell cell_first + c and its centre particle centre_first + c, for as long as
+/// the simulation lives. Tears make vertices of the sheet's reserve, in order, from vertex_first + vertex_count on,
+/// each with the source_vertex of the one that it was split from.
 typedef struct SingeSheetRange {
     size_t struct_size;
     uint32_t vertex_first, vertex_count; ///< vertices of the sheet's Def
-    uint32_t torn_count;    ///< vertices that tears have made so far
-    uint32_t reserve_count; ///< vertices that tears can make
+    uint32_t torn_count;                 ///< vertices that tears have made so far
+    uint32_t reserve_count;              ///< vertices that tears can make
     uint32_t cell_first, cell_count;
     uint32_t centre_first;
 } SingeSheetRange;
@@ -199,8 +199,8 @@ static inline SingeSheetRange singe_sim_sheet_range(const SingeSim *sim, SingeSh
     return range;
 }
 
-/// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL. Fills `struct_size` bytes,
-/// the caller's sizeof.
+/// The view of a committed simulation; before the commit all counts are 0 and all arrays NULL. Fills `struct_size`
+/// bytes, the caller's sizeof.
 SINGE_API void singe_sim_read_view(const SingeSim *sim, SingeView *view, size_t struct_size);
 
 static inline SingeView singe_sim_view(const SingeSim *sim) {
@@ -244,18 +244,18 @@ typedef struct SingeTimers {
     uint64_t contacts;          ///< of particles with colliders, summed over substeps
     // of the stage dynamics, the projection of springs alone
     double projection_seconds;
-    uint64_t springs_projected; ///< springs times projections
+    uint64_t springs_projected;     ///< springs times projections
     uint64_t projection_iterations; ///< of the conjugate gradients
-    double projection_flops;    ///< floating-point operations, counted from the source: a division or root is one
-    double projection_bytes;    ///< bytes read and written, counted from the source: what a cold cache would move
+    double projection_flops;        ///< floating-point operations, counted from the source: a division or root is one
+    double projection_bytes;        ///< bytes read and written, counted from the source: what a cold cache would move
     // of the stage dynamics, contact of sheets with themselves and each other
     double contact_seconds;
-    uint64_t contact_searches;  ///< of the broad phase
+    uint64_t contact_searches;   ///< of the broad phase
     uint64_t contact_repulsions; ///< pairs of points that a substep pushed apart
-    uint64_t contact_stops;     ///< pairs of cells stopped by continuous collision detection (CCD)
+    uint64_t contact_stops;      ///< pairs of cells stopped by continuous collision detection (CCD)
     uint64_t contact_unresolved; ///< pairs that CCD could not keep apart: pins hold both
-    uint64_t contact_dropped;   ///< pairs beyond the capacity of the lists, not checked
-    uint64_t contact_pairs;     ///< pairs of cells that the broad phase found, summed over steps
+    uint64_t contact_dropped;    ///< pairs beyond the capacity of the lists, not checked
+    uint64_t contact_pairs;      ///< pairs of cells that the broad phase found, summed over steps
 } SingeTimers;
 
 /// All 0 before the commit. Fills `struct_size` bytes, the caller's sizeof.
@@ -272,28 +272,28 @@ static inline SingeTimers singe_sim_timers(const SingeSim *sim) {
 
 /// Numbers about the present state, computed when asked for.
 typedef struct SingeStats {
-    double time;                   ///< s
-    uint32_t particles, springs, cells; ///< alive
-    uint32_t pieces;               ///< connected ones
-    double mass;                   ///< kg, of what is left
-    double mass_initial;           ///< kg
-    double mass_burnt;             ///< kg, gone as gas, eq 4
-    double mass_removed;           ///< kg, of removed particles
-    double burnt_fraction;         ///< mass_burnt + mass_removed over mass_initial
-    float temperature_max;         ///< K
+    double time;                                                ///< s
+    uint32_t particles, springs, cells;                         ///< alive
+    uint32_t pieces;                                            ///< connected ones
+    double mass;                                                ///< kg, of what is left
+    double mass_initial;                                        ///< kg
+    double mass_burnt;                                          ///< kg, gone as gas, eq 4
+    double mass_removed;                                        ///< kg, of removed particles
+    double burnt_fraction;                                      ///< mass_burnt + mass_removed over mass_initial
+    float temperature_max;                                      ///< K
     double heat_in, heat_lost, heat_of_combustion, heat_stored; ///< J, cumulative; see docs/equations.md
-    double ledger_error;           ///< |in + combustion - lost - stored| over the largest of them
-    double mass_ledger_error;      ///< |initial - left - burnt - removed| / initial
+    double ledger_error;      ///< |in + combustion - lost - stored| over the largest of them
+    double mass_ledger_error; ///< |initial - left - burnt - removed| / initial
     /// |length/target - 1| of the mesh's edges (blue springs) that are drawn, wholly or in part, and not held at both
     /// ends.
     double strain_mean, strain_p99, strain_max;
-    uint32_t inverted_cells;       ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
-    uint32_t intersecting_cells;        ///< intersecting or coincident initially, and not separated since
-    double speed_rms_unburnt;      ///< m/s, of particles never ignited and not pinned
-    float thickening;              ///< F in use, largest over the sheets
+    uint32_t inverted_cells;     ///< whose centre is not in front of its corners; 0 but where solver.height_min is 0
+    uint32_t intersecting_cells; ///< intersecting or coincident initially, and not separated since
+    double speed_rms_unburnt;    ///< m/s, of particles never ignited and not pinned
+    float thickening;            ///< F in use, largest over the sheets
     /// m/s of the fire's time: median of 1/|grad time_ignited| over the cells that have ignited wholly.
     double front_speed;
-    uint32_t tears;                ///< vertices that tears have split
+    uint32_t tears; ///< vertices that tears have split
     /// Whether both ledger errors are at most SINGE_LEDGER_BOUND. They are not where steps of fire are so short that
     /// temperatures change by less than a float's last digit: rounding is right in the mean alone.
     bool ledgers_close;
@@ -311,9 +311,9 @@ static inline SingeStats singe_sim_stats(const SingeSim *sim) {
 /// Counts of a committed simulation's elements.
 typedef struct SingeCounts {
     uint32_t particles, cells, springs[SINGE_COLOUR_COUNT], strands[SINGE_COLOUR_COUNT], families[SINGE_COLOUR_COUNT];
-    double mean_strand_length;  ///< springs per strand
-    float cell_size;            ///< m, median edge, the mean over the sheets
-    size_t memory;              ///< bytes held, of the allocator
+    double mean_strand_length; ///< springs per strand
+    float cell_size;           ///< m, median edge, the mean over the sheets
+    size_t memory;             ///< bytes held, of the allocator
 } SingeCounts;
 
 /// Fills `struct_size` bytes, the caller's sizeof.
@@ -334,8 +334,8 @@ SINGE_NODISCARD static inline SingeResult singe_sim_surface(SingeSim *sim, Singe
     return singe_sim_draw(sim, surface, sizeof *surface);
 }
 
-/// The gas now. The simulation owns the arrays; they stay valid, their contents until the next step. Fills `struct_size`
-/// bytes, the caller's sizeof.
+/// The gas now. The simulation owns the arrays; they stay valid, their contents until the next step. Fills
+/// `struct_size` bytes, the caller's sizeof.
 SINGE_API void singe_sim_read_gas(const SingeSim *sim, SingeGas *gas, size_t struct_size);
 
 static inline SingeGas singe_sim_gas(const SingeSim *sim) {

@@ -15,26 +15,26 @@ extern "C" {
 typedef struct SingeSurface {
     uint32_t vertex_count, triangle_count;
     uint32_t fine_triangle_count; ///< of the triangles, those in cells that are split near the front
-    float (*position)[3];      ///< m
-    float (*normal)[3];        ///< unit; area-weighted where the surface is not smooth
-    float (*uv)[2];            ///< 0 where the sheet has none
-    float (*velocity)[3];      ///< m/s
-    float (*rest_position)[3]; ///< m
-    float *temperature;        ///< K
-    float *temperature_peak;   ///< K, highest so far: what browns paper for good
-    float *mass;               ///< fraction
-    float *burn_rate;          ///< 1/s
-    float *char_fraction;      ///< of the initial mass, black char that can still glow away
-    float *ash_fraction;       ///< of the initial mass, grey ash: what of `mass` neither pyrolyses nor glows any more
-    float *burn;               ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
-    float *time_ignited;       ///< s, -1 never
-    int32_t *piece;            ///< id
+    float (*position)[3];         ///< m
+    float (*normal)[3];           ///< unit; area-weighted where the surface is not smooth
+    float (*uv)[2];               ///< 0 where the sheet has none
+    float (*velocity)[3];         ///< m/s
+    float (*rest_position)[3];    ///< m
+    float *temperature;           ///< K
+    float *temperature_peak;      ///< K, highest so far: what browns paper for good
+    float *mass;                  ///< fraction
+    float *burn_rate;             ///< 1/s
+    float *char_fraction;         ///< of the initial mass, black char that can still glow away
+    float *ash_fraction; ///< of the initial mass, grey ash: what of `mass` neither pyrolyses nor glows any more
+    float *burn;         ///< burn progress (1 - m)/(1 - m_min), 0 fresh to 1 ash
+    float *time_ignited; ///< s, -1 never
+    int32_t *piece;      ///< id
     /// vertex of the input mesh (numbered over all sheets), -1 for a new one; on a seam several have it
     int32_t *source_vertex;
-    int32_t *sheet;            ///< index of the sheet, in the order added
-    uint32_t (*triangles)[3];  ///< counter-clockwise seen from the front
+    int32_t *sheet;                              ///< index of the sheet, in the order added
+    uint32_t (*triangles)[3];                    ///< counter-clockwise seen from the front
     uint32_t vertex_capacity, triangle_capacity; ///< allocated
-    SingeAllocator allocator;  ///< that the arrays come from
+    SingeAllocator allocator;                    ///< that the arrays come from
 } SingeSurface;
 
 /// Frees a surface's arrays and zeroes its `struct_size` bytes, the caller's sizeof; NULL is allowed.
@@ -45,12 +45,12 @@ static inline void singe_surface_free(SingeSurface *surface) { singe_surface_rel
 /// The hot gas about what burns: cubes of side `cell` along the axes of space, x fastest. Cell (i, j, k) is entry
 /// i + size[0] (j + size[1] k) and spans origin + cell (i..i+1, j..j+1, k..k+1). Values are those at its centre.
 typedef struct SingeGas {
-    uint32_t size[3];         ///< cells; all 0 where the simulation has no gas
-    float origin[3];          ///< m, lower corner of cell (0, 0, 0)
-    float cell;               ///< m
-    const float *temperature; ///< K
-    const float *smoke;       ///< kg/m3 of soot
-    const float *flame;       ///< W/m3, heat release rate
+    uint32_t size[3];           ///< cells; all 0 where the simulation has no gas
+    float origin[3];            ///< m, lower corner of cell (0, 0, 0)
+    float cell;                 ///< m
+    const float *temperature;   ///< K
+    const float *smoke;         ///< kg/m3 of soot
+    const float *flame;         ///< W/m3, heat release rate
     const float (*velocity)[3]; ///< m/s
 } SingeGas;
 

@@ -33,17 +33,17 @@ typedef struct SingeValueKey {
 /// Defaults: singe_default_material(), at rest, drop_pieces_below 0; all else 0 or NULL.
 typedef struct SingeSheetDef {
     size_t struct_size;
-    const char *name;          ///< for messages; NULL is "sheet"
+    const char *name; ///< for messages; NULL is "sheet"
     uint32_t vertex_count;
-    const float *positions;    ///< [3 * vertex_count] m, each within 1e15
+    const float *positions; ///< [3 * vertex_count] m, each within 1e15
     uint32_t cell_count;
-    const uint32_t *cells;     ///< [4 * cell_count], vertex indices
-    const float *uv;           ///< [2 * vertex_count] or NULL (then textures are refused)
+    const uint32_t *cells; ///< [4 * cell_count], vertex indices
+    const float *uv;       ///< [2 * vertex_count] or NULL (then textures are refused)
     uint32_t attribute_count;
     const SingeAttribute *attributes; ///< [attribute_count]
     SingeMaterialDef material;
-    float velocity[3];         ///< m/s at the start
-    float drop_pieces_below;   ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
+    float velocity[3];       ///< m/s at the start
+    float drop_pieces_below; ///< m2, >= 0; loose pieces smaller than this vanish; 0 keeps all
     /// [8 * cell_count] uv of each cell's corners, or NULL where those of the vertices hold. Vertices where cells
     /// differ lie on a seam: they are drawn once for each uv, at one place. `uv` is still needed, for what is one a
     /// vertex.
@@ -85,27 +85,27 @@ typedef void SingeFluxFn(void *context, const struct SingeView *view, float *flu
 /// space, falling smoothly to nothing at `radius + falloff`. Fluxes and conductances are those into a layer, and
 /// a sheet has two: it takes twice as much a square metre.
 ///
-/// Defaults: SINGE_SOURCE_SPOT, start 0, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01, flux
-/// 30e3; all else 0 or NULL: it stands at the origin.
+/// Defaults: SINGE_SOURCE_SPOT, start 0, end INFINITY, temperature 1200, conductance 150, radius 0.005, falloff 0.01,
+/// flux 30e3; all else 0 or NULL: it stands at the origin.
 typedef struct SingeSourceDef {
     size_t struct_size;
     SingeSourceKind kind;
-    float start, end;          ///< s, when it acts; any, end may be INFINITY
-    float temperature;         ///< K, of ball and spot, 1e-3 to 1e5
-    float conductance;         ///< W/(m2 K), of ball and spot, 0 to 1e9
-    float radius, falloff;     ///< m, of ball and spot, >= 0
-    uint32_t path_count;       ///< of ball and spot; 0: it stands still at `position`. A spot has at most 1
-    const SingePoseKey *path;  ///< [path_count] positions only
-    SingeTexture texture;      ///< texture source
+    float start, end;         ///< s, when it acts; any, end may be INFINITY
+    float temperature;        ///< K, of ball and spot, 1e-3 to 1e5
+    float conductance;        ///< W/(m2 K), of ball and spot, 0 to 1e9
+    float radius, falloff;    ///< m, of ball and spot, >= 0
+    uint32_t path_count;      ///< of ball and spot; 0: it stands still at `position`. A spot has at most 1
+    const SingePoseKey *path; ///< [path_count] positions only
+    SingeTexture texture;     ///< texture source
     /// W/m2 into each layer where the texture is white, at most 1e15 with texture and strength; below 0 it cools, down
     /// to 1 K
     float flux;
-    uint32_t strength_count;   ///< texture: key frames that multiply `flux`; 0 means 1
+    uint32_t strength_count;       ///< texture: key frames that multiply `flux`; 0 means 1
     const SingeValueKey *strength; ///< [strength_count]
-    SingeFluxFn *callback;     ///< not saved: set it again after a load
+    SingeFluxFn *callback;         ///< not saved: set it again after a load
     void *callback_context;
-    float position[3];         ///< m, of a ball or spot without a path
-    void *user_data;           ///< the caller's own; see singe_sim_source_user_data
+    float position[3]; ///< m, of a ball or spot without a path
+    void *user_data;   ///< the caller's own; see singe_sim_source_user_data
 } SingeSourceDef;
 
 SINGE_API void singe_init_source(SingeSourceDef *def, size_t struct_size);
@@ -117,13 +117,13 @@ static inline SingeSourceDef singe_default_source(void) {
 }
 
 typedef enum SingeColliderKind {
-    SINGE_COLLIDER_PLANE = 0,   ///< through `position`, normal = local z
+    SINGE_COLLIDER_PLANE = 0, ///< through `position`, normal = local z
     SINGE_COLLIDER_SPHERE = 1,
-    SINGE_COLLIDER_BOX = 2,     ///< half_size along the local axes
-    SINGE_COLLIDER_CAPSULE = 3, ///< along local z, `height` between the centres of its caps
+    SINGE_COLLIDER_BOX = 2,         ///< half_size along the local axes
+    SINGE_COLLIDER_CAPSULE = 3,     ///< along local z, `height` between the centres of its caps
     SINGE_COLLIDER_HEIGHTFIELD = 4, ///< solid below heights over a rectangle about the origin, without end down local z
-    SINGE_COLLIDER_MESH = 5,    ///< what a closed triangle mesh encloses
-    SINGE_COLLIDER_DEFORMING = 6, ///< the same of a mesh whose vertices move (singe_sim_set_collider_vertices)
+    SINGE_COLLIDER_MESH = 5,        ///< what a closed triangle mesh encloses
+    SINGE_COLLIDER_DEFORMING = 6,   ///< the same of a mesh whose vertices move (singe_sim_set_collider_vertices)
 } SingeColliderKind;
 
 /// Which layers of a sheet that touches a collider exchange heat with it.
@@ -134,9 +134,9 @@ typedef enum SingeContactSides {
 
 /// A rigid solid that sheets rest on and slide over.
 ///
-/// Defaults: SINGE_COLLIDER_PLANE, radius 0.05, half_size 0.05, height 0.1, friction 0.4, offset 0.0005, temperature 293.15,
-/// conductance 0, contact_distance 0.002, SINGE_SIDES_TOUCHING, size 0.2, rotation {0,0,0,1}; all else 0 or NULL: it stands
-/// at the origin.
+/// Defaults: SINGE_COLLIDER_PLANE, radius 0.05, half_size 0.05, height 0.1, friction 0.4, offset 0.0005, temperature
+/// 293.15, conductance 0, contact_distance 0.002, SINGE_SIDES_TOUCHING, size 0.2, rotation {0,0,0,1}; all else 0 or
+/// NULL: it stands at the origin.
 typedef struct SingeColliderDef {
     size_t struct_size;
     SingeColliderKind kind;
@@ -151,8 +151,8 @@ typedef struct SingeColliderDef {
     uint32_t path_count;      ///< 0: it stands still at `position` and `rotation`
     const SingePoseKey *path; ///< [path_count] of its own frame
     SingeContactSides sides;  ///< of a sheet in contact that exchange heat
-    /// mesh and deforming: closed; each edge is shared by two triangles, counter-clockwise from outside, that do not pass
-    /// through others. Vertices at the same position are one. A mesh that is inside out is turned
+    /// mesh and deforming: closed; each edge is shared by two triangles, counter-clockwise from outside, that do not
+    /// pass through others. Vertices at the same position are one. A mesh that is inside out is turned
     uint32_t vertex_count;
     const float *vertices;     ///< [3 * vertex_count] m, each within 1e4
     uint32_t triangle_count;   ///< at least 4
@@ -181,8 +181,8 @@ typedef struct SingePinDef {
     size_t struct_size;
     SingeSheetId sheet;
     uint32_t point_count;
-    const float *points;      ///< [3 * point_count] m; points or vertices are needed
-    float radius;             ///< m, >= 0; 0 pins the nearest vertex of each point
+    const float *points; ///< [3 * point_count] m; points or vertices are needed
+    float radius;        ///< m, >= 0; 0 pins the nearest vertex of each point
     uint32_t vertex_count;
     const uint32_t *vertices; ///< [vertex_count] of the sheet's mesh, from 0
     uint32_t path_count;      ///< 0: held still
@@ -229,16 +229,16 @@ typedef enum SingeSolverMethod {
 
 /// The solver of the shell's motion (docs/equations.md).
 ///
-/// Defaults: SINGE_SOLVER_STRAND, substeps 3, projections 1, order green, red, yellow, blue, regularisation 2 (red), 0.1
-/// (green), 0.001 (blue), 0.01 (yellow), attachments, early_exit, tolerance 1e-7, stiffness 1000, smoothing 170,
+/// Defaults: SINGE_SOLVER_STRAND, substeps 3, projections 1, order green, red, yellow, blue, regularisation 2 (red),
+/// 0.1 (green), 0.001 (blue), 0.01 (yellow), attachments, early_exit, tolerance 1e-7, stiffness 1000, smoothing 170,
 /// smoothing_length 0.02, height_min 0.3, height_gain 0.5; no creases, no tearing.
 typedef struct SingeSolverDef {
     size_t struct_size;
     SingeSolverMethod method;
-    int substeps; ///< per step, 1 to 1000, or 0 for the fewest that give red springs their full stiffness
-    int projections;                           ///< of all colours, per substep, 1 to 1000
-    SingeColour order[SINGE_COLOUR_COUNT];     ///< order of projection, each colour once
-    float regularisation[SINGE_COLOUR_COUNT];  ///< floor on the diagonal, relative to w_a + w_b = 2; 1e-6 to 1e6
+    int substeps;    ///< per step, 1 to 1000, or 0 for the fewest that give red springs their full stiffness
+    int projections; ///< of all colours, per substep, 1 to 1000
+    SingeColour order[SINGE_COLOUR_COUNT];    ///< order of projection, each colour once
+    float regularisation[SINGE_COLOUR_COUNT]; ///< floor on the diagonal, relative to w_a + w_b = 2; 1e-6 to 1e6
     bool attachments;       ///< keep vertices within their geodesic distance of what is pinned (strand)
     bool early_exit;        ///< stop projecting when the error is below `tolerance` (paper, all-at-once)
     float tolerance;        ///< of the conjugate gradients and the early exit, 1e-12 to 1 (paper, all-at-once)
@@ -246,7 +246,7 @@ typedef struct SingeSolverDef {
     float smoothing;        ///< 1/s, internal friction: rate at which second differences of velocity are lost; >= 0
     float smoothing_length; ///< m, distance of the nodes they are taken over; >= 0, and a cell at least
     float height_min;       ///< smallest height of a centre over its corners, in thicknesses, 0 to 1; 0 is off
-    float height_gain;                         ///< share of a height's error mended in a substep, 0 to 1
+    float height_gain;      ///< share of a height's error mended in a substep, 0 to 1
     bool creases;           ///< bending beyond the material's crease_radius is partly plastic (strand)
     /// sheets tear where the line force in them exceeds the material's `strength` (strand; the others never do); a part
     /// of the vertices is kept in reserve, which views show after each sheet's own
@@ -265,11 +265,11 @@ static inline SingeSolverDef singe_default_solver(void) {
 
 /// Instructions that the inner loops use. Results are the same.
 typedef enum SingeInstructions {
-    SINGE_INSTRUCTIONS_BEST = 0,   ///< the best that the processor has
-    SINGE_INSTRUCTIONS_PLAIN = 1,  ///< plain C
-    SINGE_INSTRUCTIONS_X86_V2 = 2, ///< x86-64-v2: SSE 4.2, 4 lanes
-    SINGE_INSTRUCTIONS_X86_V3 = 3, ///< x86-64-v3: AVX2, 8 lanes
-    SINGE_INSTRUCTIONS_X86_V4 = 4, ///< x86-64-v4: AVX-512, 16 lanes
+    SINGE_INSTRUCTIONS_BEST = 0,     ///< the best that the processor has
+    SINGE_INSTRUCTIONS_PLAIN = 1,    ///< plain C
+    SINGE_INSTRUCTIONS_X86_V2 = 2,   ///< x86-64-v2: SSE 4.2, 4 lanes
+    SINGE_INSTRUCTIONS_X86_V3 = 3,   ///< x86-64-v3: AVX2, 8 lanes
+    SINGE_INSTRUCTIONS_X86_V4 = 4,   ///< x86-64-v4: AVX-512, 16 lanes
     SINGE_INSTRUCTIONS_ARM_NEON = 5, ///< 64-bit Arm: NEON, 4 lanes
 } SingeInstructions;
 
@@ -299,11 +299,11 @@ static inline SingeGasDef singe_default_gas(void) {
 /// Defaults: not enabled, thickness 0.0005, friction 0.3.
 typedef struct SingeContactDef {
     size_t struct_size;
-    bool enabled;    ///< false: sheets pass through themselves, as in the paper
+    bool enabled; ///< false: sheets pass through themselves, as in the paper
     /// m, distance that is kept between surfaces, > 0 to 1, and 2/5 of the smallest cell at most. It is not the
     /// material's `thickness`, which lies between the two layers of the model
     float thickness;
-    float friction;  ///< Coulomb's coefficient, >= 0
+    float friction; ///< Coulomb's coefficient, >= 0
 } SingeContactDef;
 
 SINGE_API void singe_init_contact(SingeContactDef *def, size_t struct_size);
@@ -316,22 +316,22 @@ static inline SingeContactDef singe_default_contact(void) {
 
 /// A simulation.
 ///
-/// Defaults: libc's allocator, no log, a pool of 1 thread, SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1/480, pace 1, gravity
-/// {0,0,-9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_detail 0, surface_raggedness
-/// 0.002, and the defaults of what lies inside.
+/// Defaults: libc's allocator, no log, a pool of 1 thread, SINGE_INSTRUCTIONS_BEST, seed 1, time_step 1/480, pace 1,
+/// gravity {0,0,-9.81}, ambient_temperature 293.15, air_density 1.2, heat_tolerance 1e-5, surface_detail 0,
+/// surface_raggedness 0.002, and the defaults of what lies inside.
 typedef struct SingeSimDef {
     size_t struct_size;
     SingeAllocator allocator;
     SingeLog log;
     SingeTasks tasks;
-    int thread_count;           ///< of the simulation's own pool, 1 to 64
+    int thread_count;               ///< of the simulation's own pool, 1 to 64
     SingeInstructions instructions; ///< refused where the processor lacks them
-    uint64_t seed; ///< of the drawn surface's ragged edges, and for a renderer; noise and wind have their own
-    float time_step;            ///< s, h of the paper, 1e-9 to 10
-    float pace;                 ///< seconds of fire per second of motion, > 0; 1 is real
-    float gravity[3];           ///< m/s2
-    float ambient_temperature;  ///< K, 1 to 1e4
-    float air_density;          ///< kg/m3, >= 0
+    uint64_t seed;    ///< of the drawn surface's ragged edges, and for a renderer; noise and wind have their own
+    float time_step;  ///< s, h of the paper, 1e-9 to 10
+    float pace;       ///< seconds of fire per second of motion, > 0; 1 is real
+    float gravity[3]; ///< m/s2
+    float ambient_temperature; ///< K, 1 to 1e4
+    float air_density;         ///< kg/m3, >= 0
     /// relative residual of the implicit diffusion, > 0 to 1; 200 iterations at most: the log warns once
     float heat_tolerance;
     /// m, distance of the points where the drawn surface is cut near the front, a cell's side over 23 at least. The
@@ -341,7 +341,7 @@ typedef struct SingeSimDef {
     float surface_raggedness; ///< m, how far noise eats into burnt edges at most, and half a cell; needs a detail
     SingeWindDef wind;
     SingeSolverDef solver;
-    SingeGasDef gas; ///< not enabled: sheets burn as in still air
+    SingeGasDef gas;         ///< not enabled: sheets burn as in still air
     SingeContactDef contact; ///< not enabled: sheets pass through themselves and each other
 } SingeSimDef;
 

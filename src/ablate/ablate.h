@@ -36,10 +36,10 @@ SingeResult ablate_surface(AblatePlan *plan, const Shell *shell, const State *st
 
 /// How finely the surface is drawn near the front.
 typedef struct SurfaceDetail {
-    float size;       ///< m, distance of the points of the level set, > 0
-    float raggedness; ///< m, max depth of the raggedness of burnt edges, >= 0
-    uint32_t seed;    ///< of the noise; each sheet has its own
-    const float *room;   ///< [vertices] m, distance of another surface, or INFINITY; NULL: none is near
+    float size;        ///< m, distance of the points of the level set, > 0
+    float raggedness;  ///< m, max depth of the raggedness of burnt edges, >= 0
+    uint32_t seed;     ///< of the noise; each sheet has its own
+    const float *room; ///< [vertices] m, distance of another surface, or INFINITY; NULL: none is near
     float bulge_max;   ///< m, max distance of the surface from flat triangles; 0: only by the cells' size
 } SurfaceDetail;
 

@@ -14,19 +14,19 @@ typedef struct SurfaceKeys {
 
 struct AblatePlan {
     uint32_t particle_count, vertex_count;
-    float *level;            ///< [particles] m' of eq 7 at the present masses
-    uint8_t *rim;            ///< [vertices] 1 at the mesh's boundary, and where it is torn
-    uint32_t split_count;    ///< of the shell that `rim` is for
+    float *level;         ///< [particles] m' of eq 7 at the present masses
+    uint8_t *rim;         ///< [vertices] 1 at the mesh's boundary, and where it is torn
+    uint32_t split_count; ///< of the shell that `rim` is for
     // scratch: pieces and the surface are never worked on at the same time
     void *scratch;
     size_t scratch_size;
-    double *area;            ///< [particles] at a root: m2 at rest of its corner layer
-    uint32_t *root;          ///< [particles] of the disjoint sets; the smallest particle of its set
-    uint32_t *size;          ///< [particles] at a root: particles of the piece
-    uint32_t *heir;          ///< [particles] by id: root of the piece that keeps the id
-    uint8_t *mark;           ///< [particles] at a root: PIECE_HELD, PIECE_DROPPED
+    double *area;   ///< [particles] at a root: m2 at rest of its corner layer
+    uint32_t *root; ///< [particles] of the disjoint sets; the smallest particle of its set
+    uint32_t *size; ///< [particles] at a root: particles of the piece
+    uint32_t *heir; ///< [particles] by id: root of the piece that keeps the id
+    uint8_t *mark;  ///< [particles] at a root: PIECE_HELD, PIECE_DROPPED
     SurfaceKeys keys;
-    uint32_t *output;        ///< [keys.count] index in the surface; in the same scratch
+    uint32_t *output; ///< [keys.count] index in the surface; in the same scratch
 };
 
 /// Makes the plan follow a shell that has torn.

@@ -2,7 +2,10 @@
 #include "ablate/ablate_plan.h"
 
 static Removal removal_begin(AblatePlan *plan, const StepContext *context, AblateState *ablate) {
-    return (Removal){.plan = plan, .shell = context->shell, .state = &context->state, .ablate = ablate,
+    return (Removal){.plan = plan,
+                     .shell = context->shell,
+                     .state = &context->state,
+                     .ablate = ablate,
                      .heat_ambient = context->ambient_temperature};
 }
 

@@ -13,8 +13,14 @@ SingeResult burn_step(const StepContext *context, const float *thickening, doubl
     const StateInput *state = &context->state;
     Pool *pool = context->pool;
     BurnJob job = {
-        .shell = context->shell, .state = state, .h = context->h, .dt = context->h * context->pace,
-        .time = (float)state->time, .thickening = thickening, .partial = partial, .burn = burn,
+        .shell = context->shell,
+        .state = state,
+        .h = context->h,
+        .dt = context->h * context->pace,
+        .time = (float)state->time,
+        .thickening = thickening,
+        .partial = partial,
+        .burn = burn,
     };
     burn_ignite(&job, pool, context->events);
     burn_air(&job, pool);

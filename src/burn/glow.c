@@ -13,7 +13,8 @@
 //          burnt away and ash is porous, all of it. w is the largest 1 - f - z, and f_n the largest f, of the particle
 //          and those beside it in the other layer
 //   F      front thickening, by which every rate is divided
-//   F_c    1 + 3 (1 - f)^8: the diffusivity alpha stands for heat that the flame's gas carries along the sheet. Char has
+//   F_c    1 + 3 (1 - f)^8: the diffusivity alpha stands for heat that the flame's gas carries along the sheet. Char
+//   has
 //          no flame, alpha/F_c is left for it, and its front is thickened F_c times for the cells: so conduction stays
 //          as it is, and what burns and cools char is F_c times slower (also heat/heat.c). Without this the heat of an
 //          ember reaches half a cell, and embers go out where the flame leaves them

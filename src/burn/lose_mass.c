@@ -117,10 +117,8 @@ static void lose_blocks(void *context, int begin, int end) {
         burn_block(job, block, &first, &last);
         for (; first < last; first = run) {
             run = burn_run_end(first, last);
-            if (burn_is_hot(job, first, run))
-                lose_mass(job, first, run, &lost);
-            else
-                be_calm(job->burn, first, run);
+            if (burn_is_hot(job, first, run)) lose_mass(job, first, run, &lost);
+            else be_calm(job->burn, first, run);
         }
         job->partial[block] = lost;
     }

@@ -35,7 +35,8 @@ typedef struct SpringEnd {
 static inline SpringEnd spring_end(const Matter *matter, const BurnState *burn, uint32_t i) {
     float mass = burn->mass[i], fuel = burn->fuel[i];
     float ash = 1 - fuel - shell_char(mass, fuel, field_at(matter->mass_min, i), field_at(matter->char_yield, i));
-    float volume = burn_volume_ratio(mass, fuel, ash, field_at(matter->char_density, i), field_at(matter->ash_density, i));
+    float volume =
+        burn_volume_ratio(mass, fuel, ash, field_at(matter->char_density, i), field_at(matter->ash_density, i));
     return (SpringEnd){volume, field_at(matter->shrink, i), field_at(matter->fibre_shrink, i)};
 }
 

@@ -21,13 +21,13 @@ typedef struct ListBlock {
 } ListBlock;
 
 typedef struct BlockList {
-    size_t size; ///< bytes of an item
+    size_t size;       ///< bytes of an item
     uint32_t capacity; ///< items, whatever blocks they are in
     uint32_t chunk_count, block_count;
-    atomic_uint taken;  ///< chunks
-    bool whole;         ///< what was written last is there
-    uint8_t *items;     ///< [chunk_count * BLOCK_CHUNK * size]
-    uint32_t *next;     ///< [chunk_count] the chunk after, of the same block
+    atomic_uint taken; ///< chunks
+    bool whole;        ///< what was written last is there
+    uint8_t *items;    ///< [chunk_count * BLOCK_CHUNK * size]
+    uint32_t *next;    ///< [chunk_count] the chunk after, of the same block
     ListBlock *blocks; ///< [block_count]
 } BlockList;
 

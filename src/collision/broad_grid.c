@@ -43,7 +43,8 @@ static uint64_t fill_grid(CollisionPlan *plan, bool writing) {
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         if (!plan->alive[c]) continue;
         const CollisionBox *box = &plan->boxes[c];
-        Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse), at = first;
+        Cube first = collision_cube(box->swept_low, inverse), last = collision_cube(box->swept_high, inverse),
+             at = first;
         count += collision_cubes(first, last, plan->sizes.entries);
         if (count > plan->sizes.entries) return count;
         for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
@@ -96,7 +97,8 @@ bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, floa
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
     Float4 apart = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
-    float boxes = float4_dot(apart, apart), far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
+    float boxes = float4_dot(apart, apart),
+          far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
     if (boxes > far * far) return false;
     const CollisionSlab *s = &plan->slabs[a], *t = &plan->slabs[b];
     float one = slab_gap(s, t), two = slab_gap(t, s), slabs = one > two ? one : two;
@@ -111,7 +113,7 @@ static inline uint32_t corners_shared(const uint32_t a[4], const uint32_t b[4]) 
     Float4Mask p, q;
     memcpy(&p, a, sizeof p), memcpy(&q, b, sizeof q);
     Float4Mask same = (p == q) + (p == FLOAT4_SHUFFLE(q, q, 1, 2, 3, 0)) + (p == FLOAT4_SHUFFLE(q, q, 2, 3, 0, 1)) +
-                    (p == FLOAT4_SHUFFLE(q, q, 3, 0, 1, 2));
+                      (p == FLOAT4_SHUFFLE(q, q, 3, 0, 1, 2));
     return 0x4332322132212110u >> 4 * float4_bits(same < 0) & 7; // number of bits set; no two of a are one of b
 }
 
@@ -135,7 +137,8 @@ static void list_pair(const Find *find, uint32_t a, uint32_t b, BlockWriter *wri
     CollisionPair *pair = block_list_add(writer);
     if (!pair) return;
     uint32_t bridge = collision_bridge(find->plan, find->shell, a, b);
-    *pair = (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
+    *pair =
+        (CollisionPair){.a = a, .b = b, .distance = bridge == SHELL_NONE ? distance : 0, .hit = 2, .bridge = bridge};
 }
 
 /// Entries of a bucket, a number after another.

@@ -57,8 +57,8 @@ static CollisionBox moving_box(const Float4 position[4], const Float4 displaceme
 }
 
 static CollisionSlab slab(const Float4 position[4]) {
-    Float4 corner[4] = {position[0], position[1], position[2], position[3]}, normal = float4_cross(position[2] - position[0],
-                                                                                   position[3] - position[1]);
+    Float4 corner[4] = {position[0], position[1], position[2], position[3]},
+           normal = float4_cross(position[2] - position[0], position[3] - position[1]);
     float length = sqrtf(float4_dot(normal, normal));
     CollisionSlab slab = {.normal = length > 0 ? normal / length : (Float4){0}};
     for (int i = 1; i < 4; i++) {

@@ -141,9 +141,7 @@ static SingeResult search_again(Ccd *ccd, const StateInput *state, Pool *pool, f
     return broad_search(plan, ccd->shell, pool);
 }
 
-static void ccd_measure(Ccd *ccd, Pool *pool) {
-    pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd);
-}
+static void ccd_measure(Ccd *ccd, Pool *pool) { pool_for(pool, (int)ccd->plan->cell_count, 512, measure_range, ccd); }
 
 /// Looks at the pairs of cells that the last round has changed. Returns how many meet.
 static uint32_t meet_changed(Ccd *ccd, Pool *pool) {
@@ -224,14 +222,15 @@ static void close_trajectories(const Ccd *ccd, float h) {
         if (position[3] == 0 || float4_dot(shift, shift) == 0) continue;
         float4_store(dynamics->position[centre], position + shift);
         float4_store(dynamics->velocity[centre],
-                   shifted_velocity(float4_load(dynamics->velocity[centre]), shift, displacement, h));
+                     shifted_velocity(float4_load(dynamics->velocity[centre]), shift, displacement, h));
     }
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Float4 corner = float4_load(dynamics->position[v]), shift = corner - float4_load(plan->want[v]);
         Float4 displacement = corner - float4_load(plan->start[v]);
         shift[3] = displacement[3] = 0;
         if (float4_dot(shift, shift) > 0)
-            float4_store(dynamics->velocity[v], shifted_velocity(float4_load(dynamics->velocity[v]), shift, displacement, h));
+            float4_store(dynamics->velocity[v],
+                         shifted_velocity(float4_load(dynamics->velocity[v]), shift, displacement, h));
     }
 }
 
@@ -243,8 +242,7 @@ static void empty_zones(CollisionPlan *plan) {
 static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
                               DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
-    Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags,
-                   h * (float)(state->step - plan->step + 1), 0};
+    Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
     for (int impacts = 0, zones = 0;;) {
@@ -270,7 +268,7 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
 }
 
 SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                        DynamicsState *dynamics) {
+                      DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
     double start = clock_seconds();
     SingeResult result = close_step(plan, shell, state, pool, h, dynamics);

@@ -10,7 +10,7 @@ typedef struct Ccd {
     const Shell *shell;
     DynamicsState *dynamics;
     const uint8_t *cell_flags;
-    float time; ///< s since the search
+    float time;      ///< s since the search
     uint64_t looked; ///< pairs, in all rounds but the first
 } Ccd;
 

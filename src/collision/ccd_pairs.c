@@ -29,14 +29,16 @@ static void sweep_nodes(const Ccd *ccd, uint32_t c, Float4 origin, Float4 mean, 
 static float sweep_node(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
     const uint8_t *k = collision_triangle[j];
     FeatureSweep sweep = {{p->position[i], q->position[k[0]], q->position[k[1]], q->position[k[2]]},
-                        {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]}, false};
+                          {p->displacement[i], q->displacement[k[0]], q->displacement[k[1]], q->displacement[k[2]]},
+                          false};
     return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
 }
 
 static float sweep_edge(const Ccd *ccd, const Swept *p, int i, const Swept *q, int j) {
     const uint8_t *k = collision_edge[i], *l = collision_edge[j];
     FeatureSweep sweep = {{p->position[k[0]], p->position[k[1]], q->position[l[0]], q->position[l[1]]},
-                        {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]}, true};
+                          {p->displacement[k[0]], p->displacement[k[1]], q->displacement[l[0]], q->displacement[l[1]]},
+                          true};
     return feature_sweep(&sweep, ccd->plan->gap, ccd->plan->noise);
 }
 
@@ -124,13 +126,14 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
     CollisionFourPairs four = collision_four_pairs(plan, number);
     // so far apart that the sweep, which stops a little before the gap, would not stop either
-    Float4Mask apart = (four.distance > 2 * plan->gap) &
-                     (collision_four_differ(&four, COLLISION_DISPLACEMENT) + plan->noise < 0.9f * (four.distance - plan->gap));
+    Float4Mask apart =
+        (four.distance > 2 * plan->gap) &
+        (collision_four_differ(&four, COLLISION_DISPLACEMENT) + plan->noise < 0.9f * (four.distance - plan->gap));
     unsigned free = float4_bits(apart), bridged = four.bridged & ~free;
     if (!bridged) return free;
     Float4Mask sides = collision_four_within(&four, four.a, four.b, FEATURE_CONE_SIDE);
     Float4Mask corners = collision_four_within(&four, four.a, four.bridge, FEATURE_CONE_CORNER) &
-                       collision_four_within(&four, four.b, four.bridge, FEATURE_CONE_CORNER);
+                         collision_four_within(&four, four.b, four.bridge, FEATURE_CONE_CORNER);
     for (unsigned i = 0; i < 4; i++) {
         if (!(bridged >> i & 1) || !ccd_is_alive(ccd, four.bridge[i])) continue;
         bool part = four.a[i] == four.b[i]        ? own_is_free(ccd, four.a[i])

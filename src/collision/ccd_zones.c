@@ -82,7 +82,7 @@ static void impact_move(const Ccd *ccd, const CollisionPair *pair, const float w
 }
 
 static Float4 impact_slip(const Ccd *ccd, const CollisionPair *pair, const float wa[4], const float wb[4],
-                        const float (*x)[4]) {
+                          const float (*x)[4]) {
     const uint32_t *a = ccd->shell->cells[pair->a], *b = ccd->shell->cells[pair->b];
     Float4 sum = {0};
     for (int i = 0; i < 4; i++) sum += wa[i] * float4_load(x[a[i]]) - wb[i] * float4_load(x[b[i]]);

@@ -25,7 +25,7 @@ SingeResult collision_check(const SingeContactDef *def, SingeError *error);
 
 /// Scratch for the shell, of `memory`, which outlives it; `time_step` in s. SINGE_ERROR_MEMORY.
 SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                              CollisionPlan **plan);
+                                  CollisionPlan **plan);
 void collision_plan_free(Memory *memory, CollisionPlan *plan);
 
 /// The plan's data of the last search, as part of a snapshot of cells with these flags. SINGE_ERROR_MEMORY when
@@ -45,18 +45,19 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
 
 /// Closes the step: no cell of the drawn mesh has passed through another since collision_open.
 SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool, float h,
-                        DynamicsState *dynamics);
+                      DynamicsState *dynamics);
 
 /// Counts since the plan was made.
 typedef struct CollisionCounters {
     uint64_t searches;   ///< for nearby pairs
     uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
-    uint64_t repulsions;     ///< pairs of points that a substep had to push apart, summed over substeps
+    uint64_t repulsions; ///< pairs of points that a substep had to push apart, summed over substeps
     uint64_t stops;      ///< pairs of cells stopped by CCD
     uint64_t looks;      ///< pairs of cells checked again, as an iteration had moved one of them
     uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
     uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
-    uint32_t intersecting;    ///< cells that crossed others, or lay in their place, at the start, and have not parted since
+    uint32_t
+        intersecting; ///< cells that crossed others, or lay in their place, at the start, and have not parted since
     uint32_t intersecting_first; ///< the lowest of them
     double seconds;
 } CollisionCounters;

@@ -77,7 +77,7 @@ static void note_search(CollisionPlan *plan, const StateInput *state, const Dyna
 typedef struct Look {
     NarrowCell a, b;
     Float4 speed_a[5], speed_b[5]; ///< m/s, of nodes
-    float due; ///< m, distance from which on nothing can touch in this step
+    float due;                     ///< m, distance from which on nothing can touch in this step
 } Look;
 
 static inline float open_min(float a, float b) { return a < b ? a : b; }
@@ -182,7 +182,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     if (pair->distance > look.due) return;
     // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
     FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
-                    apart < FEATURE_SEPARATED * plan->thickness};
+                        apart < FEATURE_SEPARATED * plan->thickness};
     // measuring a little farther, not every step has to look again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
@@ -213,7 +213,8 @@ static void look_at_four(const Opening *job, uint32_t first, uint32_t count, Blo
     if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
     Float4 due = 1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
     Float4 left = four.distance;
-    if (!job->again) left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
+    if (!job->again)
+        left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
     unsigned near = float4_bits(left <= due) & ~joined;
     for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
     for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
@@ -279,8 +280,8 @@ static SingeResult open_repulsions(Opening *job, Pool *pool) {
 
 static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
                              const DynamicsState *dynamics) {
-    bool search = !plan->searched || plan->restless || state->step < plan->step ||
-                  state->step - plan->step >= plan->steps;
+    bool search =
+        !plan->searched || plan->restless || state->step < plan->step || state->step - plan->step >= plan->steps;
     Opening job = {plan, shell, dynamics, state->ablate->cell_flags, search, false};
     if (search) {
         note_search(plan, state, dynamics);
@@ -296,7 +297,7 @@ static SingeResult open_step(CollisionPlan *plan, const Shell *shell, const Stat
 }
 
 SingeResult collision_open(CollisionPlan *plan, const Shell *shell, const StateInput *state, Pool *pool,
-                       const DynamicsState *dynamics) {
+                           const DynamicsState *dynamics) {
     double start = clock_seconds();
     SingeResult result = open_step(plan, shell, state, pool, dynamics);
     if (result) collision_plan_forget(plan);
@@ -320,7 +321,8 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
             continue;
         narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);
-        if (pair->bridge != SHELL_NONE && feature_is_within(feature_normals(p.node), feature_normals(q.node), FEATURE_CONE))
+        if (pair->bridge != SHELL_NONE &&
+            feature_is_within(feature_normals(p.node), feature_normals(q.node), FEATURE_CONE))
             continue;
         float nearest;
         if (narrow_slabs_distance(&p, &q) > looks || !narrow_features(shell, pair, &p, &q, &far, found, &nearest))

@@ -21,8 +21,9 @@ static uint32_t capacity_max(uint32_t capacity) {
 
 CollisionSizes collision_sizes(const Shell *shell) {
     uint64_t cells = shell->cell_count;
-    CollisionSizes sizes = {.entries = capped(COLLISION_ENTRIES * cells + 64), .pairs = capped(COLLISION_PAIRS * cells + 64),
-                        .repulsions = capped(COLLISION_REPULSIONS * cells + 64)};
+    CollisionSizes sizes = {.entries = capped(COLLISION_ENTRIES * cells + 64),
+                            .pairs = capped(COLLISION_PAIRS * cells + 64),
+                            .repulsions = capped(COLLISION_REPULSIONS * cells + 64)};
     sizes.pair_max = capacity_max(sizes.pairs), sizes.repulsion_max = capacity_max(sizes.repulsions);
     sizes.pair_budget = sizes.pairs;
     return sizes;
@@ -56,19 +57,42 @@ enum { ARRAYS = 34 };
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
     size_t cells = plan->cell_count, vertices = plan->vertex_count;
-#define ARRAY(name, length) {&plan->name, (length), sizeof *plan->name}
+#define ARRAY(name, length) \
+    { &plan->name, (length), sizeof *plan->name }
     const Array all[ARRAYS] = {
-        ARRAY(thin, cells), ARRAY(position, vertices), ARRAY(speed, vertices), ARRAY(alive, cells), ARRAY(intersecting, cells),
-        ARRAY(boxes, cells), ARRAY(slabs, cells), ARRAY(rest, cells), ARRAY(owned, cells), ARRAY(owner, vertices),
-        ARRAY(entries, plan->sizes.entries), ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
-        ARRAY(pairs, plan->pair_capacity), ARRAY(repulsions, plan->repulsion_capacity), ARRAY(start, vertices),
-        ARRAY(want, vertices), ARRAY(end, vertices), ARRAY(goal, vertices), ARRAY(motion, cells),
-        ARRAY(zone, vertices), ARRAY(share, vertices), ARRAY(drift, vertices),
-        ARRAY(stopped, vertices), ARRAY(changed, cells), ARRAY(changed_list, cells),
-        ARRAY(active, plan->pair_capacity), ARRAY(around_first, cells + 2),
-        ARRAY(around, 2 * (size_t)plan->pair_capacity), ARRAY(is_outside, cells), ARRAY(outside, cells),
+        ARRAY(thin, cells),
+        ARRAY(position, vertices),
+        ARRAY(speed, vertices),
+        ARRAY(alive, cells),
+        ARRAY(intersecting, cells),
+        ARRAY(boxes, cells),
+        ARRAY(slabs, cells),
+        ARRAY(rest, cells),
+        ARRAY(owned, cells),
+        ARRAY(owner, vertices),
+        ARRAY(entries, plan->sizes.entries),
+        ARRAY(bucket_first, (size_t)plan->bucket_count + 2),
+        ARRAY(pairs, plan->pair_capacity),
+        ARRAY(repulsions, plan->repulsion_capacity),
+        ARRAY(start, vertices),
+        ARRAY(want, vertices),
+        ARRAY(end, vertices),
+        ARRAY(goal, vertices),
+        ARRAY(motion, cells),
+        ARRAY(zone, vertices),
+        ARRAY(share, vertices),
+        ARRAY(drift, vertices),
+        ARRAY(stopped, vertices),
+        ARRAY(changed, cells),
+        ARRAY(changed_list, cells),
+        ARRAY(active, plan->pair_capacity),
+        ARRAY(around_first, cells + 2),
+        ARRAY(around, 2 * (size_t)plan->pair_capacity),
+        ARRAY(is_outside, cells),
+        ARRAY(outside, cells),
         ARRAY(outside_boxes, cells),
-        ARRAY(outside_chain, plan->bucket_count), ARRAY(outside_entries, plan->sizes.entries),
+        ARRAY(outside_chain, plan->bucket_count),
+        ARRAY(outside_entries, plan->sizes.entries),
         ARRAY(partial, (size_t)pool_blocks((int)plan->pair_capacity)),
     };
 #undef ARRAY
@@ -84,7 +108,8 @@ static bool collision_plan_allocate(Memory *memory, CollisionPlan *plan) {
         memcpy(list[k].at, &block, sizeof block);
     }
     uint32_t max = plan->pair_capacity, blocks = collision_look_blocks(max);
-    uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1, outside_blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
+    uint32_t buckets = plan->bucket_count / COLLISION_BUCKETS + 1,
+             outside_blocks = plan->cell_count / COLLISION_OUTSIDE + 1;
     if (buckets < outside_blocks) buckets = outside_blocks;
     return block_list_create(memory, &plan->found_pairs, sizeof(CollisionPair), max, buckets) &&
            block_list_create(memory, &plan->found, sizeof(FoundPoints), plan->repulsion_capacity, blocks);
@@ -121,13 +146,13 @@ static void measure_cells(CollisionPlan *plan, const Shell *shell) {
 }
 
 SingeResult collision_plan_create(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                              CollisionPlan **out) {
+                                  CollisionPlan **out) {
     CollisionSizes sizes = collision_sizes(shell);
     return collision_plan_create_sized(memory, shell, def, time_step, &sizes, out);
 }
 
 SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                                    const CollisionSizes *sizes, CollisionPlan **out) {
+                                        const CollisionSizes *sizes, CollisionPlan **out) {
     CollisionPlan *plan;
     *out = NULL;
     if (!NEW(memory, plan, 1)) return SINGE_ERROR_MEMORY;

@@ -13,7 +13,13 @@ enum { COLLISION_STEPS = 10 };
 enum { COLLISION_BUCKETS = 128, COLLISION_BLOCK = 256, COLLISION_OUTSIDE = 16 };
 /// Room for a cell, of each list. Lists of pairs and repulsions grow where that is too little, by COLLISION_GROWTH, or
 /// to COLLISION_LIST_MIN items where that is more.
-enum { COLLISION_ENTRIES = 12, COLLISION_PAIRS = 40, COLLISION_REPULSIONS = 24, COLLISION_GROWTH = 8, COLLISION_LIST_MIN = 1 << 19 };
+enum {
+    COLLISION_ENTRIES = 12,
+    COLLISION_PAIRS = 40,
+    COLLISION_REPULSIONS = 24,
+    COLLISION_GROWTH = 8,
+    COLLISION_LIST_MIN = 1 << 19
+};
 _Static_assert(COLLISION_ENTRIES >= 8, "a box overlaps eight cubes of the grid at least");
 _Static_assert(COLLISION_OUTSIDE <= COLLISION_BLOCK, "a block of cells outside is a block of pairs at most");
 
@@ -30,7 +36,7 @@ typedef struct CollisionBox {
 /// A cell's corners at the search and the slab between two planes that holds them, about the first corner.
 typedef struct CollisionSlab {
     Float4 x, y, z;
-    Float4 normal;     ///< of length 1, or 0
+    Float4 normal;   ///< of length 1, or 0
     float low, high; ///< m along it
 } CollisionSlab;
 
@@ -81,7 +87,7 @@ typedef struct OutsideBox {
 /// An entry of the grid of such regions.
 typedef struct OutsideEntry {
     uint32_t outside, key; ///< key: as a CollisionEntry's
-    uint32_t next;       ///< of the same bucket, or SHELL_NONE
+    uint32_t next;         ///< of the same bucket, or SHELL_NONE
 } OutsideEntry;
 
 /// How a cell moves: mean of its corners' displacements since plan->start in m, and of their velocities as the step
@@ -90,8 +96,8 @@ enum { COLLISION_DISPLACEMENT, COLLISION_VELOCITY, COLLISION_NORMAL, COLLISION_M
 
 /// Items of the lists, to begin with and at most.
 typedef struct CollisionSizes {
-    uint32_t entries;     ///< at least 8 a cell
-    uint32_t pairs, pair_max;   ///< at least 1 a cell
+    uint32_t entries;         ///< at least 8 a cell
+    uint32_t pairs, pair_max; ///< at least 1 a cell
     uint32_t repulsions, repulsion_max;
     uint32_t pair_budget; ///< that a search is content with: where there are more it looks less far
 } CollisionSizes;
@@ -101,78 +107,78 @@ CollisionSizes collision_sizes(const Shell *shell);
 
 /// collision_plan_create with other sizes than those.
 SingeResult collision_plan_create_sized(Memory *memory, const Shell *shell, const SingeContactDef *def, float time_step,
-                                    const CollisionSizes *sizes, CollisionPlan **plan);
+                                        const CollisionSizes *sizes, CollisionPlan **plan);
 
 struct CollisionPlan {
     Memory *memory;
     SingeContactDef def;
     CollisionSizes sizes;
     uint32_t cell_count, vertex_count;
-    float time_step;  ///< s
-    float cell_size;  ///< m, of the smallest
-    float thickness;  ///< m, of contact; at most 2/5 of a sheet's typical cell
-    float *thin;      ///< [cells] m, the same; at most 2/5 of this cell's shortest side
+    float time_step; ///< s
+    float cell_size; ///< m, of the smallest
+    float thickness; ///< m, of contact; at most 2/5 of a sheet's typical cell
+    float *thin;     ///< [cells] m, the same; at most 2/5 of this cell's shortest side
     float slack_max; ///< m, that cells may move otherwise than foreseen before the search is repeated
-    float gap;        ///< m, that displacements keep free in front of what they would meet
-    float noise;      ///< m, that rounding moves positions by
+    float gap;       ///< m, that displacements keep free in front of what they would meet
+    float noise;     ///< m, that rounding moves positions by
 
     // the last search: part of a snapshot
-    uint32_t searched;       ///< 0: never
-    uint32_t restless;       ///< many cells have left their boxes since: search as the next step opens
-    uint64_t step;           ///< it was for the displacement from this step's start
-    float (*position)[4];       ///< [vertices] m
-    float (*speed)[4];       ///< [vertices] m/s
-    uint8_t *alive;          ///< [cells]
+    uint32_t searched;    ///< 0: never
+    uint32_t restless;    ///< many cells have left their boxes since: search as the next step opens
+    uint64_t step;        ///< it was for the displacement from this step's start
+    float (*position)[4]; ///< [vertices] m
+    float (*speed)[4];    ///< [vertices] m/s
+    uint8_t *alive;       ///< [cells]
     /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number
     /// of their group, from 1 on; of others 0
     uint8_t *intersecting;
 
     // what was found
-    uint32_t steps;          ///< that the search is for
-    float slack, reach;      ///< m; reach is thickness + slack
-    float edge;              ///< m, of the grid's cubes
+    uint32_t steps;     ///< that the search is for
+    float slack, reach; ///< m; reach is thickness + slack
+    float edge;         ///< m, of the grid's cubes
     uint32_t entry_count, bucket_count, repulsion_count;
-    uint32_t listed_count;   ///< pairs of the search
-    uint32_t pair_count;     ///< and those of cells that have left their boxes, in this step
+    uint32_t listed_count; ///< pairs of the search
+    uint32_t pair_count;   ///< and those of cells that have left their boxes, in this step
     uint32_t pair_capacity, repulsion_capacity;
-    CollisionBox *boxes;         ///< [cells]
-    CollisionSlab *slabs;        ///< [cells]
-    Float4 *rest;              ///< [cells] centroid at rest, and how far a corner is from it
+    CollisionBox *boxes;     ///< [cells]
+    CollisionSlab *slabs;    ///< [cells]
+    Float4 *rest;            ///< [cells] centroid at rest, and how far a corner is from it
     uint8_t *owned;          ///< [cells] bits 0-3 corners, 4-7 sides that count as this cell's
     uint32_t *owner;         ///< [vertices]
-    CollisionEntry *entries;     ///< [sizes.entries] by bucket
+    CollisionEntry *entries; ///< [sizes.entries] by bucket
     uint32_t *bucket_first;  ///< [bucket_count + 2]
-    CollisionPair *pairs;        ///< [pair_capacity]
-    Repulsion *repulsions;       ///< [repulsion_count]
+    CollisionPair *pairs;    ///< [pair_capacity]
+    Repulsion *repulsions;   ///< [repulsion_count]
     BlockList found_pairs;   ///< CollisionPair, as they are found
     BlockList found;         ///< FoundPoints
 
     // the step
-    float (*start)[4];       ///< [vertices] m
-    float (*end)[4];         ///< [vertices] m, where CCD has left them, if it has been here in this step:
+    float (*start)[4]; ///< [vertices] m
+    float (*end)[4];   ///< [vertices] m, where CCD has left them, if it has been here in this step:
     bool closed;
-    float (*want)[4];        ///< [vertices] m, where the step has brought them
-    float (*goal)[4];        ///< [vertices] m, of those in zones: where they were going
+    float (*want)[4];                    ///< [vertices] m, where the step has brought them
+    float (*goal)[4];                    ///< [vertices] m, of those in zones: where they were going
     Float4 (*motion)[COLLISION_MOTIONS]; ///< [cells]
-    uint32_t *zone;          ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
-    float *share;            ///< [vertices] at a root: of their displacements within the zone, what they go
-    Float4 *drift;             ///< [vertices] at a root: mean displacement of the zone; fourth: its mass
-    uint32_t *stopped;       ///< [stopped_count] vertices in zones
+    uint32_t *zone;                      ///< [vertices] of those that meet: parent in a disjoint set, or SHELL_NONE
+    float *share;                        ///< [vertices] at a root: of their displacements within the zone, what they go
+    Float4 *drift;                       ///< [vertices] at a root: mean displacement of the zone; fourth: its mass
+    uint32_t *stopped;                   ///< [stopped_count] vertices in zones
     uint32_t stopped_count;
-    uint8_t *changed;        ///< [cells] that the last round has moved
-    uint32_t *changed_list;  ///< [changed_count] of them
+    uint8_t *changed;       ///< [cells] that the last round has moved
+    uint32_t *changed_list; ///< [changed_count] of them
     uint32_t changed_count;
-    uint32_t *active;        ///< [hit_count] pairs that meet
+    uint32_t *active; ///< [hit_count] pairs that meet
     uint32_t hit_count;
-    uint32_t *around_first;  ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
-    uint32_t *around;        ///< [2 pair_capacity]
-    uint64_t around_search;  ///< which search these are of
-    uint8_t *is_outside;        ///< [cells] that have left their boxes
-    uint32_t *outside;         ///< [cells] a list of them
-    OutsideBox *outside_boxes; ///< [cells] theirs
-    uint32_t *outside_chain;   ///< [bucket_count] first entries
+    uint32_t *around_first; ///< [cells + 2] a cell's pairs are around[around_first[c]] to around[around_first[c + 1]]
+    uint32_t *around;       ///< [2 pair_capacity]
+    uint64_t around_search; ///< which search these are of
+    uint8_t *is_outside;    ///< [cells] that have left their boxes
+    uint32_t *outside;      ///< [cells] a list of them
+    OutsideBox *outside_boxes;     ///< [cells] theirs
+    uint32_t *outside_chain;       ///< [bucket_count] first entries
     OutsideEntry *outside_entries; ///< [sizes.entries]
-    double *partial;         ///< [pool_blocks(pair_capacity)]
+    double *partial;               ///< [pool_blocks(pair_capacity)]
     CollisionCounters counters;
 };
 
@@ -228,8 +234,8 @@ static inline Float4 collision_displacement(const CollisionPlan *plan, const uin
 typedef struct CollisionFourPairs {
     const Float4 (*motion)[COLLISION_MOTIONS];
     uint32_t a[4], b[4], bridge[4]; ///< where there is none, bridge is a
-    unsigned bridged; ///< bits
-    Float4 distance;    ///< m
+    unsigned bridged;               ///< bits
+    Float4 distance;                ///< m
 } CollisionFourPairs;
 
 static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan, const uint32_t number[4]) {
@@ -248,7 +254,7 @@ static inline CollisionFourPairs collision_four_pairs(const CollisionPlan *plan,
 
 /// Difference of a motion of cells a and b; *deviations: the sums of the fourths.
 static inline FourVectors collision_four_off(const CollisionFourPairs *four, const uint32_t a[4], const uint32_t b[4],
-                                         int motion, Float4 *deviations) {
+                                             int motion, Float4 *deviations) {
     const Float4 sign = {0, 0, 0, -0.0f};
     Float4 off[4];
     for (int i = 0; i < 4; i++)
@@ -267,7 +273,7 @@ static inline Float4 collision_four_differ(const CollisionFourPairs *four, int m
 
 /// Whether all normals of two cells in shape lie within a cone.
 static inline Float4Mask collision_four_within(const CollisionFourPairs *four, const uint32_t a[4], const uint32_t b[4],
-                                         float cone) {
+                                               float cone) {
     Float4 deviations;
     FourVectors off = collision_four_off(four, a, b, COLLISION_NORMAL, &deviations);
     Float4 left = cone - deviations;

@@ -10,9 +10,7 @@ static double feature_dot(Float4 a, Float4 b) {
 
 static Float4 mix3(Float4 a, Float4 b, Float4 c, const float w[3]) { return w[0] * a + w[1] * b + w[2] * c; }
 
-static void set_weights(float w[3], double b, double c) {
-    w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c;
-}
+static void set_weights(float w[3], double b, double c) { w[0] = (float)(1 - b - c), w[1] = (float)b, w[2] = (float)c; }
 
 /// Weights of the triangle's point nearest to p.
 static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3]) {
@@ -26,8 +24,8 @@ static void triangle_weights(Float4 p, Float4 a, Float4 b, Float4 c, float w[3])
     else if (d6 >= 0 && d5 <= d6) set_weights(w, 0, 1);
     else if (vc <= 0 && d1 >= 0 && d3 <= 0) set_weights(w, d1 / (d1 - d3), 0);
     else if (vb <= 0 && d2 >= 0 && d6 <= 0) set_weights(w, 0, d2 / (d2 - d6));
-    else if (va <= 0 && d4 >= d3 && d5 >= d6) set_weights(w, (d5 - d6) / ((d4 - d3) + (d5 - d6)),
-                                                          (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    else if (va <= 0 && d4 >= d3 && d5 >= d6)
+        set_weights(w, (d5 - d6) / ((d4 - d3) + (d5 - d6)), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
     else set_weights(w, vb / (va + vb + vc), vc / (va + vb + vc));
 }
 
@@ -101,7 +99,8 @@ static int shared_corners(const Float4 a[4], unsigned shared, Float4 *first, Flo
     return count;
 }
 
-bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin, Float4 *normal) {
+bool feature_is_separated(const Float4 a[4], const Float4 b[4], const unsigned shared[2], float margin,
+                          Float4 *normal) {
     Float4 first = {0}, last = {0};
     int count = shared_corners(a, shared[0], &first, &last);
     if (count < 1 || count > 2) return false;
@@ -116,7 +115,8 @@ static double feature_clamp01(double a) { return a > 0 ? (a < 1 ? a : 1) : 0; }
 
 Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, float *t) {
     Float4 u = b - a, v = d - c, r = a - c;
-    double uu = feature_dot(u, u), vv = feature_dot(v, v), vr = feature_dot(v, r), ur = feature_dot(u, r), uv = feature_dot(u, v);
+    double uu = feature_dot(u, u), vv = feature_dot(v, v), vr = feature_dot(v, r), ur = feature_dot(u, r),
+           uv = feature_dot(u, v);
     double determinant = uu * vv - uv * uv;
     double along = determinant > 1e-13 * uu * vv ? feature_clamp01((uv * vr - ur * vv) / determinant) : 0;
     double other = vv > 0 ? (uv * along + vr) / vv : 0;
@@ -142,9 +142,11 @@ static float sweep_distance(const FeatureSweep *sweep, float time) {
 
 /// The fastest that the two can come nearer in: their longest displacements, without what is common to all.
 static float sweep_approach(const FeatureSweep *sweep) {
-    Float4 mean = 0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
+    Float4 mean =
+        0.25f * ((sweep->displacement[0] + sweep->displacement[1]) + (sweep->displacement[2] + sweep->displacement[3]));
     float length[4];
-    for (int i = 0; i < 4; i++) length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
+    for (int i = 0; i < 4; i++)
+        length[i] = sqrtf(float4_dot(sweep->displacement[i] - mean, sweep->displacement[i] - mean));
     float late = fmaxf(length[2], length[3]);
     return sweep->edges ? fmaxf(length[0], length[1]) + late : length[0] + fmaxf(length[1], late);
 }
@@ -156,7 +158,8 @@ static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
     int own = sweep->edges ? 2 : 1;
     float longest = 2, height[4], speed[4];
     normal = normal / sqrtf(float4_dot(normal, normal));
-    for (int i = 0; i < 4; i++) height[i] = float4_dot(x[i] - x[0], normal), speed[i] = float4_dot(sweep->displacement[i], normal);
+    for (int i = 0; i < 4; i++)
+        height[i] = float4_dot(x[i] - x[0], normal), speed[i] = float4_dot(sweep->displacement[i], normal);
     for (int i = 0; i < own; i++)
         for (int j = own; j < 4; j++) {
             float left = height[i] - height[j] - keep, nearing = speed[j] - speed[i];

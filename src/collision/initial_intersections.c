@@ -68,7 +68,8 @@ void initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
         if (!first && !initial_is_crossing(plan, pair)) continue;
         const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
         if (!quads_meet(p->low, p->high, q->low, q->high)) continue;
-        if (cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) || cells_coincide(plan, shell, pair))
+        if (cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) ||
+            cells_coincide(plan, shell, pair))
             group_join(joined, pair->a, pair->b);
     }
     number_groups(plan, joined, first);

@@ -8,7 +8,9 @@ typedef struct FourVectors {
     Float4 x, y, z;
 } FourVectors;
 
-static inline FourVectors four_all(Float4 a) { return (FourVectors){float4_all(a[0]), float4_all(a[1]), float4_all(a[2])}; }
+static inline FourVectors four_all(Float4 a) {
+    return (FourVectors){float4_all(a[0]), float4_all(a[1]), float4_all(a[2])};
+}
 static inline FourVectors four_plus(FourVectors a, FourVectors b) {
     return (FourVectors){a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -69,7 +71,8 @@ typedef struct NarrowBoxes {
 } NarrowBoxes;
 
 /// Of a cell whose corners and centroid are somewhere from `low` to `high`.
-static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high, NarrowBoxes *out) {
+static inline void narrow_boxes(FourVectors low, FourVectors high, Float4 centroid_low, Float4 centroid_high,
+                                NarrowBoxes *out) {
     FourVectors min = four_all(centroid_low), max = four_all(centroid_high);
     out->sides = (FourBoxes){four_min(low, four_turned(low)), four_max(high, four_turned(high))};
     out->spokes = (FourBoxes){four_min(low, min), four_max(high, max)};

@@ -69,7 +69,7 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
 // ---- cells
 
 void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
-                      NarrowCell *out) {
+                     NarrowCell *out) {
     SINGE_ASSERT(cell < shell->cell_count);
     collision_nodes(shell->cells[cell], x, origin, out->node);
     out->corner = four_of(out->node);
@@ -125,24 +125,29 @@ float narrow_error_bound(const NarrowCell *cell) {
 typedef struct Search {
     NearFeatures *near;
     int count;
-    float far;            ///< m, that is looked
-    Float4 square;          ///< smallest so far of each of the four
-    Float4 listed, beside;  ///< squares of what a FeatureRange tells; beside is -1 for edges
+    float far;             ///< m, that is looked
+    Float4 square;         ///< smallest so far of each of the four
+    Float4 listed, beside; ///< squares of what a FeatureRange tells; beside is -1 for edges
 } Search;
 
 /// Notes those of four that are near enough; `meet` are those that count.
-static void narrow_note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second, float sign) {
+static void narrow_note(Search *search, const FourNear *four, unsigned meet, int kind, int first, int second,
+                        float sign) {
     const Float4Mask bits = {1, 2, 4, 8};
     Float4Mask counts = (bits & (int32_t)meet) != 0;
     search->square = float4_select(counts, float4_min(four->square, search->square), search->square);
     meet &= float4_bits((four->square <= search->listed) &
-                      (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->beside))));
+                        (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->beside))));
     for (; meet; meet &= meet - 1) {
         int k = __builtin_ctz(meet);
-        search->near[search->count++] = (NearFeatures){
-            .apart = sign * (Float4){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
-            .distance = sqrtf(four->square[k]), .u = four->u[k], .v = four->v[k], .kind = (uint8_t)kind,
-            .first = (uint8_t)first, .second = (uint8_t)(second + k)};
+        search->near[search->count++] =
+            (NearFeatures){.apart = sign * (Float4){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
+                           .distance = sqrtf(four->square[k]),
+                           .u = four->u[k],
+                           .v = four->v[k],
+                           .kind = (uint8_t)kind,
+                           .first = (uint8_t)first,
+                           .second = (uint8_t)(second + k)};
     }
 }
 
@@ -180,14 +185,17 @@ static void find_edges(Search *search, const NarrowCell *p, const NarrowCell *q,
     }
 }
 
-int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b, const FeatureRange *far,
-                   NearFeatures *near, float *nearest) {
+int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b,
+                    const FeatureRange *far, NearFeatures *near, float *nearest) {
     const uint32_t *p = shell->cells[pair->a], *q = shell->cells[pair->b];
     unsigned of_b[4], of_a[4];
     collision_same(p, q, of_b);
     collision_same(q, p, of_a);
-    Search search = {.near = near, .far = far->measured, .square = float4_all(far->measured * far->measured),
-                     .listed = float4_all(far->listed * far->listed), .beside = float4_all(far->beside * far->beside)};
+    Search search = {.near = near,
+                     .far = far->measured,
+                     .square = float4_all(far->measured * far->measured),
+                     .listed = float4_all(far->listed * far->listed),
+                     .beside = float4_all(far->beside * far->beside)};
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
     find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);

@@ -6,18 +6,18 @@
 
 /// A cell's nodes about an origin, and all that follows from them.
 typedef struct NarrowCell {
-    Float4 node[5];        ///< fourth numbers are 0
-    FourVectors corner;  ///< 0 to 3
-    FourVectors turned;  ///< 1, 2, 3, 0
-    uint32_t owned;      ///< bit i: node i is this cell's, the centroid too; bit 8 + i: edge i
+    Float4 node[5];     ///< fourth numbers are 0
+    FourVectors corner; ///< 0 to 3
+    FourVectors turned; ///< 1, 2, 3, 0
+    uint32_t owned;     ///< bit i: node i is this cell's, the centroid too; bit 8 + i: edge i
     NarrowBoxes boxes;
 } NarrowCell;
 
 /// Two features and their nearest points.
 typedef struct NearFeatures {
-    Float4 apart;         ///< m, from the point of b to that of a
-    float distance;     ///< m
-    float u, v;         ///< weights of the triangle's second and third node, or shares of the edges of a and b
+    Float4 apart;                ///< m, from the point of b to that of a
+    float distance;              ///< m
+    float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges of a and b
     uint8_t kind, first, second; ///< as in a CollisionPair
 } NearFeatures;
 
@@ -25,7 +25,7 @@ typedef struct NearFeatures {
 enum { NARROW_MAX = 104 };
 
 void narrow_cell_set(const CollisionPlan *plan, const Shell *shell, uint32_t cell, const float (*x)[4], Float4 origin,
-                      NarrowCell *out);
+                     NarrowCell *out);
 
 /// Lower bound of the distance of two cells, by the boxes around them.
 float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b);
@@ -47,7 +47,7 @@ typedef struct FeatureRange {
 
 /// Lists nodes and triangles, and edges, that share no node and are near; each is counted by the cell that owns it.
 /// *nearest is the smallest distance of all, or far->measured. Returns how many are listed, NARROW_MAX at most.
-int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b, const FeatureRange *far,
-                   NearFeatures *near, float *nearest);
+int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a, NarrowCell *b,
+                    const FeatureRange *far, NearFeatures *near, float *nearest);
 
 #endif

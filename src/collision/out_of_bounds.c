@@ -39,7 +39,8 @@ static void add_pair(const OutsideSearch *job, uint32_t a, uint32_t b, BlockWrit
     }
     if (a == b || collision_is_listed(job->plan, a, b, &distance)) return;
     CollisionPair *pair = block_list_add(writer);
-    if (pair) *pair = (CollisionPair){.a = a, .b = b, .hit = 2, .bridge = collision_bridge(job->plan, job->shell, a, b)};
+    if (pair)
+        *pair = (CollisionPair){.a = a, .b = b, .hit = 2, .bridge = collision_bridge(job->plan, job->shell, a, b)};
 }
 
 static void against_box(const OutsideSearch *job, uint32_t a, const OutsideBox *box, uint32_t b, BlockWriter *writer) {
@@ -61,7 +62,8 @@ static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox
     for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
-                uint32_t key = collision_key(at), bucket = collision_bucket(plan, key), begun = float4_bits(at == first) & 7;
+                uint32_t key = collision_key(at), bucket = collision_bucket(plan, key),
+                         begun = float4_bits(at == first) & 7;
                 for (uint32_t k = plan->bucket_first[bucket]; k < plan->bucket_first[bucket + 1]; k++) {
                     const CollisionEntry *entry = &plan->entries[k];
                     if ((entry->key & COLLISION_KEY) != key || (begun | entry->key >> 29) != 7) continue;
@@ -112,7 +114,8 @@ static void against_outside(const OutsideSearch *job, uint32_t k, BlockWriter *w
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
                 uint32_t key = collision_key(at), begun = float4_bits(at == first) & 7, e;
-                for (e = plan->outside_chain[collision_bucket(plan, key)]; e != SHELL_NONE; e = plan->outside_entries[e].next) {
+                for (e = plan->outside_chain[collision_bucket(plan, key)]; e != SHELL_NONE;
+                     e = plan->outside_entries[e].next) {
                     const OutsideEntry *entry = &plan->outside_entries[e];
                     if (entry->outside > k && (entry->key & COLLISION_KEY) == key && (begun | entry->key >> 29) == 7)
                         add_outside_pair(job, k, entry->outside, writer);

@@ -14,8 +14,8 @@
 #include "collision/collision_plan.h"
 
 /// Takes back slip across the normal, at most `most`.
-static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max, float weight,
-                DynamicsState *dynamics) {
+static void repulsion_friction(const Repulsion *repulsion, const float (*predicted)[4], float h, float max,
+                               float weight, DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
     float(*x)[4] = dynamics->position;
     Float4 slip = {0};
@@ -42,17 +42,20 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
         Float4 apart = {0};
-        for (uint32_t i = 0; i < repulsion->count; i++) apart += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
+        for (uint32_t i = 0; i < repulsion->count; i++)
+            apart += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
         float height = float4_dot(apart, repulsion->normal) - repulsion->target, weight = 0;
         if (height >= 0) continue;
-        for (uint32_t i = 0; i < repulsion->count; i++) weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
+        for (uint32_t i = 0; i < repulsion->count; i++)
+            weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
         if (weight <= 0) continue;
         Float4 away = -height / weight * repulsion->normal;
         for (uint32_t i = 0; i < repulsion->count; i++) {
             Float4 position = float4_load(x[repulsion->node[i]]);
             float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
         }
-        if (plan->def.friction > 0) repulsion_friction(repulsion, predicted, h, -plan->def.friction * height, weight, dynamics);
+        if (plan->def.friction > 0)
+            repulsion_friction(repulsion, predicted, h, -plan->def.friction * height, weight, dynamics);
         plan->counters.repulsions++;
     }
     plan->counters.seconds += clock_seconds() - start;

@@ -28,12 +28,11 @@ static const float ATTACH_HASTE = 0.003f;
 
 bool attach_create(Memory *memory, const Shell *shell, Attachments *attachments) {
     *attachments = (Attachments){0};
-    bool done = NEW(memory, attachments->source, shell->sheet_count) &&
-                NEW(memory, attachments->spread, shell->sheet_count) &&
-                NEW(memory, attachments->length, shell->vertex_count) &&
-                NEW(memory, attachments->goal, shell->vertex_count) &&
-                NEW(memory, attachments->distance, shell->vertex_count) &&
-                geodesic_create(memory, shell->vertex_count, &attachments->search);
+    bool done =
+        NEW(memory, attachments->source, shell->sheet_count) && NEW(memory, attachments->spread, shell->sheet_count) &&
+        NEW(memory, attachments->length, shell->vertex_count) && NEW(memory, attachments->goal, shell->vertex_count) &&
+        NEW(memory, attachments->distance, shell->vertex_count) &&
+        geodesic_create(memory, shell->vertex_count, &attachments->search);
     for (uint32_t s = 0; done && s < shell->sheet_count; s++)
         for (int k = 0; k < ATTACH_SOURCES; k++) attachments->source[s][k] = SHELL_NONE;
     return done;
@@ -62,13 +61,15 @@ static uint32_t attach_farthest(const Shell *shell, const StateInput *state, con
         if (!attach_may_hold(state, v)) continue;
         float nearest = INFINITY;
         for (int k = 0; k < count; k++) {
-            Float3 displacement = float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
+            Float3 displacement =
+                float3_sub(float3_load(shell->rest_position[v]), float3_load(shell->rest_position[source[k]]));
             nearest = fminf(nearest, float3_dot(displacement, displacement));
         }
         if (nearest > max) farthest = v, max = nearest;
     }
     if (count < 2 || farthest == SHELL_NONE) return farthest;
-    Float3 first = float3_sub(float3_load(shell->rest_position[source[1]]), float3_load(shell->rest_position[source[0]]));
+    Float3 first =
+        float3_sub(float3_load(shell->rest_position[source[1]]), float3_load(shell->rest_position[source[0]]));
     return max < 0.01f * float3_dot(first, first) ? SHELL_NONE : farthest;
 }
 
@@ -138,7 +139,8 @@ static void attach_follow(Attachments *attachments, const Shell *shell, const Dy
                 Float3 displacement = float3_sub(float3_load(dynamics->position[v]), position);
                 float *length = &attachments->length[v][k];
                 if (dynamics->position[v][3] == 0) continue;
-                if (float3_dot(displacement, displacement) > *length * *length) *length = float3_length(displacement), attachments->settled = false;
+                if (float3_dot(displacement, displacement) > *length * *length)
+                    *length = float3_length(displacement), attachments->settled = false;
             }
         }
     }

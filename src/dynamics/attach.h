@@ -14,10 +14,10 @@ _Static_assert(ATTACH_PERIOD % ATTACH_TORN_PERIOD == 0, "a measurement of a fire
 
 /// A sheet's sources in a substep.
 typedef struct AttachSpread {
-    int count;  ///< 0 also where a tight sheet may tear
-    float max; ///< of the ratios
-    bool tight; ///< two are farther apart than the sheet between them
-    float position[ATTACH_SOURCES][3]; ///< m
+    int count;                                   ///< 0 also where a tight sheet may tear
+    float max;                                   ///< of the ratios
+    bool tight;                                  ///< two are farther apart than the sheet between them
+    float position[ATTACH_SOURCES][3];           ///< m
     float apart[ATTACH_SOURCES][ATTACH_SOURCES]; ///< m, of source p from source q < p
     float ratio[ATTACH_SOURCES][ATTACH_SOURCES]; ///< of that and their distance along the sheet
 } AttachSpread;

@@ -74,7 +74,7 @@ static void centroid_cells(void *task, int begin, int end) {
 }
 
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
-                     Pool *pool, float h, DynamicsState *dynamics) {
+                       Pool *pool, float h, DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
     bool any = false;
     for (uint32_t c = 0; c < collider_count; c++) any |= plan->colliders[c].collider->def.kind != SINGE_COLLIDER_PLANE;

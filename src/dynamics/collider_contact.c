@@ -34,8 +34,8 @@ static float contact_motion(const Pose *before, const Pose *after, float size) {
 }
 
 MovingCollider contact_collider(const Collider *collider, double before, double after) {
-    MovingCollider moving = {.collider = collider, .before = path_pose(&collider->path, before),
-                             .after = path_pose(&collider->path, after)};
+    MovingCollider moving = {
+        .collider = collider, .before = path_pose(&collider->path, before), .after = path_pose(&collider->path, after)};
     Float3 low, high;
     if (collider->def.kind == SINGE_COLLIDER_DEFORMING) {
         deform_between(&collider->deform, before, after);
@@ -74,7 +74,8 @@ static bool contact_enters(const Collider *collider, Float3 from, Float3 to, Ent
         Entry next = {.position = float3_mad(from, displacement, done / length)};
         next.distance = collider_distance(collider, next.position, length - done, &next.normal);
         if (next.distance >= length - done) return false; // the rest of the displacement is free
-        bool began = done > 0, turned = began && entry->distance < min && float3_dot(entry->normal, next.normal) < -0.5f;
+        bool began = done > 0,
+             turned = began && entry->distance < min && float3_dot(entry->normal, next.normal) < -0.5f;
         if (next.distance < 0 || turned) return began; // *entry is just outside. Inside from the start: depth tells
         *entry = next;
         if (next.distance <= skin && float3_dot(displacement, next.normal) < 0) return true;
@@ -89,7 +90,8 @@ static float contact_out(const Collider *collider, float offset, Float3 from, Fl
     float distance = collider_distance(collider, *to, offset + displacement, normal);
     Entry entry = {0};
     // behind a plane, however far, the displacement out is up
-    if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE && contact_enters(collider, from, *to, &entry) &&
+    if (distance < displacement && collider->def.kind != SINGE_COLLIDER_PLANE &&
+        contact_enters(collider, from, *to, &entry) &&
         (distance >= offset || float3_dot(entry.normal, *normal) < 0.5f)) {
         float depth = offset - entry.distance - float3_dot(float3_sub(*to, entry.position), entry.normal);
         *to = float3_mad(*to, entry.normal, depth);

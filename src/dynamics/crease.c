@@ -96,7 +96,7 @@ static uint8_t hinge_side(const Shell *shell, uint32_t cell, uint32_t other) {
 
 static Float3 hinge_normal(const float (*x)[4], const uint32_t *corner) {
     return float3_unit(float3_cross(float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]])),
-                              float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
+                                    float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
 }
 
 static Float3 hinge_centroid(const float (*x)[4], const uint32_t *corner) {

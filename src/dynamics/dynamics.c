@@ -26,8 +26,7 @@ static bool plan_allocate(DynamicsPlan *plan, const Shell *shell, Memory *memory
               NEW(memory, plan->predicted, plan->particle_count) && NEW(memory, plan->soft, plan->particle_count) &&
               NEW(memory, plan->cell_normal, plan->cell_count) &&
               NEW(memory, plan->height_wait, height_wait_count(shell)) &&
-              NEW(memory, plan->colliders, plan->collider_capacity) &&
-              NEW(memory, plan->partial, plan_partials(shell));
+              NEW(memory, plan->colliders, plan->collider_capacity) && NEW(memory, plan->partial, plan_partials(shell));
     if (ok && shell->creases && plan->settings.solver.method == SINGE_SOLVER_STRAND) {
         ok = NEW(memory, plan->hinges, shell->springs[SINGE_GREEN].count);
         if (ok) creases_measure(shell, plan->hinges);
@@ -54,7 +53,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||
-        !curvature_create(memory, shell, &plan->strands) || !patches_create(memory, shell, &plan->patches) || !attach_create(memory, shell, &plan->attachments) ||
+        !curvature_create(memory, shell, &plan->strands) || !patches_create(memory, shell, &plan->patches) ||
+        !attach_create(memory, shell, &plan->attachments) ||
         (settings->contact.enabled &&
          collision_plan_create(memory, shell, &settings->contact, settings->time_step, &plan->collision)) ||
         (paper_needed(settings->solver.method) && paper_create(memory, shell, settings, &plan->paper))) {

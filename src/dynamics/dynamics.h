@@ -12,9 +12,9 @@
 typedef struct DynamicsSettings {
     float gravity[3];
     float air_density;
-    SingeSolverDef solver;   ///< substeps 0: as many as the sheets' stiffness needs
+    SingeSolverDef solver; ///< substeps 0: as many as the sheets' stiffness needs
     SingeContactDef contact;
-    float time_step;         ///< s
+    float time_step; ///< s
     SingeInstructions instructions;
     int thread_count; ///< that may work at once
 } DynamicsSettings;

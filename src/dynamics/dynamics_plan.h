@@ -13,7 +13,7 @@
 typedef struct MovingCollider {
     const Collider *collider;
     Pose before, after;
-    Float3 axis[3];           ///< of the box, which has `after.position` for its origin
+    Float3 axis[3];        ///< of the box, which has `after.position` for its origin
     float low[3], high[3]; ///< m
     float drift;           ///< m, that its own surface moves at most, in its frame: 0 but of a deforming mesh
 } MovingCollider;
@@ -55,7 +55,7 @@ typedef struct Patches {
     uint32_t capacity; ///< of each list
     uint32_t count[SINGE_COLOUR_COUNT];
     Patch *items[SINGE_COLOUR_COUNT];
-    uint32_t split_count; ///< of the shell that they are for
+    uint32_t split_count;            ///< of the shell that they are for
     float *pull[SINGE_COLOUR_COUNT]; ///< [springs] N/m, as in patch.c, of the step done
 } Patches;
 
@@ -67,34 +67,34 @@ typedef struct Hinge {
     float arc;       ///< m, s, from centroid to centroid along the sheet
     float angle;     ///< rad, theta_0
     float twist;     ///< rad, tau_0
-    float max;      ///< rad, beta
+    float max;       ///< rad, beta
     float lean;      ///< rad, phi
     float limit;     ///< 1/m, the sharpest bend that creases: curvature_max, INFINITY where there is none
 } Hinge;
 
 struct DynamicsPlan {
     DynamicsSettings settings;
-    Paper *paper;            ///< of the methods other than strand, else NULL
+    Paper *paper; ///< of the methods other than strand, else NULL
     // per particle, refreshed at every step
-    float *inverse_mass;     ///< 1/kg; 0 for what is pinned or gone
-    float *drag;             ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
-    float (*normal)[4];      ///< unit
-    float (*air)[4];         ///< m/s, the wind there
-    float (*predicted)[4];   ///< m, x~ of eq 9
+    float *inverse_mass;   ///< 1/kg; 0 for what is pinned or gone
+    float *drag;           ///< 1/m, k of the quadratic drag: dv/dt = -k |v_n| v_n
+    float (*normal)[4];    ///< unit
+    float (*air)[4];       ///< m/s, the wind there
+    float (*predicted)[4]; ///< m, x~ of eq 9
     const Kernels *kernels;
-    float *soft;             ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
+    float *soft; ///< factor on the weight of a spring that ends here: 1 fresh, char_weight at m_min
     Strands strands;
     Patches patches;
     bool strands_written; ///< their weights and targets, in a step that succeeded
     Attachments attachments;
-    CollisionPlan *collision;        ///< NULL without contact of sheets
-    Hinge *hinges;        ///< [green springs], or NULL without creases
-    bool creased;         ///< there are creases after the last step
-    uint8_t *height_wait;    ///< [height_wait_count] substeps for which a block of cells is skipped
-    float (*cell_normal)[4]; ///< unit times twice the area
+    CollisionPlan *collision; ///< NULL without contact of sheets
+    Hinge *hinges;            ///< [green springs], or NULL without creases
+    bool creased;             ///< there are creases after the last step
+    uint8_t *height_wait;     ///< [height_wait_count] substeps for which a block of cells is skipped
+    float (*cell_normal)[4];  ///< unit times twice the area
     MovingCollider *colliders;
     uint32_t collider_capacity;
-    double *partial;         ///< [pool_blocks(particles or springs of a colour)]
+    double *partial; ///< [pool_blocks(particles or springs of a colour)]
     uint32_t particle_count, cell_count, spring_count[SINGE_COLOUR_COUNT];
 };
 
@@ -116,7 +116,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
 
 /// Puts pinned particles on their paths (move.c).
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
-                         DynamicsState *dynamics);
+                        DynamicsState *dynamics);
 
 /// One projection of one colour, family after family (strand_project.c).
 void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h, DynamicsState *dynamics,
@@ -195,7 +195,7 @@ bool contact_particle(const MovingCollider *collider, float offset, Float3 previ
 
 /// Contact of a cell's centroid, between its corners (cell_centroids.c).
 void contact_centroids(DynamicsPlan *plan, const Shell *shell, const AblateState *ablate, uint32_t collider_count,
-                     Pool *pool, float h, DynamicsState *dynamics);
+                       Pool *pool, float h, DynamicsState *dynamics);
 
 /// The same for all particles.
 uint64_t contact_project(DynamicsPlan *plan, uint32_t collider_count, Pool *pool, float h, DynamicsState *dynamics);

@@ -84,7 +84,8 @@ static float cell_length(const Shell *shell, const StateInput *state, uint32_t c
                                       : state->burn->spring_length[SINGE_BLUE][springs->blue[side]];
     uint32_t a = shell->cells[cell][i], b = shell->cells[cell][j];
     if (!dynamics->pinned[a] || !dynamics->pinned[b]) return length;
-    return fmaxf(length, float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
+    return fmaxf(length,
+                 float3_length(float3_sub(float3_load(dynamics->position[a]), float3_load(dynamics->position[b]))));
 }
 
 /// Lowers the distances at a cell's other corners, now that corner i has its own for good.

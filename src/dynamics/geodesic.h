@@ -6,7 +6,7 @@
 
 /// Scratch for one search, over the vertices of all sheets.
 typedef struct Geodesic {
-    uint32_t *heap;  ///< [vertex_count] vertices waiting, nearest first
+    uint32_t *heap;     ///< [vertex_count] vertices waiting, nearest first
     uint32_t *position; ///< [vertex_count] in the heap, or GEODESIC_FAR or GEODESIC_DONE
     uint32_t waiting;
 } Geodesic;

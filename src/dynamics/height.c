@@ -29,7 +29,7 @@ typedef struct Height {
     float (*position)[4];
     const uint32_t *cells; ///< of the family
     uint32_t count;
-    uint8_t *wait;         ///< of its blocks
+    uint8_t *wait; ///< of its blocks
 } Height;
 
 /// Whether a height is enough, by its square: `above` is the height times |n|, `square` is |n|^2.

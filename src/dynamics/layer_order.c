@@ -30,7 +30,7 @@ typedef struct Order {
 static void order_calm(const Order *job, const uint32_t *corner, uint32_t centre, Float4 normal) {
     float(*v)[4] = job->dynamics->velocity;
     Float4 mean = 0.25f * (float4_load(v[corner[0]]) + float4_load(v[corner[1]]) +
-                         (float4_load(v[corner[2]]) + float4_load(v[corner[3]])));
+                           (float4_load(v[corner[2]]) + float4_load(v[corner[3]])));
     float away = float4_dot(float4_load(v[centre]) - mean, normal);
     if (away < 0) float4_store(v[centre], float4_load(v[centre]) - away * normal);
 }

@@ -56,7 +56,9 @@ static inline unsigned limit_four(const Limit *job, SingeColour colour, uint32_t
     Float4 max = limit_factor(colour) * float4_load(job->state->burn->spring_length[colour] + first), displacement[4];
     for (uint32_t k = 0; k < 4; k++) displacement[k] = limit_displacement(job, colour, first + k);
     float4_transpose(displacement);
-    return float4_bits(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2] > max * max * 1.0001f);
+    return float4_bits(displacement[0] * displacement[0] + displacement[1] * displacement[1] +
+                           displacement[2] * displacement[2] >
+                       max * max * 1.0001f);
 }
 
 /// Whether a spring that is too long may be shortened: it is left, no part of a mesh that may stretch, its ends are not
@@ -144,7 +146,8 @@ bool dynamics_limit(DynamicsPlan *plan, const Shell *shell, const StateInput *st
     job.end = job.first_diagonal + shell->springs[SINGE_YELLOW].count;
     for (int round = 0; round < LIMIT_ROUNDS; round++) {
         if (pool_sum(pool, (int)job.end, limit_count, &job, plan->partial) == 0) return round > 0;
-        for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {}
+        for (int sweep = 0; sweep < LIMIT_SWEEPS && limit_sweep(&job, plan->partial); sweep++) {
+        }
     }
     return true;
 }

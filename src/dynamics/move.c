@@ -86,7 +86,7 @@ uint64_t dynamics_move(DynamicsPlan *plan, const Shell *shell, Pool *pool, float
 }
 
 void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateState *ablate, double time, float h,
-                         DynamicsState *dynamics) {
+                        DynamicsState *dynamics) {
     SINGE_ASSERT(h > 0);
     for (uint32_t p = 0; p < pins->count; p++) {
         const Pin *pin = &pins->items[p];
@@ -97,7 +97,8 @@ void dynamics_move_pins(DynamicsPlan *plan, const PinList *pins, const AblateSta
             uint32_t i = pin->particles[k];
             if (!(ablate->particle_flags[i] & SINGE_ALIVE)) continue;
             Float3 point = pin_point(pin, &pose, k, share);
-            float3_store(dynamics->velocity[i], float3_scale(float3_sub(point, float3_load(dynamics->position[i])), 1 / h));
+            float3_store(dynamics->velocity[i],
+                         float3_scale(float3_sub(point, float3_load(dynamics->position[i])), 1 / h));
             float3_store(dynamics->position[i], point);
             float3_store(plan->predicted[i], point);
         }

@@ -16,7 +16,7 @@ struct Paper {
     SingeSolverDef solver;
     Network network;
     uint32_t particle_count;
-    double (*predicted)[3]; ///< m, x~
+    double (*predicted)[3];              ///< m, x~
     uint32_t *order[SINGE_COLOUR_COUNT]; ///< the springs of each colour in the order of the network's rows
     uint32_t spring_count[SINGE_COLOUR_COUNT];
 };
@@ -214,10 +214,11 @@ static void paper_finish(void *task, int begin, int end) {
 static SingeResult paper_broken(const Paper *paper, SingeColour colour, SingeError *error) {
     SINGE_ASSERT((unsigned)colour < SINGE_COLOUR_COUNT);
     static const char *const names[] = {"red", "green", "blue", "yellow"};
-    return error_set(error, SINGE_ERROR_DIVERGED, "dynamics", -1,
-                     "the system of %s springs is singular or not finite, and conjugate gradients broke down; a smaller "
-                     "time_step, more substeps or the method paper may help",
-                     paper_one_system(paper->solver.method) ? "all" : names[colour]);
+    return error_set(
+        error, SINGE_ERROR_DIVERGED, "dynamics", -1,
+        "the system of %s springs is singular or not finite, and conjugate gradients broke down; a smaller "
+        "time_step, more substeps or the method paper may help",
+        paper_one_system(paper->solver.method) ? "all" : names[colour]);
 }
 
 /// One projection step (eq 18): *solved says whether any system had something to solve.

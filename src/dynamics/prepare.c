@@ -34,9 +34,11 @@ static void prepare_cells(void *task, int begin, int end) {
     }
 }
 
-static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags, uint32_t particle) {
+static Float3 prepare_normal(const DynamicsPlan *plan, const Shell *shell, const uint8_t *cell_flags,
+                             uint32_t particle) {
     SINGE_ASSERT(particle < shell->particle_count);
-    if (particle >= shell->vertex_count) return float3_unit(float3_load(plan->cell_normal[particle - shell->vertex_count]));
+    if (particle >= shell->vertex_count)
+        return float3_unit(float3_load(plan->cell_normal[particle - shell->vertex_count]));
     Float3 sum = {0, 0, 0};
     for (uint32_t k = shell->fan_first[particle]; k < shell->fan_first[particle + 1]; k++) {
         uint32_t cell = shell->fan[k];

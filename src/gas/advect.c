@@ -26,9 +26,9 @@
 enum { ADVECT_PARTS_MAX = 8 };
 static const float ADVECT_COURANT = 0.9f;
 static const float ADVECT_CALM = 0.2f, ADVECT_LIGHT = 0.02f; ///< m/s and L from which momentum is carried
-static const float ADVECT_MIXING = 2e-4f; ///< m2/s, of hot air: 1.9e-4 at 1100 K
-static const float ADVECT_EDDY = 0.2f;    ///< C
-static const float ADVECT_MIX_MAX = 0.1f; ///< twice as much must be stable along one axis
+static const float ADVECT_MIXING = 2e-4f;                    ///< m2/s, of hot air: 1.9e-4 at 1100 K
+static const float ADVECT_EDDY = 0.2f;                       ///< C
+static const float ADVECT_MIX_MAX = 0.1f;                    ///< twice as much must be stable along one axis
 
 static void advect_tasks(void *context, int begin, int end) {
     const Sweep *sweep = context;
@@ -66,8 +66,14 @@ static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
         float *to[3] = {here, between, here};
         for (int s = 0; s < 3; s++) {
             int axis = part % 2 ? 2 - s : s; // so that no axis is always the first
-            Sweep sweep = {.pass = pass, .box = box, .from = from[s], .to = to[s], .start = start, .axis = axis,
-                           .across = axis == 2 ? 1 : 2, .last = s == 2,
+            Sweep sweep = {.pass = pass,
+                           .box = box,
+                           .from = from[s],
+                           .to = to[s],
+                           .start = start,
+                           .axis = axis,
+                           .across = axis == 2 ? 1 : 2,
+                           .last = s == 2,
                            .rows = plan->rows};
             pool_for(pass->pool, box->high[sweep.across] - box->low[sweep.across], 1, advect_tasks, &sweep);
         }
@@ -120,8 +126,8 @@ static void advect_look(void *context, int begin, int end) {
                 max = fastest > max ? fastest : max;
                 for (int b = 0; b < GAS_BOXES; b++)
                     if (busy[b][1] >= 0)
-                        gas_box_add(&box[b], (GasBox){{first + busy[b][0], j, k},
-                                                      {first + busy[b][1] + 1, j + 1, k + 1}});
+                        gas_box_add(&box[b],
+                                    (GasBox){{first + busy[b][0], j, k}, {first + busy[b][1] + 1, j + 1, k + 1}});
             }
         pass->plan->partial[k] = (double)max;
     }

@@ -20,8 +20,9 @@ static void blocked_planes(void *context, int begin, int end) {
                 Pose pose = path_pose(&collider->path, pass->state->time);
                 for (int i = 0; i < grid->n[0]; i++) {
                     Float3 x = {plan->origin[0] + plan->cell * ((float)i + 0.5f),
-                             plan->origin[1] + plan->cell * ((float)j + 0.5f),
-                             plan->origin[2] + plan->cell * ((float)k + 0.5f)}, normal;
+                                plan->origin[1] + plan->cell * ((float)j + 0.5f),
+                                plan->origin[2] + plan->cell * ((float)k + 0.5f)},
+                           normal;
                     plan->solid[c + (size_t)i] |= collider_distance(collider, pose_unapply(&pose, x), 0, &normal) < 0;
                 }
             }
@@ -33,7 +34,8 @@ static void blocked_cover(GasPlan *plan, int d, const float position[3], float s
     const GasGrid *grid = &plan->grid;
     int e = (d + 1) % 3, f = (d + 2) % 3, at[3];
     float part[3];
-    at[d] = (int)floorf(position[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
+    at[d] =
+        (int)floorf(position[d] + 1); // the face nearest: that of the cell whose lower half, or the one below's upper
     for (int q = 0; q < 3; q++)
         if (q != d) at[q] = (int)(position[q] + 1) - 1, part[q] = position[q] - (float)at[q];
     size_t c = gas_at(grid, at[0], at[1], at[2]);

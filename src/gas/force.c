@@ -26,7 +26,8 @@ static void force_unrest(const GasPass *pass, int d, int j, int k, float strengt
         if (L[i] > FORCE_LIGHT)
             u[i] += strength * L[i] / (1 - L[i]) *
                     (2 * random_noise((float)i * step + 0.3f * t, (float)j * step + 0.4f * t, (float)k * step + t,
-                                      (uint32_t)d) - 1);
+                                      (uint32_t)d) -
+                     1);
 }
 
 static void force_planes(void *context, int begin, int end) {

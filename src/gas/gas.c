@@ -78,9 +78,14 @@ static void gas_part(GasPass *pass) {
 void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
     const StateInput *state = &context->state;
     if ((state->step + 1) % plan->every != 0) return;
-    GasPass pass = {.plan = plan, .shell = context->shell, .state = state,
-                    .colliders = context->colliders, .pool = context->pool,
-                    .from = &plan->turn[gas->turn], .to = &plan->turn[!gas->turn], .dt = plan->dt};
+    GasPass pass = {.plan = plan,
+                    .shell = context->shell,
+                    .state = state,
+                    .colliders = context->colliders,
+                    .pool = context->pool,
+                    .from = &plan->turn[gas->turn],
+                    .to = &plan->turn[!gas->turn],
+                    .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
     if (!gas_fed(&pass) && !gas->awake) return;
     Float3 middle = float3_load(plan->origin);

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-static const float PLAN_RATE = 60;         ///< 1/s, steps of the gas
-static const float PLAN_CELLS_ACROSS = 42; ///< cells along the diagonal of the sheets
+static const float PLAN_RATE = 60;                              ///< 1/s, steps of the gas
+static const float PLAN_CELLS_ACROSS = 42;                      ///< cells along the diagonal of the sheets
 static const float PLAN_CELL_MIN = 4e-3f, PLAN_MARGIN = 0.045f; ///< m
 static const double PLAN_CELLS_USUAL = 200e3, PLAN_CELLS_MAX = 2e6;
 enum { PLAN_PARTS_MAX = 16, PLAN_COARSEST = 4 };

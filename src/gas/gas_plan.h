@@ -31,17 +31,17 @@ typedef enum GasField {
     GAS_SMOKE,     ///< kg/m3
     GAS_VELOCITY,  ///< three, m/s, relative to the wind
     GAS_CARRIED = GAS_VELOCITY + 3,
-    GAS_THROUGH = GAS_CARRIED, ///< three
+    GAS_THROUGH = GAS_CARRIED,      ///< three
     GAS_PRESSURE = GAS_THROUGH + 3, ///< m/s: times rho_a cell/dt it is Pa
-    GAS_FLAME,     ///< W/m3 released, in motion's time
+    GAS_FLAME,                      ///< W/m3 released, in motion's time
     GAS_FIELDS,
 } GasField;
 
 /// Cells with their ghosts, x fastest.
 typedef struct GasGrid {
-    int n[3];      ///< cells without ghosts
+    int n[3]; ///< cells without ghosts
     size_t stride[3];
-    size_t cells;  ///< with ghosts
+    size_t cells; ///< with ghosts
 } GasGrid;
 
 static inline size_t gas_at(const GasGrid *grid, int i, int j, int k) {
@@ -85,34 +85,34 @@ struct GasPlan {
     GasSettings settings;
     void (*rows)(const struct Sweep *sweep, int task, int first, int count); ///< sweep.h
     GasGrid grid;
-    float cell;          ///< m
-    float origin[3];     ///< m
-    uint64_t every;      ///< steps of the simulation in one of the gas
-    int parts;           ///< steps of the gas in one of its calls, where the simulation's is long
-    float dt;            ///< s
+    float cell;      ///< m
+    float origin[3]; ///< m
+    uint64_t every;  ///< steps of the simulation in one of the gas
+    int parts;       ///< steps of the gas in one of its calls, where the simulation's is long
+    float dt;        ///< s
     uint32_t particles, cell_count;
 
     GasTurn turn[2];
-    float *block[2];     ///< all arrays of a set
-    size_t block_size;   ///< floats
+    float *block[2];   ///< all arrays of a set
+    size_t block_size; ///< floats
 
     // scratch
     float *spare[3];
-    float *open[3];      ///< uncovered share of a cell's lower face
-    uint8_t *solid;      ///< a collider's
+    float *open[3]; ///< uncovered share of a cell's lower face
+    uint8_t *solid; ///< a collider's
     GasLevel level[GAS_LEVELS];
     int levels;
-    float *mixing;       ///< half the share of a difference that mixes through a face of the cell
-    float *expansion;    ///< L that a step adds
-    double *partial;     ///< [planes]
+    float *mixing;                   ///< half the share of a difference that mixes through a face of the cell
+    float *expansion;                ///< L that a step adds
+    double *partial;                 ///< [planes]
     GasBox (*plane_busy)[GAS_BOXES]; ///< [planes] where there is heat or fuel, smoke, momentum to carry
-    float (*normal)[3];  ///< [particles] unit
-    int *hot;            ///< [planes] whether anything there is warmer than the air around
-    float *scratch;      ///< all of them but normals
+    float (*normal)[3];              ///< [particles] unit
+    int *hot;                        ///< [planes] whether anything there is warmer than the air around
+    float *scratch;                  ///< all of them but normals
     size_t scratch_size;
 
     // for readers: without ghosts
-    float *view[3];      ///< temperature, smoke, flame
+    float *view[3]; ///< temperature, smoke, flame
     float (*view_velocity)[3];
     size_t view_cells;
 };

@@ -24,12 +24,12 @@
 #include "common/real.h"
 #include "gas/gas_plan.h"
 
-static const float SHEET_REACH = 1.25f;     ///< cells
-static const float SHEET_LAYER = 7e-3f;     ///< m, of the gas that flows along a sheet
-static const float SHEET_STILL = 0.05f;     ///< m/s, u_0
-static const float SHEET_LEVEL = 0.5f;      ///< cosine between down and a side that looks down
-static const float SHEET_MIN = 1;         ///< K above the ambient that are felt
-static const float SHEET_CP = 1005;         ///< J/(kg K)
+static const float SHEET_REACH = 1.25f; ///< cells
+static const float SHEET_LAYER = 7e-3f; ///< m, of the gas that flows along a sheet
+static const float SHEET_STILL = 0.05f; ///< m/s, u_0
+static const float SHEET_LEVEL = 0.5f;  ///< cosine between down and a side that looks down
+static const float SHEET_MIN = 1;       ///< K above the ambient that are felt
+static const float SHEET_CP = 1005;     ///< J/(kg K)
 
 static void sheets_cells(void *context, int begin, int end) {
     const GasPass *pass = context;
@@ -185,7 +185,8 @@ static void sheets_meet(void *context, int begin, int end) {
         Float3 x = float3_load(pass->state->dynamics->position[i]);
         if (!gas_position(plan, x, position)) continue;
         float open = sheets_open(plan, position, plan->normal[i]);
-        for (int d = 0; d < 3; d++) air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
+        for (int d = 0; d < 3; d++)
+            air[d] = open * gas_sample(&plan->grid, pass->to->field[GAS_VELOCITY + d], position);
         if (!(g0 > 0) || !sheets_position(pass, i, sheets_side(pass, i), &x)) continue;
         if (!gas_position(plan, sheets_upstream(pass, x), position)) continue;
         float temperature = ambient / (1 - sheets_lightness(plan, pass->to->field[GAS_LIGHTNESS], position));

@@ -16,8 +16,8 @@ struct Sweep {
     const GasBox *box;
     const float *from, *start; ///< before this axis, before the first one
     float *to;
-    int axis, across;          ///< `across`: the axis that the tasks are cut along
-    bool last;                 ///< takes off what the divergence added
+    int axis, across; ///< `across`: the axis that the tasks are cut along
+    bool last;        ///< takes off what the divergence added
     SweepFn *rows;
 };
 

@@ -11,7 +11,7 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
     const float wind = pass->wind[sweep->axis], courant = pass->courant;
     const float *restrict mixing = pass->plan->mixing + c, *restrict below = mixing - beyond;
     const float *restrict q = sweep->from + c, *restrict low = q - beyond, *restrict lowest = low - beyond,
-                *restrict high = q + beyond;
+                          *restrict high = q + beyond;
     for (int i = 0; i < count; i++) {
         float displacement = (through[i] + wind) * courant, size = fabsf(displacement);
         float q0 = lowest[i], q1 = low[i], q2 = q[i], q3 = high[i]; // read before they are chosen from: this vectorises
@@ -25,7 +25,7 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
 
 /// The new values of a row whose faces' fluxes are known.
 static void sweep_update(const Sweep *sweep, size_t c, int count, const float *restrict lower,
-                          const float *restrict upper) {
+                         const float *restrict upper) {
     const GasPass *pass = sweep->pass;
     const float *restrict from = sweep->from + c, *restrict start = sweep->start + c;
     const float *restrict u = pass->from->field[GAS_THROUGH + sweep->axis] + c;

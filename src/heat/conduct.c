@@ -185,8 +185,7 @@ static bool conduct_finish_group(const HeatPass *pass, uint32_t group, double *m
         if (!changes || !plan->alive[i]) continue;
         double rise = (double)pass->dt * inflow[i % HEAT_ROWS] / plan->measure[i];
         double change = plan->delta[i] + rise;
-        if (change != 0)
-            plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
+        if (change != 0) plan->next[i] = heat_round(temperature[i] + change, random_hash(i, low, high, HEAT_SEED));
         within &= (double)plan->next[i] >= min && (double)plan->next[i] <= max;
         if (pass->shell->sheets[matter->sheet[i]].material.heat_operator == SINGE_HEAT_UMBRELLA)
             *made += matter->capacity[i] * rise;

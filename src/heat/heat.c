@@ -25,8 +25,8 @@
 #include "heat/heat_plan.h"
 
 static const float STEFAN_BOLTZMANN = 5.670374e-8f; // W/(m2 K4)
-static const float HEAT_COLDEST = 1; // K, to which a flux below 0 can cool
-static const float HEAT_RATE_MAX = 1e30f; // all is lost in a step
+static const float HEAT_COLDEST = 1;                // K, to which a flux below 0 can cool
+static const float HEAT_RATE_MAX = 1e30f;           // all is lost in a step
 
 void heat_blocks(HeatPass *pass, SingeTaskFn *run) { pool_for(pass->pool, pass->plan->blocks, 1, run, pass); }
 
@@ -111,8 +111,7 @@ static void heat_exchange_group(const HeatPass *pass, uint32_t group, double led
     uint32_t first = group * HEAT_GROUP, last = heat_group_last(plan, group);
     plan->rest.warm[group] = 0;
     if (heat_is_calm(pass, first, last)) {
-        for (uint32_t i = first; i < last; i++)
-            plan->star[i] = plan->settings.ambient_temperature, plan->delta[i] = 0;
+        for (uint32_t i = first; i < last; i++) plan->star[i] = plan->settings.ambient_temperature, plan->delta[i] = 0;
         return;
     }
     for (uint32_t i = first, run; i < last; i = run) {
@@ -154,8 +153,13 @@ SingeResult heat_step(HeatPlan *plan, const StepContext *context, const SourceLi
                       HeatCounters *counters) {
     const Shell *shell = context->shell;
     const StateInput *state = &context->state;
-    HeatPass pass = {.plan = plan, .shell = shell, .state = state, .heat = heat, .pool = context->pool,
-                     .h = context->h, .dt = context->h * plan->settings.pace};
+    HeatPass pass = {.plan = plan,
+                     .shell = shell,
+                     .state = state,
+                     .heat = heat,
+                     .pool = context->pool,
+                     .h = context->h,
+                     .dt = context->h * plan->settings.pace};
     double made = 0;
     heat_plan_follow(plan, shell, state);
     heat_matrix_follow(plan, shell, state->ablate, pass.dt);

@@ -14,7 +14,7 @@ typedef struct Source {
     Path path;
     uint32_t strength_count;
     SingeValueKey *strength;
-    float *texture;      ///< [particle_count] or NULL
+    float *texture;       ///< [particle_count] or NULL
     SingeTexture waiting; ///< of a texture source that was added before the commit, until then: its own copy
 } Source;
 
@@ -43,7 +43,7 @@ typedef struct HeatSettings {
     float ambient_temperature; ///< K
     float tolerance;           ///< relative residual of the diffusion
     float pace;
-    size_t scratch_min;      ///< bytes
+    size_t scratch_min; ///< bytes
 } HeatSettings;
 
 /// Operators and scratch of the stage, built once.

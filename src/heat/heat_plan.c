@@ -24,15 +24,23 @@ static float plan_thickening(const Shell *shell, uint32_t s, float ambient) {
         count++;
     }
     if (count == 0) return 1;
-    FrontMatter front = {(float)(diffusivity / count), (float)(rate / count), (float)(heating / count),
-                         (float)(ignition / count), (float)(ceiling / count), (float)(factor / count),
+    FrontMatter front = {(float)(diffusivity / count), (float)(rate / count),    (float)(heating / count),
+                         (float)(ignition / count),    (float)(ceiling / count), (float)(factor / count),
                          (float)(energy / count)};
     return heat_thickening_for(sheet->material.thickening, &front, ambient, sheet->cell_size);
 }
 
 static bool plan_allocate_scratch(Memory *memory, HeatPlan *plan) {
-    float **arrays[] = {&plan->flux, &plan->source_conductance, &plan->source_temperature, &plan->star, &plan->delta,
-                        &plan->correction, &plan->residual, &plan->search, &plan->product, &plan->next};
+    float **arrays[] = {&plan->flux,
+                        &plan->source_conductance,
+                        &plan->source_temperature,
+                        &plan->star,
+                        &plan->delta,
+                        &plan->correction,
+                        &plan->residual,
+                        &plan->search,
+                        &plan->product,
+                        &plan->next};
     enum { ARRAYS = sizeof arrays / sizeof *arrays };
     size_t slices = plan->particles / HEAT_ROWS + 1, stride = slices * HEAT_ROWS; // whole slices can be read
     size_t needed = ARRAYS * stride * sizeof(float), min = plan->settings.scratch_min;
@@ -145,8 +153,7 @@ static bool follow_rows(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
 static void follow_rest(HeatPlan *plan, const Shell *shell, uint32_t vertex) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     for (uint32_t f = shell->fan_first[vertex]; f < shell->fan_first[vertex + 1]; f++) {
-        for (int k = 0; k < 4; k++)
-            heat_rest_update(plan, shell->cells[shell->fan[f]][k] / HEAT_GROUP, plan->scratch);
+        for (int k = 0; k < 4; k++) heat_rest_update(plan, shell->cells[shell->fan[f]][k] / HEAT_GROUP, plan->scratch);
         heat_rest_update(plan, shell_centre(shell, shell->fan[f]) / HEAT_GROUP, plan->scratch);
     }
 }

@@ -15,7 +15,7 @@ enum { HEAT_NEAR = 48 };
 
 /// A spring that shares both its ends with another one that conducts.
 typedef struct HeatTwin {
-    uint32_t spring;   ///< in the numbering of all colours
+    uint32_t spring; ///< in the numbering of all colours
     float conductance;
 } HeatTwin;
 
@@ -34,7 +34,7 @@ typedef struct HeatMatrix {
     float *inverse;   ///< [particles] 1/(D + dt times the sum of the row's values); 0 for what is gone
     float dt;         ///< s, of `inverse`
     uint32_t slices, entries;
-    HeatTwin *twins;  ///< rarely any
+    HeatTwin *twins; ///< rarely any
     uint32_t twin_count, twin_capacity;
     bool full; ///< a row has no room for all springs from tears
 } HeatMatrix;
@@ -51,9 +51,9 @@ static inline uint32_t heat_entry(const HeatMatrix *matrix, uint32_t i, uint32_t
 typedef struct HeatRest {
     uint32_t groups;
     uint32_t (*near)[HEAT_NEAR]; ///< [groups] those that conduct with it, less itself
-    uint8_t *near_count; ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
-    uint8_t *warm;     ///< [groups] a particle is not at the ambient temperature, or heated
-    uint8_t *awake[2]; ///< [groups] conducts; the second is the first with all groups near it, alternating
+    uint8_t *near_count;         ///< [groups] how many; HEAT_NEAR + 1: too many to list, it counts as near all others
+    uint8_t *warm;               ///< [groups] a particle is not at the ambient temperature, or heated
+    uint8_t *awake[2];           ///< [groups] conducts; the second is the first with all groups near it, alternating
 } HeatRest;
 
 struct HeatPlan {
@@ -61,7 +61,7 @@ struct HeatPlan {
     uint32_t particles, springs, sheets;
     int blocks;
     uint32_t spring_first[SINGE_COLOUR_COUNT + 1]; ///< springs of all colours in one numbering
-    float *thickening;     ///< [sheets] F
+    float *thickening;                             ///< [sheets] F
 
     // operator
     float *measure;        ///< [particles] D: m2 (surface) or m (umbrella)
@@ -73,19 +73,19 @@ struct HeatPlan {
     HeatMatrix matrix;
     HeatRest rest;
 
-    void *scratch;         ///< the arrays below
+    void *scratch; ///< the arrays below
     size_t scratch_size;
 
     // sources, per particle
     float *flux, *source_conductance, *source_temperature; ///< W/m2, W/(m2 K), their product with K
 
     // solver, per particle
-    float *star;           ///< T* after sources and losses, K
-    float *delta;          ///< T* - T, K
-    float *correction;     ///< T - T* of the diffusion, K
+    float *star;       ///< T* after sources and losses, K
+    float *delta;      ///< T* - T, K
+    float *correction; ///< T - T* of the diffusion, K
     float *residual, *search, *product;
-    float *next;           ///< the new temperature, K
-    double (*partial)[4];  ///< [blocks]
+    float *next;          ///< the new temperature, K
+    double (*partial)[4]; ///< [blocks]
 };
 
 /// Input of a step's passes.
@@ -95,12 +95,12 @@ typedef struct HeatPass {
     const StateInput *state;
     HeatState *heat;
     Pool *pool;
-    float h;  ///< s of scene time
-    float dt; ///< s of fire
+    float h;           ///< s of scene time
+    float dt;          ///< s of fire
     float step_length; ///< of the conjugate gradients
     float direction;   ///< their beta
     int turn;          ///< which of rest.awake is current
-    float min, max; ///< K, the range of T*
+    float min, max;    ///< K, the range of T*
     double slack;      ///< K, beyond it, before a step ends by bound.c
     double share;      ///< of what is missing to the range's end, in bound.c
 } HeatPass;

@@ -112,8 +112,7 @@ static uint32_t matrix_twins(const HeatPlan *plan, const Shell *shell, HeatTwin 
 /// All springs and particles of the shell as alive as at the start.
 static void matrix_revive(HeatPlan *plan, const Shell *shell) {
     memset(plan->spring_alive, 1, plan->springs);
-    for (uint32_t i = 0; i < plan->particles; i++)
-        plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
+    for (uint32_t i = 0; i < plan->particles; i++) plan->alive[i] = plan->measure[i] > 0 && shell->matter.area[i] > 0;
 }
 
 SingeResult heat_matrix_create(Memory *memory, HeatPlan *plan, const Shell *shell) {
@@ -149,7 +148,7 @@ void heat_matrix_rebuild(HeatPlan *plan, const Shell *shell, uint32_t *length) {
     matrix_fill_up(matrix, plan->particles);
     matrix_scatter(plan, shell, length, true);
     matrix_revive(plan, shell);
-    matrix->dt = 0; // all diagonals are computed again
+    matrix->dt = 0;                         // all diagonals are computed again
     if (matrix->twin_capacity == 0) return; // parting cells makes no twins
     matrix->twin_count = matrix_twins(plan, shell, NULL);
     if (matrix->twin_count > matrix->twin_capacity) matrix->twin_count = 0;

@@ -96,8 +96,7 @@ static SingeResult source_copy_texture(Memory *memory, const SingeTexture *textu
 
 static SingeResult source_copy_arrays(Memory *memory, const Shell *shell, const SingeSourceDef *def, Source *source,
                                       SingeError *error) {
-    if (source_has_path(def))
-        return path_set(&source->path, memory, def->path_count, def->path, "source", error);
+    if (source_has_path(def)) return path_set(&source->path, memory, def->path_count, def->path, "source", error);
     if (def->kind != SINGE_SOURCE_TEXTURE) return SINGE_OK;
     if (!NEW(memory, source->strength, def->strength_count)) return source_no_memory(error);
     source->strength_count = def->strength_count;
@@ -228,8 +227,8 @@ static void source_texture_task(void *context, int begin, int end) {
 
 static void source_texture(HeatPass *pass, const Source *source, const SingeView *view) {
     (void)view;
-    SourceJob job = {.pass = pass, .source = source,
-                     .strength = source->def.flux * source_strength(source, pass->state->time)};
+    SourceJob job = {
+        .pass = pass, .source = source, .strength = source->def.flux * source_strength(source, pass->state->time)};
     if (source->texture && job.strength != 0)
         pool_for(pass->pool, (int)pass->plan->particles, POOL_BLOCK, source_texture_task, &job);
 }
@@ -244,7 +243,9 @@ static void source_callback(HeatPass *pass, const Source *source, const SingeVie
 typedef void SourceFn(HeatPass *pass, const Source *source, const SingeView *view);
 
 static SourceFn *const SOURCE_KINDS[] = {
-    [SINGE_SOURCE_BALL] = source_ball,   [SINGE_SOURCE_TEXTURE] = source_texture, [SINGE_SOURCE_SPOT] = source_ball,
+    [SINGE_SOURCE_BALL] = source_ball,
+    [SINGE_SOURCE_TEXTURE] = source_texture,
+    [SINGE_SOURCE_SPOT] = source_ball,
     [SINGE_SOURCE_CALLBACK] = source_callback,
 };
 
@@ -259,7 +260,8 @@ static Float3 source_normal(const HeatPass *pass, uint32_t i) {
         uint32_t cell = corner ? shell->fan[k] : i - shell->vertex_count;
         if (!(pass->state->ablate->cell_flags[cell] & SINGE_ALIVE)) continue;
         const uint32_t *at = shell->cells[cell];
-        Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]])), b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
+        Float3 a = float3_sub(float3_load(x[at[2]]), float3_load(x[at[0]])),
+               b = float3_sub(float3_load(x[at[3]]), float3_load(x[at[1]]));
         sum = float3_add(sum, float3_cross(a, b));
     }
     return sum;

@@ -156,7 +156,8 @@ static double weights_length(double u, double v) {
     double uu = u * u, vv = v * v, length = sqrt(uu + vv);
     if (!(length > 1e-140 && length < 1e140)) return length;
     double square = length * length, big = fmax(uu, vv), small = fmin(uu, vv);
-    double miss = ((square - big) - small) + (weights_rest(length, square) - (weights_rest(u, uu) + weights_rest(v, vv)));
+    double miss =
+        ((square - big) - small) + (weights_rest(length, square) - (weights_rest(u, uu) + weights_rest(v, vv)));
     return length - miss / (2 * length);
 }
 

@@ -13,8 +13,8 @@ typedef struct Conjugate {
 
 /// Each works on the rows [begin, end) of a Conjugate, which are whole slices.
 typedef struct ConjugateKernel {
-    PoolSumFn *multiply; ///< q = A p and p . q
-    PoolSumFn *reduce;   ///< r -= alpha q and r . r
+    PoolSumFn *multiply;  ///< q = A p and p . q
+    PoolSumFn *reduce;    ///< r -= alpha q and r . r
     SingeTaskFn *advance; ///< x += alpha p, p = r + beta p
 } ConjugateKernel;
 

@@ -31,8 +31,14 @@ const ConjugateKernel *conjugate_choose(SingeInstructions instructions) {
 
 ProjectionReport conjugate_gradient(Network *network, uint32_t group, Pool *pool, double square, double enough) {
     const ConjugateKernel *kernel = network->kernel;
-    Conjugate job = {&network->groups[group], network->value,   network->solution, network->residual,
-                     network->direction,      network->product, 0,                 0};
+    Conjugate job = {&network->groups[group],
+                     network->value,
+                     network->solution,
+                     network->residual,
+                     network->direction,
+                     network->product,
+                     0,
+                     0};
     int rows = (int)job.group->padded;
     ProjectionReport report = {0};
     double rest = square;

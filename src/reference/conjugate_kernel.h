@@ -43,7 +43,8 @@ static double conjugate_multiply(void *task, int begin, int end) {
             const double *entry = value + NETWORK_LANES * k;
             const uint32_t *at = column + NETWORK_LANES * k;
             if (run[k] != NETWORK_NO_RUN)
-                for (int i = 0; i < PACKS; i++) sum[i] += pack_load(entry + PACK * i) * pack_load(p + run[k] + PACK * i);
+                for (int i = 0; i < PACKS; i++)
+                    sum[i] += pack_load(entry + PACK * i) * pack_load(p + run[k] + PACK * i);
             else
                 for (int i = 0; i < PACKS; i++) sum[i] += pack_load(entry + PACK * i) * pack_gather(p, at + PACK * i);
         }

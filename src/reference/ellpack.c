@@ -43,7 +43,8 @@ static void ellpack_list_row(SpringGroup *group, uint32_t row) {
             position += NETWORK_LANES;
         }
     }
-    for (; position < end_position; position += NETWORK_LANES) group->column[position] = row, group->link[position] = LINK_EMPTY;
+    for (; position < end_position; position += NETWORK_LANES)
+        group->column[position] = row, group->link[position] = LINK_EMPTY;
 }
 
 static uint32_t ellpack_run(const uint32_t *column) {
@@ -61,8 +62,7 @@ bool ellpack_create(Memory *memory, SpringGroup *group) {
         !NEW(memory, group->run, entries / NETWORK_LANES))
         return false;
     for (uint32_t row = 0; row < group->padded; row++) ellpack_list_row(group, row);
-    for (size_t k = 0; k < entries / NETWORK_LANES; k++)
-        group->run[k] = ellpack_run(group->column + NETWORK_LANES * k);
+    for (size_t k = 0; k < entries / NETWORK_LANES; k++) group->run[k] = ellpack_run(group->column + NETWORK_LANES * k);
     return true;
 }
 
@@ -115,6 +115,7 @@ void ellpack_dense(const Network *network, uint32_t group_index, double *dense) 
         dense[row * group->count + row] += 1 / (scale[row] * scale[row]);
         for (size_t e = NETWORK_LANES * group->slice_first[slice] + row % NETWORK_LANES; e < end; e += NETWORK_LANES)
             if (network->value[e] != 0)
-                dense[row * group->count + group->column[e]] += network->value[e] / (scale[row] * scale[group->column[e]]);
+                dense[row * group->count + group->column[e]] +=
+                    network->value[e] / (scale[row] * scale[group->column[e]]);
     }
 }

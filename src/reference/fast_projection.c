@@ -54,8 +54,8 @@ static double projection_rows(void *task, int begin, int end) {
         if (group->weight[k] <= 0) continue;
         Row row = projection_row(network, group, (uint32_t)k);
         double both = w[group->ends[k][0]] + w[group->ends[k][1]];
-        double square = row.gradient[0] * row.gradient[0] + row.gradient[1] * row.gradient[1] +
-                        row.gradient[2] * row.gradient[2];
+        double square =
+            row.gradient[0] * row.gradient[0] + row.gradient[1] * row.gradient[1] + row.gradient[2] * row.gradient[2];
         double diagonal = both * square;
         if (!network->rules.literal)
             diagonal += 0.5 * group->regularisation * both + group->compliance[k] * network->rules.inverse_h2;

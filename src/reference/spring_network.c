@@ -2,7 +2,8 @@
 #include "reference/spring_network.h"
 
 static bool group_incidence(Memory *memory, SpringGroup *group, uint32_t particle_count) {
-    if (!NEW(memory, group->first, (size_t)particle_count + 1) || !NEW(memory, group->incident, 2 * (size_t)group->count))
+    if (!NEW(memory, group->first, (size_t)particle_count + 1) ||
+        !NEW(memory, group->incident, 2 * (size_t)group->count))
         return false;
     for (uint32_t k = 0; k < group->count; k++)
         for (int end = 0; end < 2; end++) group->first[group->ends[k][end] + 1]++;
@@ -31,8 +32,7 @@ static bool network_scratch(Memory *memory, Network *network) {
     for (uint32_t g = 0; g < network->group_count; g++) {
         const SpringGroup *group = &network->groups[g];
         if (network->row_max < group->padded) network->row_max = group->padded;
-        if (network->matrix && network->entry_max < ellpack_entries(group))
-            network->entry_max = ellpack_entries(group);
+        if (network->matrix && network->entry_max < ellpack_entries(group)) network->entry_max = ellpack_entries(group);
     }
     uint32_t rows = network->row_max;
     if (!NEW(memory, network->gradient, rows)) return false;
@@ -43,8 +43,8 @@ static bool network_scratch(Memory *memory, Network *network) {
            NEW(memory, network->partial, pool_blocks((int)rows));
 }
 
-SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count,
-                           const NetworkSprings *springs, bool matrix, Network *network) {
+SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count, const NetworkSprings *springs,
+                           bool matrix, Network *network) {
     *network = (Network){.particle_count = particle_count, .group_count = group_count, .matrix = matrix};
     network->kernel = conjugate_choose(SINGE_INSTRUCTIONS_BEST);
     bool ok = NEW(memory, network->position, particle_count) && NEW(memory, network->inverse_mass, particle_count) &&

@@ -17,43 +17,43 @@ enum { NETWORK_LANES = 8 };
 /// Springs that are projected together. `count` springs, padded with empty ones to whole slices.
 typedef struct SpringGroup {
     uint32_t count, padded;
-    uint32_t (*ends)[2];  ///< [padded]
-    double *length;       ///< [padded] m, targets, > 0
-    double *weight;       ///< [padded] W of eq 19; 0 takes the spring out
-    double *compliance;   ///< [padded] m/N
+    uint32_t (*ends)[2];   ///< [padded]
+    double *length;        ///< [padded] m, targets, > 0
+    double *weight;        ///< [padded] W of eq 19; 0 takes the spring out
+    double *compliance;    ///< [padded] m/N
     double regularisation; ///< floor on the diagonal, relative to the mean of w_a and w_b
     // the springs of each particle: incident[first[i]] up to first[i + 1], as 2 spring + end
     uint32_t *first, *incident;
     // ELLPACK pattern of J M^-1 J^T off its diagonal, in slices: entry k of the rows of slice s is the 8 places from
     // 8 (slice_first[s] + k) on. A slice is as wide as the longest of its 8 rows.
-    size_t *slice_first;  ///< [padded/8 + 1]
-    uint32_t *column;     ///< [8 entries]
-    uint32_t *run;        ///< [entries] where the 8 entries are 8 columns in a row, the first of them; else NETWORK_NO_RUN
-    uint8_t *link;        ///< [8 entries] bit 0: end of the row's spring that is shared; bits 1-2: 0 plus, 1 minus, 2 empty
+    size_t *slice_first; ///< [padded/8 + 1]
+    uint32_t *column;    ///< [8 entries]
+    uint32_t *run; ///< [entries] where the 8 entries are 8 columns in a row, the first of them; else NETWORK_NO_RUN
+    uint8_t *link; ///< [8 entries] bit 0: end of the row's spring that is shared; bits 1-2: 0 plus, 1 minus, 2 empty
 } SpringGroup;
 
 /// Settings of a projection.
 typedef struct ProjectionRules {
-    bool literal;      ///< C = |d|^2/l - l as eq 10 has it, and neither floor nor compliance; else row-normalised
-    bool early_exit;   ///< the iterations end, too, when the residual is below `tolerance` of the lengths
-    double tolerance;  ///< of the residual, relative to the right-hand side
+    bool literal;        ///< C = |d|^2/l - l as eq 10 has it, and neither floor nor compliance; else row-normalised
+    bool early_exit;     ///< the iterations end, too, when the residual is below `tolerance` of the lengths
+    double tolerance;    ///< of the residual, relative to the right-hand side
     uint32_t iterations; ///< of the conjugate gradients, at most
-    double inverse_h2; ///< 1/s2, 1/h^2: compliance times it is on the diagonal
+    double inverse_h2;   ///< 1/s2, 1/h^2: compliance times it is on the diagonal
 } ProjectionRules;
 
 typedef struct Network {
     uint32_t particle_count, group_count;
-    double (*position)[3];  ///< m
-    double *inverse_mass;   ///< 1/kg; in the system
-    uint8_t *held;          ///< 1: not moved, but in the system with its inverse mass
+    double (*position)[3]; ///< m
+    double *inverse_mass;  ///< 1/kg; in the system
+    uint8_t *held;         ///< 1: not moved, but in the system with its inverse mass
     SpringGroup *groups;
     ProjectionRules rules;
     const struct ConjugateKernel *kernel; ///< never NULL
-    bool matrix;            ///< patterns and scratch of the projection are there
+    bool matrix;                          ///< patterns and scratch of the projection are there
     // scratch that the groups share, as long as the largest needs
-    double (*gradient)[3];  ///< of C at end b; at end a it is the opposite
-    double *value;          ///< of the matrix, scaled to a unit diagonal
-    double *scale;          ///< 1/sqrt(diagonal), 0 for what is not in the system
+    double (*gradient)[3];                             ///< of C at end b; at end a it is the opposite
+    double *value;                                     ///< of the matrix, scaled to a unit diagonal
+    double *scale;                                     ///< 1/sqrt(diagonal), 0 for what is not in the system
     double *solution, *residual, *direction, *product; ///< of the conjugate gradients
     double *partial;
     uint32_t row_max;
@@ -67,8 +67,8 @@ typedef struct NetworkSprings {
 
 /// Positions, masses, lengths and weights are left for the caller to fill in. `matrix`: with what network_project
 /// needs. On failure (out of memory) *network holds nothing.
-SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count,
-                           const NetworkSprings *springs, bool matrix, Network *network);
+SingeResult network_create(Memory *memory, uint32_t particle_count, uint32_t group_count, const NetworkSprings *springs,
+                           bool matrix, Network *network);
 void network_free(Memory *memory, Network *network);
 
 /// Result of a projection.

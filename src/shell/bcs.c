@@ -46,13 +46,12 @@ static bool any_seams(const SheetSource *sources, uint32_t source_count) {
 }
 
 static bool shell_alloc(Memory *memory, bool seams, Shell *shell) {
-    if (seams && (!NEW(memory, shell->corner_uv, shell->cell_count) ||
-                  !NEW(memory, shell->corner_source, shell->cell_count)))
+    if (seams &&
+        (!NEW(memory, shell->corner_uv, shell->cell_count) || !NEW(memory, shell->corner_source, shell->cell_count)))
         return false;
     return NEW(memory, shell->cells, shell->cell_count) && NEW(memory, shell->cell_springs, shell->cell_count) &&
-           NEW(memory, shell->rest_position, shell->particle_count) &&
-           NEW(memory, shell->uv, shell->particle_count) && NEW(memory, shell->sheets, shell->sheet_count) &&
-           NEW(memory, shell->matter.sheet, shell->particle_count) &&
+           NEW(memory, shell->rest_position, shell->particle_count) && NEW(memory, shell->uv, shell->particle_count) &&
+           NEW(memory, shell->sheets, shell->sheet_count) && NEW(memory, shell->matter.sheet, shell->particle_count) &&
            NEW(memory, shell->cell_order, shell->cell_count) &&
            NEW(memory, shell->source_vertex, shell->vertex_count) &&
            NEW(memory, shell->fan_first, (size_t)shell->vertex_count + 1) &&
@@ -102,8 +101,8 @@ static void bcs_lay_sheet(Shell *shell, uint32_t index, const SheetSource *sourc
             if (!shell->corner_uv) continue;
             memcpy(shell->corner_uv[sheet->cell_first + c][i], corner_uv, 2 * sizeof *corner_uv);
             int32_t from = source->corner_source ? source->corner_source[c][i] : -1;
-            shell->corner_source[sheet->cell_first + c][i] = from < 0 ? shell->source_vertex[corner]
-                                                                      : (int32_t)sheet->source_first + from;
+            shell->corner_source[sheet->cell_first + c][i] =
+                from < 0 ? shell->source_vertex[corner] : (int32_t)sheet->source_first + from;
         }
         shell->matter.sheet[centre + c] = (uint16_t)index;
     }
@@ -195,8 +194,7 @@ static void join_in_cells(const HalfEdges *mesh, int colour, LooseSprings *loose
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         const CellSprings *springs = &shell->cell_springs[c];
         for (int i = 0; i < 2; i++) {
-            if (colour == SINGE_RED)
-                strand_join(loose, 2 * springs->red[i], 2 * springs->red[i + 2]);
+            if (colour == SINGE_RED) strand_join(loose, 2 * springs->red[i], 2 * springs->red[i + 2]);
             else if (springs->green[i] != SHELL_NONE && springs->green[i + 2] != SHELL_NONE)
                 strand_join(loose, 2 * springs->green[i] + (c > half_edge_across(mesh, c, i)),
                             2 * springs->green[i + 2] + (c > half_edge_across(mesh, c, i + 2)));
@@ -297,8 +295,8 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     if (!shell_alloc(memory, any_seams(sources, source_count), shell) ||
         (bcs_lay_sheets(shell, sources), list_fans(shell), !colour_cells(memory, shell)) ||
         !matter_create(memory, shell, sources))
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
-                           shell->cell_count);
+        result =
+            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
     if (result == SINGE_OK) result = build_springs(memory, shell, error);
     if (result == SINGE_OK) {
         measure_particles(shell);
@@ -308,8 +306,8 @@ SingeResult shell_create(Memory *memory, const SheetSource *sources, uint32_t so
     if (result == SINGE_OK && !split_reserve(memory, shell))
         result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of tears");
     if (result == SINGE_OK && !fibre_measure(memory, shell))
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells",
-                           shell->cell_count);
+        result =
+            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for a shell of %u cells", shell->cell_count);
     if (result != SINGE_OK) shell_free(memory, shell);
     return result;
 }

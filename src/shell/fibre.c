@@ -28,7 +28,8 @@ static Float3 fibre_along_u(const Shell *shell, uint32_t cell, Float3 a, Float3 
         db[k] = shell_corner_uv(shell, cell, 3)[k] - shell_corner_uv(shell, cell, 1)[k];
     }
     float turn = da[0] * db[1] - db[0] * da[1];
-    if (turn == 0) return float3_sub(float3_load(shell->rest_position[corner[1]]), float3_load(shell->rest_position[corner[0]]));
+    if (turn == 0)
+        return float3_sub(float3_load(shell->rest_position[corner[1]]), float3_load(shell->rest_position[corner[0]]));
     Float3 along = float3_sub(float3_scale(a, db[1]), float3_scale(b, da[1]));
     return turn > 0 ? along : float3_scale(along, -1);
 }

@@ -69,8 +69,8 @@ static SingeResult match_edges(Memory *memory, Shell *shell, HalfEdges *mesh, Si
         sort_by(shell, half_low, by_high, order, slot);
         result = match(order, shell, mesh, error);
     } else {
-        result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of %u cells",
-                           shell->cell_count);
+        result =
+            error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for the edges of %u cells", shell->cell_count);
     }
     FREE(memory, by_high, count);
     FREE(memory, order, count);

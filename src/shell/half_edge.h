@@ -9,10 +9,10 @@
 #include "shell/shell.h"
 
 typedef struct HalfEdges {
-    const Shell *shell;   ///< whose vertices and cells these are
-    uint32_t *twin;       ///< [4 * cell_count], or SHELL_NONE at the boundary
-    uint32_t *fan_start;  ///< [vertex_count] half-edge leaving the vertex, first in turning order
-    uint32_t *fan_size;   ///< [vertex_count] cells around the vertex
+    const Shell *shell;  ///< whose vertices and cells these are
+    uint32_t *twin;      ///< [4 * cell_count], or SHELL_NONE at the boundary
+    uint32_t *fan_start; ///< [vertex_count] half-edge leaving the vertex, first in turning order
+    uint32_t *fan_size;  ///< [vertex_count] cells around the vertex
     uint32_t fan_longest;
     uint32_t edge_count;
     uint32_t shared_count; ///< edges with two cells

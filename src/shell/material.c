@@ -41,10 +41,10 @@ static const ParamRule param_rules[] = {
 #define RULE(member, param, where, ...) {#member, offsetof(SingeMaterialDef, member), param, where, __VA_ARGS__},
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) RULE(name, number, where, range)
 #define SINGE_PARAM_BACK SINGE_PARAM
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                      \
-    RULE(name[SINGE_RED], number + SINGE_RED, AT_BOTH, range)                     \
-    RULE(name[SINGE_GREEN], number + SINGE_GREEN, AT_BOTH, range)                 \
-    RULE(name[SINGE_BLUE], number + SINGE_BLUE, AT_BOTH, range)                   \
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)      \
+    RULE(name[SINGE_RED], number + SINGE_RED, AT_BOTH, range)     \
+    RULE(name[SINGE_GREEN], number + SINGE_GREEN, AT_BOTH, range) \
+    RULE(name[SINGE_BLUE], number + SINGE_BLUE, AT_BOTH, range)   \
     RULE(name[SINGE_YELLOW], number + SINGE_YELLOW, AT_BOTH, range)
 #include "singe/material.def"
 };
@@ -174,8 +174,8 @@ static SingeResult evaluate(const ParamField *field, const ParamRule *rule, floa
     rule_range(rule, sheet, &begin, &end);
     for (uint32_t i = begin; i < end; i++) {
         uint32_t cell = i - sheet->vertex_count;
-        values[i] = i < sheet->vertex_count ? field_value(field, &i, 1, 0)
-                                            : field_value(field, source->cells[cell], 4, cell);
+        values[i] =
+            i < sheet->vertex_count ? field_value(field, &i, 1, 0) : field_value(field, source->cells[cell], 4, cell);
         TRY(check_value(rule, sheet, i, values[i], error));
     }
     return SINGE_OK;
@@ -191,9 +191,12 @@ static void keep_values(Memory *memory, SheetSource *source, int param) {
 
 /// What several parameters make together may leave what a float can hold.
 static SingeResult check_matter(const SheetSource *source, SingeError *error) {
-    static const struct { int param; const char *name; } made[] = {
-        {PARAM_DIFFUSIVITY, "diffusivity"}, {PARAM_LAYER_EXCHANGE, "layer_exchange"}, {PARAM_MASS_RATE, "mass_rate"},
-        {PARAM_HEAT_SHARE, "heat_of_combustion"}, {PARAM_CHAR_HEAT, "char_heat"}, {PARAM_CHAR_RATE, "char_rate"}};
+    static const struct {
+        int param;
+        const char *name;
+    } made[] = {{PARAM_DIFFUSIVITY, "diffusivity"}, {PARAM_LAYER_EXCHANGE, "layer_exchange"},
+                {PARAM_MASS_RATE, "mass_rate"},     {PARAM_HEAT_SHARE, "heat_of_combustion"},
+                {PARAM_CHAR_HEAT, "char_heat"},     {PARAM_CHAR_RATE, "char_rate"}};
     uint32_t total = source->sheet.vertex_count + source->sheet.cell_count;
     for (size_t k = 0; k < sizeof made / sizeof *made; k++)
         for (uint32_t i = 0; i < total; i++)
@@ -201,7 +204,7 @@ static SingeResult check_matter(const SheetSource *source, SingeError *error) {
                 return error_set(error, SINGE_ERROR_ARGUMENT, "sheet", -1, "sheet '%s': %s is too large for its %s",
                                  source->sheet.name, made[k].name,
                                  made[k].param == PARAM_HEAT_SHARE || made[k].param == PARAM_CHAR_HEAT ? "specific heat"
-                                                                                                : "grammage");
+                                                                                                       : "grammage");
     return SINGE_OK;
 }
 
@@ -212,8 +215,7 @@ SingeResult material_check_values(const SheetSource *source, SingeError *error) 
         uint32_t begin, end;
         rule_range(rule, &source->sheet, &begin, &end);
         if (!values) TRY(check_value(rule, &source->sheet, begin, source->value[rule->param], error));
-        for (uint32_t i = begin; values && i < end; i++)
-            TRY(check_value(rule, &source->sheet, i, values[i], error));
+        for (uint32_t i = begin; values && i < end; i++) TRY(check_value(rule, &source->sheet, i, values[i], error));
     }
     return check_matter(source, error);
 }

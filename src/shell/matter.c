@@ -29,8 +29,8 @@ static Field *matter_field(Matter *matter, int param) {
 #define MATTER(field) &matter->field
 #define MATTER_NONE NULL
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) [number] = field,
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                                                \
-    [number] = &matter->name[0], [number + 1] = &matter->name[1], [number + 2] = &matter->name[2],          \
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                                       \
+    [number] = &matter->name[0], [number + 1] = &matter->name[1], [number + 2] = &matter->name[2], \
     [number + 3] = &matter->name[3],
 #include "singe/material.def"
     };
@@ -46,8 +46,7 @@ static bool matter_varies(const SheetSource *source, int param) {
     case PARAM_MASS_RATE:
     case PARAM_CHAR_RATE:
         return values[param] || (values[PARAM_GRAMMAGE] && source->sheet.material.reference_grammage > 0);
-    case PARAM_HEAT_SHARE:
-        return values[param] || values[PARAM_HEAT_OF_COMBUSTION] || values[PARAM_SPECIFIC_HEAT];
+    case PARAM_HEAT_SHARE: return values[param] || values[PARAM_HEAT_OF_COMBUSTION] || values[PARAM_SPECIFIC_HEAT];
     case PARAM_HEAT_OF_COMBUSTION: return values[param] || values[PARAM_HEAT_SHARE];
     case PARAM_CHAR_HEAT: return values[param] || values[PARAM_SPECIFIC_HEAT];
     case PARAM_CHAR_YIELD: return values[param] || values[PARAM_MASS_MIN];
@@ -61,8 +60,7 @@ float matter_value(const SheetSource *source, int param, uint32_t i) {
     case PARAM_DIFFUSIVITY:
     case PARAM_LAYER_EXCHANGE:
     case PARAM_MASS_RATE:
-    case PARAM_CHAR_RATE:
-        return reference > 0 ? value * (reference / sheet_param(source, PARAM_GRAMMAGE, i)) : value;
+    case PARAM_CHAR_RATE: return reference > 0 ? value * (reference / sheet_param(source, PARAM_GRAMMAGE, i)) : value;
     case PARAM_HEAT_SHARE:
         return value * sheet_param(source, PARAM_HEAT_OF_COMBUSTION, i) / sheet_param(source, PARAM_SPECIFIC_HEAT, i);
     case PARAM_CHAR_HEAT: return value / sheet_param(source, PARAM_SPECIFIC_HEAT, i);

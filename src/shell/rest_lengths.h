@@ -5,11 +5,11 @@
 #include "shell/shell.h"
 
 typedef struct CellShape {
-    double centre[3];      ///< m, mean of the corners
-    double normal[3];      ///< unit, towards the front; zero where the vector area is
-    double vector_area;    ///< m2, length of half the cross product of the diagonals
-    double area;           ///< m2, of the four triangles around the centre
-    double corner_area[4]; ///< m2, each corner's share; sums to `area`
+    double centre[3];         ///< m, mean of the corners
+    double normal[3];         ///< unit, towards the front; zero where the vector area is
+    double vector_area;       ///< m2, length of half the cross product of the diagonals
+    double area;              ///< m2, of the four triangles around the centre
+    double corner_area[4];    ///< m2, each corner's share; sums to `area`
     double shortest, longest; ///< m, sides
 } CellShape;
 

@@ -61,8 +61,7 @@ static SingeResult check_def(const SingeSheetDef *def, const char *name, SingeEr
     if (def->corner_uv && !def->uv) return argument(name, "corner_uv needs uv, too", error);
     if (def->corner_source_vertex && (!def->corner_uv || !def->source_vertex))
         return argument(name, "corner_source_vertex needs corner_uv and source_vertex, too", error);
-    if (def->source_vertex && def->source_count > INT32_MAX)
-        return argument(name, "source_count is too large", error);
+    if (def->source_vertex && def->source_count > INT32_MAX) return argument(name, "source_count is too large", error);
     if (def->attribute_count && !def->attributes) return argument(name, "attributes are NULL", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (!def->attributes[i].name || !def->attributes[i].values)
@@ -204,11 +203,15 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
 
 SingeResult sheet_source_check(const SheetSource *source, SingeError *error) {
     const Sheet *sheet = &source->sheet;
-    SingeSheetDef def = {.struct_size = sizeof def, .vertex_count = sheet->vertex_count,
-                         .cell_count = sheet->cell_count, .positions = (const float *)source->position,
-                         .cells = (const uint32_t *)source->cells, .uv = (const float *)source->uv,
+    SingeSheetDef def = {.struct_size = sizeof def,
+                         .vertex_count = sheet->vertex_count,
+                         .cell_count = sheet->cell_count,
+                         .positions = (const float *)source->position,
+                         .cells = (const uint32_t *)source->cells,
+                         .uv = (const float *)source->uv,
                          .drop_pieces_below = sheet->drop_pieces_below,
-                         .corner_uv = (const float *)source->corner_uv, .source_vertex = source->source_vertex,
+                         .corner_uv = (const float *)source->corner_uv,
+                         .source_vertex = source->source_vertex,
                          .source_count = sheet->source_count,
                          .corner_source_vertex = (const int32_t *)source->corner_source};
     memcpy(&def.material, &sheet->material, sizeof def.material);

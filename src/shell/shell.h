@@ -21,7 +21,7 @@
 typedef struct SpringSet {
     uint32_t count;
     uint32_t (*ends)[2];
-    float *rest; ///< m, initial length
+    float *rest;  ///< m, initial length
     float *grain; ///< cos 2(angle to the fibres) times the square of its share in the sheet; NULL without fibres
     uint32_t strand_count;
     uint32_t *strand_first;
@@ -42,10 +42,10 @@ typedef struct CellSprings {
 /// Material of each particle (its own layer: half the sheet's mass), at the grammage that it has. Area, mass and
 /// capacity of a vertex without cells are 0; it never lives.
 typedef struct Matter {
-    float *area;               ///< m2 at rest
-    float *mass;               ///< kg, initial
-    float *capacity;           ///< J/K, of the unburnt particle
-    Field capacity_ratio;      ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
+    float *area;          ///< m2 at rest
+    float *mass;          ///< kg, initial
+    float *capacity;      ///< J/K, of the unburnt particle
+    Field capacity_ratio; ///< capacity per area over its mean in the sheet; exactly 1 where it is uniform
     // from the rows of singe/material.def: the parameter, or what matter_value computes from several
 #define MATTER(field) Field field;
 #define MATTER_NONE
@@ -61,12 +61,12 @@ typedef struct Matter {
 typedef struct Sheet {
     char name[64];
     uint32_t vertex_first, vertex_count, cell_first, cell_count;
-    uint32_t spare_count;      ///< at the end of its vertices, without cells until a tear needs them (shell/split.h)
+    uint32_t spare_count; ///< at the end of its vertices, without cells until a tear needs them (shell/split.h)
     uint32_t spare_used;
     float cell_size;           ///< m, median edge
     SingeMaterialDef material; ///< for values of the whole sheet; its textures and attributes are freed
     float velocity[3];
-    float drop_pieces_below;   ///< m2
+    float drop_pieces_below;             ///< m2
     uint32_t source_first, source_count; ///< range of its vertices in the input
 } Sheet;
 
@@ -76,24 +76,24 @@ typedef struct Shell {
     CellSprings *cell_springs;
     float (*rest_position)[4];
     float (*uv)[2];
-    float (*corner_uv)[4][2];      ///< [cell_count], or NULL where no sheet has seams
-    int32_t *source_vertex;        ///< [vertex_count] vertex of the input, numbered over all sheets, or -1
-    int32_t (*corner_source)[4];   ///< [cell_count] the same of the cells' corners; NULL without corner_uv
+    float (*corner_uv)[4][2];    ///< [cell_count], or NULL where no sheet has seams
+    int32_t *source_vertex;      ///< [vertex_count] vertex of the input, numbered over all sheets, or -1
+    int32_t (*corner_source)[4]; ///< [cell_count] the same of the cells' corners; NULL without corner_uv
     SpringSet springs[SINGE_COLOUR_COUNT];
     Matter matter;
     Sheet *sheets;
-    uint32_t cell_family_count;    ///< cells coloured so that cells of one family share no corner
+    uint32_t cell_family_count; ///< cells coloured so that cells of one family share no corner
     uint32_t *cell_family_first;
-    uint32_t *cell_order;          ///< [cell_count] cells, family by family
-    uint32_t *fan_first;           ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
-    uint32_t *fan;                 ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
-    bool creases;                  ///< creases are on: a State has room for them
+    uint32_t *cell_order; ///< [cell_count] cells, family by family
+    uint32_t *fan_first;  ///< [vertex_count + 1] the cells around vertex v are fan[fan_first[v]] up to
+    uint32_t *fan;        ///< [4 cell_count] fan[fan_first[v + 1]], in order of cell
+    bool creases;         ///< creases are on: a State has room for them
     // changes by tears; all 0 where sheets cannot tear
-    uint32_t spare_count;          ///< of all sheets
-    uint32_t split_count;          ///< splits so far: whoever caches topology compares it
+    uint32_t spare_count;                       ///< of all sheets
+    uint32_t split_count;                       ///< splits so far: whoever caches topology compares it
     uint32_t edge_spare_count, edge_spare_used; ///< blue springs after those of the strands, for a tear's second edge
-    uint32_t *edge_origin;         ///< [edge_spare_count] the blue spring that it was torn from
-    uint32_t moved[SINGE_COLOUR_COUNT]; ///< max springs that a split has given another end, or made
+    uint32_t *edge_origin;                      ///< [edge_spare_count] the blue spring that it was torn from
+    uint32_t moved[SINGE_COLOUR_COUNT];         ///< max springs that a split has given another end, or made
 } Shell;
 
 /// The parameters that vary over a sheet, in the order of SheetSource.value, which snapshots have.
@@ -104,8 +104,8 @@ typedef enum ShellParam {
 } ShellParam;
 enum {
     PARAM_COUNT = 0
-#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) + 1
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) + SINGE_COLOUR_COUNT
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) +1
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) +SINGE_COLOUR_COUNT
 #include "singe/material.def"
 };
 
@@ -113,15 +113,15 @@ enum {
 /// ranges and cell_size in `sheet` are the shell's to set; here firsts and cell_size are 0.
 typedef struct SheetSource {
     Sheet sheet;
-    float (*position)[3];  ///< [vertex_count]
-    uint32_t (*cells)[4];  ///< [cell_count], of this sheet's vertices
-    float (*uv)[2];        ///< [vertex_count], zero without
-    float (*corner_uv)[4][2]; ///< [cell_count] or NULL
-    int32_t *source_vertex;   ///< [vertex_count] or NULL
+    float (*position)[3];        ///< [vertex_count]
+    uint32_t (*cells)[4];        ///< [cell_count], of this sheet's vertices
+    float (*uv)[2];              ///< [vertex_count], zero without
+    float (*corner_uv)[4][2];    ///< [cell_count] or NULL
+    int32_t *source_vertex;      ///< [vertex_count] or NULL
     int32_t (*corner_source)[4]; ///< [cell_count] or NULL
-    float value[PARAM_COUNT];   ///< each parameter, where it has one value for the sheet
-    float *values[PARAM_COUNT]; ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
-    void *user_data;            ///< the caller's
+    float value[PARAM_COUNT];    ///< each parameter, where it has one value for the sheet
+    float *values[PARAM_COUNT];  ///< [vertex_count + cell_count] where it varies, vertices first; else NULL
+    void *user_data;             ///< the caller's
 } SheetSource;
 
 /// uv of corner i of a cell, as this cell has it.
@@ -156,32 +156,32 @@ void shell_free(Memory *memory, Shell *shell);
 // State: what changes from step to step. Each stage writes its own part only.
 
 typedef struct HeatState {
-    float *temperature;      ///< [particles] K
-    float *temperature_peak; ///< [particles] K, highest so far
+    float *temperature;                            ///< [particles] K
+    float *temperature_peak;                       ///< [particles] K, highest so far
     double heat_in, heat_lost, heat_of_combustion; ///< J, cumulative
 } HeatState;
 
 typedef struct BurnState {
-    float *mass;          ///< [particles] fraction of the initial
-    float *fuel;          ///< [particles] share that can still pyrolyse, 1 to 0; with the mass it gives char and ash
-    float *burn_rate;     ///< [particles] 1/s of the step just done
-    float *release;       ///< [particles] K/s, heating by the step just done
-    float *time_ignited;  ///< [particles] s, -1 before
-    float *time_burnt;    ///< [particles] s, -1 before; when m fell below m_loss
+    float *mass;         ///< [particles] fraction of the initial
+    float *fuel;         ///< [particles] share that can still pyrolyse, 1 to 0; with the mass it gives char and ash
+    float *burn_rate;    ///< [particles] 1/s of the step just done
+    float *release;      ///< [particles] K/s, heating by the step just done
+    float *time_ignited; ///< [particles] s, -1 before
+    float *time_burnt;   ///< [particles] s, -1 before; when m fell below m_loss
     float *spring_length[SINGE_COLOUR_COUNT]; ///< target lengths, eq 6
-    double mass_burnt;    ///< kg gone as gas
+    double mass_burnt;                        ///< kg gone as gas
 } BurnState;
 
 typedef struct AblateState {
     uint8_t *particle_flags; ///< SINGE_ALIVE; SINGE_PINNED repeats dynamics.pinned for views (sim/objects.c sets both)
-    uint8_t *cell_flags;      ///< SINGE_ALIVE while any of its triangles is
+    uint8_t *cell_flags;     ///< SINGE_ALIVE while any of its triangles is
     uint8_t *spring_flags[SINGE_COLOUR_COUNT];
-    uint16_t *degree;         ///< [particles] springs alive at the particle
-    int32_t *piece;           ///< [particles] id, -1 when gone
+    uint16_t *degree; ///< [particles] springs alive at the particle
+    int32_t *piece;   ///< [particles] id, -1 when gone
     uint32_t next_piece, piece_count;
     uint64_t topology_version;
-    double heat_removed;      ///< J, enthalpy that left with removed particles
-    double mass_removed;      ///< kg
+    double heat_removed; ///< J, enthalpy that left with removed particles
+    double mass_removed; ///< kg
 } AblateState;
 
 typedef struct DynamicsState {
@@ -222,7 +222,7 @@ typedef struct TearState {
 } TearState;
 
 typedef struct State {
-    double time;   ///< s
+    double time; ///< s
     uint64_t step;
     HeatState heat;
     BurnState burn;
@@ -230,7 +230,7 @@ typedef struct State {
     DynamicsState dynamics;
     GasState gas;
     TearState tear;
-    void *arena;   ///< all arrays above except the gas's lie in one block
+    void *arena; ///< all arrays above except the gas's lie in one block
     size_t arena_size;
     size_t basic_size; ///< of the arena's start: all except the springs' lengths, which follow from the rest
 } State;
@@ -238,7 +238,7 @@ typedef struct State {
 /// What a stage reads of the State: the parts that it does not write. The part that it writes is NULL here, and an
 /// argument of its own, so that no part is reached by two pointers of which one writes.
 typedef struct StateInput {
-    double time;   ///< s
+    double time; ///< s
     uint64_t step;
     const HeatState *heat;
     const BurnState *burn;
@@ -264,7 +264,10 @@ typedef struct EventList {
 
 static inline void event_push(EventList *list, SingeEventKind kind, int32_t element, double time,
                               const float *position) {
-    if (list->count == list->capacity) { list->dropped++; return; }
+    if (list->count == list->capacity) {
+        list->dropped++;
+        return;
+    }
     list->items[list->count++] = (SingeEvent){kind, element, time, {position[0], position[1], position[2]}};
 }
 

@@ -97,8 +97,7 @@ static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex
     blue->rest[spare] = blue->rest[edge];
     if (blue->grain) blue->grain[spare] = blue->grain[edge];
     uint32_t origin = edge, ordinary = blue->count - shell->edge_spare_count;
-    shell->edge_origin[shell->edge_spare_used++] =
-        origin < ordinary ? origin : shell->edge_origin[origin - ordinary];
+    shell->edge_origin[shell->edge_spare_used++] = origin < ordinary ? origin : shell->edge_origin[origin - ordinary];
     for (int i = 0; i < 4; i++)
         if (stayer->green[i] == torn.green) stayer->green[i] = SHELL_NONE;
     goer->green[side] = SHELL_NONE;

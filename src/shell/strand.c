@@ -10,12 +10,12 @@
 typedef struct Trace {
     const LooseSprings *springs;
     uint32_t strand_count;
-    uint32_t length;    ///< steps written
-    uint32_t *steps;    ///< [springs]
-    uint32_t *first;    ///< [springs + 1]
-    uint8_t *ring;      ///< [springs]
-    uint8_t *done;      ///< [springs] spring is in a strand
-    uint32_t *visitor;  ///< [particles] last strand to touch it, SHELL_NONE before
+    uint32_t length;   ///< steps written
+    uint32_t *steps;   ///< [springs]
+    uint32_t *first;   ///< [springs + 1]
+    uint8_t *ring;     ///< [springs]
+    uint8_t *done;     ///< [springs] spring is in a strand
+    uint32_t *visitor; ///< [particles] last strand to touch it, SHELL_NONE before
 } Trace;
 
 static uint32_t step_from(const LooseSprings *springs, uint32_t step) { return springs->ends[step / 2][step & 1]; }

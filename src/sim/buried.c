@@ -6,8 +6,8 @@ enum { BURIED_SAMPLES = 4096 }; // vertices that are looked at, evenly spread
 
 typedef struct Buried {
     uint32_t inside, looked_at;
-    float deepest; ///< m
-    Float3 position;     ///< of the deepest
+    float deepest;   ///< m
+    Float3 position; ///< of the deepest
 } Buried;
 
 static Buried buried_in(const SingeSim *sim, const Collider *collider) {

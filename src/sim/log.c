@@ -24,15 +24,15 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
             1e3 * (double)sheet->cell_size, (double)sim->thickening[index]);
     float h = def->time_step / (float)dynamics_plan_substeps(sim->dynamics);
     if (sim->tear)
-        sim_log(sim, SINGE_LOG_INFO,
-                "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more", index,
-                (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
+        sim_log(sim, SINGE_LOG_INFO, "sheet %u: tears at line forces up to %.3g N/m; substeps of %.3g ms carry no more",
+                index, (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
     float gravity = float3_length(float3_load(def->gravity));
     if (gravity * h * h > fall_max * sheet->cell_size)
-        sim_log(sim, SINGE_LOG_WARNING,
-                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; use more substeps or a "
-                "smaller time step",
-                index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
+        sim_log(
+            sim, SINGE_LOG_WARNING,
+            "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "
+            "use more substeps or a smaller time step",
+            index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
 }
 
 /// The stopping rules of the methods that iterate (docs/equations.md).
@@ -82,9 +82,10 @@ void sim_log_short_of_spares(SingeSim *sim) {
 void sim_log_unconverged(SingeSim *sim) {
     if (sim->heat_warned) return;
     sim->heat_warned = true;
-    sim_log(sim, SINGE_LOG_WARNING,
-            "heat: conduction does not converge to heat_tolerance in 200 iterations; use a smaller time_step or pace, or "
-            "a larger tolerance (reported once)");
+    sim_log(
+        sim, SINGE_LOG_WARNING,
+        "heat: conduction does not converge to heat_tolerance in 200 iterations; use a smaller time_step or pace, or "
+        "a larger tolerance (reported once)");
 }
 
 void sim_log_contacts(SingeSim *sim, const CollisionCounters *contacts) {

@@ -62,8 +62,7 @@ SingeResult singe_sim_add_collider(SingeSim *sim, const SingeColliderDef *given,
     uint32_t index;
     Collider *collider =
         sim_slot(sim, &sim->colliders.items, &sim->colliders.count, &sim->colliders.capacity, sizeof *collider, &index);
-    if (!collider ||
-        (sim->dynamics && !dynamics_plan_reserve(&sim->memory, sim->dynamics, index + 1)))
+    if (!collider || (sim->dynamics && !dynamics_plan_reserve(&sim->memory, sim->dynamics, index + 1)))
         return sim_fail(sim, SINGE_ERROR_MEMORY, "collider", -1, "out of memory");
     TRY(collider_create(&sim->memory, &def, collider, &sim->error));
     if (collider->mesh.turned || (collider->deform.pose && deform_solid(&collider->deform)->turned))

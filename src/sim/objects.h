@@ -5,12 +5,12 @@
 #include "sim/sim_internal.h"
 
 /// The part of a caller's Def that it knows, over the defaults; fails where its struct_size is not set.
-#define OBJECT_DEF(sim, stage, local, given, defaults)                                        \
-    do {                                                                                      \
-        (local) = (defaults)();                                                               \
-        if (!sim_read_def(&(local), sizeof(local), (given), SIZE_MAX))                        \
-            return sim_fail((sim), SINGE_ERROR_ARGUMENT, (stage), -1,                         \
-                            "struct_size is not set; start from " #defaults "()");            \
+#define OBJECT_DEF(sim, stage, local, given, defaults)                             \
+    do {                                                                           \
+        (local) = (defaults)();                                                    \
+        if (!sim_read_def(&(local), sizeof(local), (given), SIZE_MAX))             \
+            return sim_fail((sim), SINGE_ERROR_ARGUMENT, (stage), -1,              \
+                            "struct_size is not set; start from " #defaults "()"); \
     } while (0)
 
 static inline SingeResult object_stale(SingeSim *sim, const char *stage, uint32_t index) {
@@ -18,9 +18,9 @@ static inline SingeResult object_stale(SingeSim *sim, const char *stage, uint32_
 }
 
 /// Finds an object by its handle; NULL when stale.
-#define OBJECT_FIND(list, id) \
+#define OBJECT_FIND(list, id)                                                                                    \
     ((id).generation != 0 && (id).index < (list).count && (list).items[(id).index].generation == (id).generation \
-         ? &(list).items[(id).index] \
+         ? &(list).items[(id).index]                                                                             \
          : NULL)
 
 #endif

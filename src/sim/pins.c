@@ -143,8 +143,8 @@ static SingeResult pin_hold(SingeSim *sim, const SingePinDef *def, Pin *pin) {
     for (uint32_t k = 0; k < pin->count; k++) {
         uint32_t particle = pin->particles[k];
         if (sim->state.dynamics.pinned[particle] == UINT8_MAX)
-            return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle,
-                             "particle %u is held by 255 pins already", particle);
+            return error_set(&sim->error, SINGE_ERROR_LIMIT, "pin", particle, "particle %u is held by 255 pins already",
+                             particle);
     }
     pin_count(sim, pin, 1);
     return SINGE_OK;
@@ -161,10 +161,8 @@ SingeResult singe_sim_add_pin(SingeSim *sim, const SingePinDef *given, SingePinI
     TRY(path_set(&pin->path, &sim->memory, def.path_count, def.path, "pin", &sim->error));
     pin->user_data = def.user_data;
     SingeResult result = SINGE_OK;
-    if (sim->committed)
-        result = pin_hold(sim, &def, pin);
-    else if (!pin_wait(sim, &def, pin))
-        result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
+    if (sim->committed) result = pin_hold(sim, &def, pin);
+    else if (!pin_wait(sim, &def, pin)) result = sim_fail(sim, SINGE_ERROR_MEMORY, "pin", -1, "out of memory");
     if (result) {
         sim_free_pin(sim, pin);
         return result;

@@ -77,7 +77,8 @@ SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t firs
             const uint32_t v = sim->shell.cells[c][i];
             if (v < begin || v - begin >= count) continue;
             float *centre = now[shell_centre(&sim->shell, c)];
-            for (int k = 0; k < 3; k++) centre[k] += 0.25f * (velocity[3 * (size_t)(v - begin) + (size_t)k] - now[v][k]);
+            for (int k = 0; k < 3; k++)
+                centre[k] += 0.25f * (velocity[3 * (size_t)(v - begin) + (size_t)k] - now[v][k]);
         }
 
     for (uint32_t v = 0; v < count; v++) memcpy(now[begin + v], velocity + 3 * (size_t)v, 3 * sizeof *velocity);

@@ -12,8 +12,10 @@ static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
 #define EVEN(value) singe_param(value)
-#define NOISE(from, to_, scale, octaves, seed) \
-    {.value = (from), .to = (to_), .field = SINGE_FIELD_NOISE, .noise = {scale, octaves, seed}}
+#define NOISE(from, to_, scale, octaves, seed)                                                      \
+    {                                                                                               \
+        .value = (from), .to = (to_), .field = SINGE_FIELD_NOISE, .noise = { scale, octaves, seed } \
+    }
 #define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) .name = standard,
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define SINGE_SCALAR(type, name, standard, text) .name = standard,
@@ -214,7 +216,8 @@ void singe_init_sheet(SingeSheetDef *def, size_t struct_size) {
     fill_def(def, head, &standard, head);
     memcpy(def, &struct_size, sizeof struct_size);
     fill_def(bytes + head, inner, &standard.material, sizeof standard.material);
-    defaults_fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail, sizeof standard - tail);
+    defaults_fill(bytes + head + inner, struct_size - head - inner, (const char *)&standard + tail,
+                  sizeof standard - tail);
 }
 
 void singe_init_sim(SingeSimDef *def, size_t struct_size) {

@@ -36,22 +36,22 @@ struct SingeSim {
     double heat_start; ///< J, enthalpy at the start
     void *backup;      ///< the state's basic part before the step
     EventList events;
-    EventList gathered;   ///< of the steps of the last advance
-    bool gathers;         ///< the last step was one of an advance
-    double remainder;     ///< s that an advance has left for the next
+    EventList gathered; ///< of the steps of the last advance
+    bool gathers;       ///< the last step was one of an advance
+    double remainder;   ///< s that an advance has left for the next
     SingeTimers timers;
     bool intersecting_warned, crossing_warned, crowd_warned; ///< of contact, once each
-    bool heat_warned;  ///< that the diffusion ran out of iterations
-    bool tear_warned;  ///< that a sheet ran out of spare vertices
+    bool heat_warned;                                        ///< that the diffusion ran out of iterations
+    bool tear_warned;                                        ///< that a sheet ran out of spare vertices
 
     // plans and scratch of the stages
     HeatPlan *heat;
     AblatePlan *ablate;
     DynamicsPlan *dynamics;
-    GasPlan *gas; ///< NULL without gas
-    TearPlan *tear; ///< NULL where sheets cannot tear
-    double *partial;      ///< [pool_blocks(particles)]
-    float *sample;        ///< [blue springs], at least as many as cells: of a statistic
+    GasPlan *gas;    ///< NULL without gas
+    TearPlan *tear;  ///< NULL where sheets cannot tear
+    double *partial; ///< [pool_blocks(particles)]
+    float *sample;   ///< [blue springs], at least as many as cells: of a statistic
 };
 
 /// One step, for singe_sim_step and singe_sim_advance.

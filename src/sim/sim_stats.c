@@ -52,7 +52,7 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
             ablate_level(&sim->shell, &sim->state, blue->ends[k][1]) < 0)
             continue;
         Float3 d = float3_sub(float3_load(sim->state.dynamics.position[blue->ends[k][1]]),
-                        float3_load(sim->state.dynamics.position[blue->ends[k][0]]));
+                              float3_load(sim->state.dynamics.position[blue->ends[k][0]]));
         float strain = fabsf(float3_length(d) / sim->state.burn.spring_length[SINGE_BLUE][k] - 1);
         sum += (double)strain;
         if ((double)strain > stats->strain_max) stats->strain_max = (double)strain;
@@ -136,11 +136,10 @@ static void stats_ledgers(const SingeSim *sim, SingeStats *stats) {
     stats->heat_lost = state->heat.heat_lost + state->ablate.heat_removed;
     stats->heat_stored = sim_enthalpy(sim) - sim->heat_start;
     double max = fmax(fmax(fabs(stats->heat_in), fabs(stats->heat_of_combustion)),
-                       fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
+                      fmax(fabs(stats->heat_lost), fabs(stats->heat_stored)));
     double error = stats->heat_in + stats->heat_of_combustion - stats->heat_lost - stats->heat_stored;
     stats->ledger_error = max > 0 ? fabs(error) / max : 0;
-    stats->ledgers_close =
-        stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
+    stats->ledgers_close = stats->ledger_error <= SINGE_LEDGER_BOUND && stats->mass_ledger_error <= SINGE_LEDGER_BOUND;
 }
 
 static SingeStats stats_now(const SingeSim *sim) {

@@ -14,17 +14,19 @@
 enum { SNAPSHOT_VERSION = 7 };
 
 typedef struct SnapshotHeader {
-    char magic[8];      ///< "SINGESIM"
+    char magic[8];           ///< "SINGESIM"
     uint32_t version, order; ///< order reads 0x01020304 on a machine of the same byte order
     uint64_t size, checksum; ///< of the body
-    uint32_t sizes[4];  ///< of what the body is made of: another build's layout is refused
-    uint32_t reserved[2]; ///< 0
+    uint32_t sizes[4];       ///< of what the body is made of: another build's layout is refused
+    uint32_t reserved[2];    ///< 0
 } SnapshotHeader;
 _Static_assert(sizeof(SnapshotHeader) == 56, "a snapshot begins with these bytes, without padding");
 _Static_assert(sizeof(SingePoseKey) == 32 && sizeof(SingeValueKey) == 8, "snapshots hold keys as they are");
 
 static SnapshotHeader snapshot_header(const uint8_t *body, size_t size) {
-    SnapshotHeader header = {.version = SNAPSHOT_VERSION, .order = 0x01020304u, .size = size,
+    SnapshotHeader header = {.version = SNAPSHOT_VERSION,
+                             .order = 0x01020304u,
+                             .size = size,
                              .sizes = {sizeof(SingePoseKey), sizeof(SingeValueKey), PARAM_COUNT, SINGE_COLOUR_COUNT}};
     memcpy(header.magic, "SINGESIM", 8);
     header.checksum = stream_checksum(body, size);
@@ -127,9 +129,8 @@ static bool snapshot_source(Stream *stream, SingeSim *sim, Source *source) {
     STREAM(stream, source->strength_count);
     return snapshot_path(stream, &sim->memory, &source->path) &&
            snapshot_array(stream, &sim->memory, &source->strength, source->strength_count, sizeof *source->strength) &&
-           (!has_texture ||
-            snapshot_array(stream, &sim->memory, &source->texture, sim->shell.particle_count,
-                           sizeof *source->texture)) &&
+           (!has_texture || snapshot_array(stream, &sim->memory, &source->texture, sim->shell.particle_count,
+                                           sizeof *source->texture)) &&
            snapshot_held(stream, source_check_read(&sim->shell, source, NULL) == SINGE_OK);
 }
 

@@ -93,8 +93,8 @@ static bool pins_fit(SingeSim *sim) {
 
 static bool sums_fit(const SingeSim *sim) {
     const State *state = &sim->state;
-    const double sums[] = {state->heat.heat_in,        state->heat.heat_lost,      state->heat.heat_of_combustion,
-                           state->burn.mass_burnt,     state->ablate.heat_removed, state->ablate.mass_removed,
+    const double sums[] = {state->heat.heat_in,    state->heat.heat_lost,      state->heat.heat_of_combustion,
+                           state->burn.mass_burnt, state->ablate.heat_removed, state->ablate.mass_removed,
                            sim->heat_start};
     for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
         if (!isfinite(sums[k])) return false;

@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-
 /// Adds the time since *start to a stage and starts the next.
 static void step_lap(SingeSim *sim, SingeStage stage, double *start) {
     double now = clock_seconds();
@@ -32,8 +31,7 @@ static void step_share(SingeSim *sim, uint32_t vertex, uint32_t spare) {
     dynamics_plan_torn(sim->dynamics, vertex, spare);
     if (sim->gas) gas_plan_torn(sim->gas, vertex, spare);
     for (uint32_t i = 0; i < sim->sources.count; i++)
-        if (sim->sources.items[i].texture)
-            sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
+        if (sim->sources.items[i].texture) sim->sources.items[i].texture[spare] = sim->sources.items[i].texture[vertex];
 }
 
 /// Tears, and what follows from them.

@@ -1,19 +1,20 @@
 // Objects that there are, and what callers keep with them.
 #include "sim/objects.h"
 
-/// The handles of a list's objects, at most `capacity` of them, in the order of their slots. Returns how many there are.
-#define OBJECTS_LIST(list, ids, capacity)                                              \
-    do {                                                                               \
-        uint32_t count = 0;                                                            \
-        for (uint32_t i = 0; i < (list).count; i++) {                                  \
-            if ((list).items[i].generation == 0) continue;                             \
-            if (count < (capacity)) {                                                  \
-                (ids)[count].index = i;                                                \
-                (ids)[count].generation = (list).items[i].generation;                  \
-            }                                                                          \
-            count++;                                                                   \
-        }                                                                              \
-        return count;                                                                  \
+/// The handles of a list's objects, at most `capacity` of them, in the order of their slots. Returns how many there
+/// are.
+#define OBJECTS_LIST(list, ids, capacity)                             \
+    do {                                                              \
+        uint32_t count = 0;                                           \
+        for (uint32_t i = 0; i < (list).count; i++) {                 \
+            if ((list).items[i].generation == 0) continue;            \
+            if (count < (capacity)) {                                 \
+                (ids)[count].index = i;                               \
+                (ids)[count].generation = (list).items[i].generation; \
+            }                                                         \
+            count++;                                                  \
+        }                                                             \
+        return count;                                                 \
     } while (0)
 
 uint32_t singe_sim_sources(const SingeSim *sim, SingeSourceId *ids, uint32_t capacity) {

@@ -110,7 +110,8 @@ static void metric(const uint32_t at[4], int side, const float (*field)[4], floa
     SINGE_ASSERT(side >= 0 && side < 4);
     Float3 centre = {0, 0, 0};
     for (int i = 0; i < 4; i++) centre = float3_mad(centre, float3_load(field[at[i]]), 0.25f);
-    Float3 a = float3_sub(float3_load(field[at[side]]), centre), b = float3_sub(float3_load(field[at[(side + 1) & 3]]), centre);
+    Float3 a = float3_sub(float3_load(field[at[side]]), centre),
+           b = float3_sub(float3_load(field[at[(side + 1) & 3]]), centre);
     product[0] = float3_dot(a, a), product[1] = float3_dot(a, b), product[2] = float3_dot(b, b);
 }
 
@@ -127,8 +128,8 @@ bool fine_is_torn(const Fine *fine, uint32_t cell, int side) {
     SINGE_ASSERT(side >= 0 && side < 4);
     if (!has_lost_a_spring(fine, cell)) return false;
     float rest[3], now[3];
-    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->shell->rest_position, rest);
-    metric(fine->shell->cells[cell], side, (const float (*)[4])fine->state->dynamics.position, now);
+    metric(fine->shell->cells[cell], side, (const float(*)[4])fine->shell->rest_position, rest);
+    metric(fine->shell->cells[cell], side, (const float(*)[4])fine->state->dynamics.position, now);
     float det = rest[0] * rest[2] - rest[1] * rest[1];
     float half_trace = 0.5f * (rest[2] * now[0] - 2 * rest[1] * now[1] + rest[0] * now[2]) / det;
     float product = (now[0] * now[2] - now[1] * now[1]) / det;
@@ -195,8 +196,14 @@ static void march_triangle(Marching *march, uint32_t cell, int side, uint32_t *f
     int splits = fine->splits[cell];
     uint32_t line[2][FINE_SPLITS_MAX] = {{0}}; // cuts of the lines between rows
     for (int j = 0; j < splits; j++) {
-        Row row = {cell, side, splits, j, j == 0 ? fine_parts(fine, cell, side) : splits - j, splits - j - 1,
-                   .first = &first[j], .last = &last[j]};
+        Row row = {cell,
+                   side,
+                   splits,
+                   j,
+                   j == 0 ? fine_parts(fine, cell, side) : splits - j,
+                   splits - j - 1,
+                   .first = &first[j],
+                   .last = &last[j]};
         memset(line[j & 1], 0, sizeof line[j & 1]);
         for (int i = 0; i < row.lower; i++)
             row.lower_cut[i] = j == 0 ? side_cut(fine, cell, side, row.lower, i) : &line[(j + 1) & 1][i];

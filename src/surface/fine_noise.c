@@ -46,7 +46,7 @@ Float3 fine_rest(const Shell *shell, FineLocation location) {
 
 Float3 fine_askew(Float3 p) {
     return float3(0.7447f * p.x - 0.5389f * p.y + 0.3937f * p.z, 0.6325f * p.x + 0.7574f * p.y - 0.1598f * p.z,
-               -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
+                  -0.2121f * p.x + 0.3680f * p.y + 0.9053f * p.z);
 }
 
 /// The noise at a position: how far it eats, m, and the direction, as an angle.
@@ -87,8 +87,8 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
         x = half_at_most(depth, fine->axes[location.cell][0]), y = half_at_most(depth, fine->axes[location.cell][1]);
         float c = real_cosf(angle), s = real_sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
-        const float direction[3][2] = {{c, s}, {-0.5f * c - across * s, across * c - 0.5f * s},
-                                       {-0.5f * c + across * s, -across * c - 0.5f * s}};
+        const float direction[3][2] = {
+            {c, s}, {-0.5f * c - across * s, across * c - 0.5f * s}, {-0.5f * c + across * s, -across * c - 0.5f * s}};
         for (int i = 0; i < 3; i++) {
             FineLocation there = fine_walk(shell, location, x * direction[i][0], y * direction[i][1]);
             float value = smooth_level(fine, there);

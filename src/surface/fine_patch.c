@@ -17,7 +17,6 @@
 #include "common/check.h"
 #include "surface/surface_fine.h"
 
-
 static bool is_sound(const Fine *fine, uint32_t cell) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     bool sound = fine->state->ablate.cell_flags[cell] & SINGE_ALIVE;
@@ -30,8 +29,8 @@ static Float3 corner_of(const Fine *fine, uint32_t vertex) { return float3_load(
 /// What the cells around a vertex say of it.
 typedef struct Ring {
     uint32_t cells, borders; ///< sound ones; their sides at the vertex that have none across
-    Float3 along;               ///< sum of the neighbours along these
-    Float3 inner;               ///< sum of the cells' inner points
+    Float3 along;            ///< sum of the neighbours along these
+    Float3 inner;            ///< sum of the cells' inner points
 } Ring;
 
 static void add_borders(const Fine *fine, uint32_t cell, int corner, Ring *ring) {
@@ -105,7 +104,8 @@ static void put_rail(const Fine *fine, uint32_t cell, int i, Float3 point[2]) {
         if (!both) continue;
         int j = 0;
         while (shell->cells[other][j] != end[k]) j++;
-        point[k] = float3_scale(float3_add(float3_load(fine->inner[cell][(i + k) & 3]), float3_load(fine->inner[other][j])), 0.5f);
+        point[k] = float3_scale(
+            float3_add(float3_load(fine->inner[cell][(i + k) & 3]), float3_load(fine->inner[other][j])), 0.5f);
     }
 }
 
@@ -154,23 +154,26 @@ void fine_patches(Fine *fine) {
 
 /// Where corner i is in the net, the points next to it along the side that begins there and along the one before, and
 /// the inner one.
-static const uint8_t net_locations[4][4][2] = {
-    {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, {{3, 0}, {3, 1}, {2, 0}, {2, 1}},
-    {{3, 3}, {2, 3}, {3, 2}, {2, 2}}, {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
+static const uint8_t net_locations[4][4][2] = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}},
+                                               {{3, 0}, {3, 1}, {2, 0}, {2, 1}},
+                                               {{3, 3}, {2, 3}, {3, 2}, {2, 2}},
+                                               {{0, 3}, {0, 2}, {1, 3}, {1, 2}}};
 
 FinePatch fine_patch(const Fine *fine, uint32_t cell) {
     SINGE_ASSERT(cell < fine->shell->cell_count);
     const Shell *shell = fine->shell;
     const uint32_t *at = shell->cells[cell], *sides = shell->cell_springs[cell].blue;
-    const uint32_t (*ends)[2] = (const uint32_t (*)[2])shell->springs[SINGE_BLUE].ends;
+    const uint32_t(*ends)[2] = (const uint32_t(*)[2])shell->springs[SINGE_BLUE].ends;
     FinePatch patch;
     for (int i = 0; i < 4; i++) {
         uint32_t next = sides[i], last = sides[(i + 3) & 3];
         Float3 shift = float3_load(fine->shift[at[i]]);
-        const uint8_t (*location)[2] = net_locations[i];
+        const uint8_t(*location)[2] = net_locations[i];
         patch.net[location[0][0]][location[0][1]] = float3_load(fine->limit[at[i]]);
-        patch.net[location[1][0]][location[1][1]] = float3_add(shift, float3_load(fine->rail[next][ends[next][0] != at[i]]));
-        patch.net[location[2][0]][location[2][1]] = float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
+        patch.net[location[1][0]][location[1][1]] =
+            float3_add(shift, float3_load(fine->rail[next][ends[next][0] != at[i]]));
+        patch.net[location[2][0]][location[2][1]] =
+            float3_add(shift, float3_load(fine->rail[last][ends[last][0] != at[i]]));
         patch.net[location[3][0]][location[3][1]] = float3_add(shift, float3_load(fine->inner[cell][i]));
     }
     return patch;

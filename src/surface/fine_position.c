@@ -39,7 +39,8 @@
 
 static Float3 centre_of(const uint32_t at[4], const float (*field)[4]) {
     return float3_scale(float3_add(float3_add(float3_load(field[at[0]]), float3_load(field[at[1]])),
-                             float3_add(float3_load(field[at[2]]), float3_load(field[at[3]]))), 0.25f);
+                                   float3_add(float3_load(field[at[2]]), float3_load(field[at[3]]))),
+                        0.25f);
 }
 
 static bool is_alive(const Fine *fine, uint32_t cell) { return fine->state->ablate.cell_flags[cell] & SINGE_ALIVE; }
@@ -51,7 +52,7 @@ static float fade(float value, float low, float high) { return fmaxf(0, fminf((v
 static Float3 drawn_back(const Fine *fine, uint32_t vertex, float length) {
     SINGE_ASSERT(vertex < fine->shell->vertex_count);
     const Shell *shell = fine->shell;
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     Float3 location = float3_load(position[vertex]), sum = {0, 0, 0};
     for (uint32_t k = shell->fan_first[vertex]; k < shell->fan_first[vertex + 1]; k++)
         sum = float3_add(sum, float3_sub(centre_of(shell->cells[shell->fan[k]], position), location));
@@ -62,7 +63,7 @@ static void lessen(float *value, float max) { *value = fminf(*value, max); }
 
 /// Draws two vertices that were one back from each other, and returns the share that they may have.
 static float part_tear_edges(Fine *fine, const uint32_t tear_edge[2]) {
-    const float (*position)[4] = (const float (*)[4])fine->state->dynamics.position;
+    const float(*position)[4] = (const float(*)[4])fine->state->dynamics.position;
     const float side = fine->shell->sheets[fine->shell->matter.sheet[tear_edge[0]]].cell_size;
     float apart = float3_length(float3_sub(float3_load(position[tear_edge[0]]), float3_load(position[tear_edge[1]])));
     for (int i = 0; i < 2 && apart < TEAR_EDGES_CLOSED * side; i++)
@@ -102,14 +103,15 @@ static void fine_put_corners(Fine *fine) {
 /// Unit normals of corners and virtual centres: of the triangles around them, by their areas.
 static void gather_normals(Fine *fine) {
     const Shell *shell = fine->shell;
-    const float (*position)[4] = (const float (*)[4])fine->corner;
+    const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
         const uint32_t *at = shell->cells[c];
         Float3 centre = centre_of(at, position);
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[3] = {at[i], at[(i + 1) & 3], shell_centre(shell, c)};
-            Float3 a = float3_sub(float3_load(position[corner[0]]), centre), b = float3_sub(float3_load(position[corner[1]]), centre);
+            Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
+                   b = float3_sub(float3_load(position[corner[1]]), centre);
             Float3 doubled = float3_cross(a, b);
             for (int k = 0; k < 3; k++)
                 float3_store(fine->normal[corner[k]], float3_add(float3_load(fine->normal[corner[k]]), doubled));
@@ -130,7 +132,7 @@ static float allowed(Float3 doubled, float longest, Float3 normal) {
 /// the shortest side. The normals are in place.
 static void gather_shares(Fine *fine) {
     const Shell *shell = fine->shell;
-    const float (*position)[4] = (const float (*)[4])fine->corner;
+    const float(*position)[4] = (const float(*)[4])fine->corner;
     for (uint32_t c = 0; c < shell->cell_count; c++) {
         if (!is_alive(fine, c)) continue;
         const uint32_t *at = shell->cells[c];
@@ -138,7 +140,8 @@ static void gather_shares(Fine *fine) {
         float whole = fine->sound[c]; // what the normal at the virtual centre allows
         for (int i = 0; i < 4; i++) {
             const uint32_t corner[2] = {at[i], at[(i + 1) & 3]};
-            Float3 a = float3_sub(float3_load(position[corner[0]]), centre), b = float3_sub(float3_load(position[corner[1]]), centre);
+            Float3 a = float3_sub(float3_load(position[corner[0]]), centre),
+                   b = float3_sub(float3_load(position[corner[1]]), centre);
             Float3 doubled = float3_cross(a, b), side = float3_sub(b, a);
             float longest = fmaxf(float3_dot(side, side), fmaxf(float3_dot(a, a), float3_dot(b, b)));
             for (int k = 0; k < 2; k++) {
@@ -159,7 +162,8 @@ static int parts_of(const Fine *fine, uint32_t cell) {
     for (int i = 0; i < 4; i++) {
         freedom = fmaxf(freedom, fine->share[at[i]] * fine->max[at[i]]);
         for (int k = 0; k < i; k++)
-            turn = fmaxf(turn, float3_length(float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]))));
+            turn = fmaxf(turn,
+                         float3_length(float3_sub(float3_load(fine->normal[at[i]]), float3_load(fine->normal[at[k]]))));
     }
     int parts = 1 + (int)(turn / TURN_A_PART), max = fine_splits(fine, cell);
     return !(freedom > 0) ? 1 : parts < max ? parts : max;
@@ -195,8 +199,8 @@ static Float3 across(const FinePoint *point) { return float3_unit(float3_cross(p
 
 /// Normal of the patch where that step ends.
 static Float3 normal_beneath(const FinePatch *patch, float u, float v, float du, float dv) {
-    FinePoint point = fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)),
-                                    v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
+    FinePoint point =
+        fine_patch_at(patch, u + fmaxf(-STEP_MAX, fminf(du, STEP_MAX)), v + fmaxf(-STEP_MAX, fminf(dv, STEP_MAX)));
     return across(&point);
 }
 
@@ -213,11 +217,13 @@ static Float3 unit_or_up(Float3 normal) {
 }
 
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
-                   float normal[3]) {
+                      float normal[3]) {
     const uint32_t *at = fine->shell->cells[location->cell];
-    const float (*corners)[4] = (const float (*)[4])fine->corner;
-    const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3], shell_centre(fine->shell, location->cell)};
-    const Float3 corner[3] = {float3_load(corners[particle[0]]), float3_load(corners[particle[1]]), centre_of(at, corners)};
+    const float(*corners)[4] = (const float(*)[4])fine->corner;
+    const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3],
+                                  shell_centre(fine->shell, location->cell)};
+    const Float3 corner[3] = {float3_load(corners[particle[0]]), float3_load(corners[particle[1]]),
+                              centre_of(at, corners)};
     Float3 normals[3], flat = weigh(corner, location->weight);
     for (int i = 0; i < 3; i++) normals[i] = float3_load(fine->normal[particle[i]]);
     Float3 lean = float3_unit(weigh(normals, location->weight));
@@ -238,5 +244,6 @@ void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocati
         float3_store(position, float3_mad(flat, lean, height));
     step_beneath(&point, flat, &du, &dv);
     share *= 1 - fade(fmaxf(fabsf(du), fabsf(dv)), 0.5f * STEP_MAX, STEP_MAX);
-    float3_store(normal, unit_or_up(float3_mad(float3_scale(lean, 1 - share), normal_beneath(patch, u, v, du, dv), share)));
+    float3_store(normal,
+                 unit_or_up(float3_mad(float3_scale(lean, 1 - share), normal_beneath(patch, u, v, du, dv), share)));
 }

@@ -90,7 +90,8 @@ float fine_spline_at(const Shell *shell, const Spline *spline, FineLocation loca
 // `out` is the distance from the centre towards a side, `along` runs from its first corner to its second.
 
 void fine_coordinates(FineLocation location, float *x, float *y) {
-    float out = 0.5f * (location.weight[0] + location.weight[1]), along = 0.5f * (location.weight[1] - location.weight[0]);
+    float out = 0.5f * (location.weight[0] + location.weight[1]),
+          along = 0.5f * (location.weight[1] - location.weight[0]);
     switch (location.side) {
     case 0: *x = along, *y = -out; break;
     case 1: *x = out, *y = along; break;

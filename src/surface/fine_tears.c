@@ -18,11 +18,12 @@
 #include "surface/surface_fine.h"
 #include "common/random.h"
 
-static const float TEAR_EDGE_MIN = 0.3f;    ///< S at the tear edge: 0.16 of a cell's side beside a straight tear
+static const float TEAR_EDGE_MIN = 0.3f;       ///< S at the tear edge: 0.16 of a cell's side beside a straight tear
 static const float TEAR_EDGE_CENTROID = 0.45f; ///< z from which on something is left of a cell
-static const float TEAR_EDGE_WANDERS = 0.25f; ///< |D|, at most, of a cell's side
-static const float TEAR_EDGE_WAVE = 2.2f;    ///< largest features of D, of a cell's side
-static const float TEAR_EDGE_STRENGTH = 0.6f, TEAR_EDGE_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
+static const float TEAR_EDGE_WANDERS = 0.25f;  ///< |D|, at most, of a cell's side
+static const float TEAR_EDGE_WAVE = 2.2f;      ///< largest features of D, of a cell's side
+static const float TEAR_EDGE_STRENGTH = 0.6f,
+                   TEAR_EDGE_GAIN = 2.4f; ///< an octave's over that of the one before; of the first
 
 static const float pi = 3.14159265f;
 
@@ -81,7 +82,7 @@ static Float3 wander(const FineSheet *sheet, Float3 location, float size, float 
     for (int octave = 0; octave < sheet->octaves; octave++) {
         const uint32_t seed = sheet->seed + 3 * (uint32_t)octave + 101;
         Float3 noise = float3(random_noise(p.x, p.y, p.z, seed), random_noise(p.x, p.y, p.z, seed + 1),
-                        random_noise(p.x, p.y, p.z, seed + 2));
+                              random_noise(p.x, p.y, p.z, seed + 2));
         sum = float3_mad(sum, float3_sub(noise, float3(0.5f, 0.5f, 0.5f)), strength);
         strength *= TEAR_EDGE_STRENGTH;
         p = float3_add(float3_scale(p, 2), float3(11.83f, 17.31f, 5.77f));
@@ -99,10 +100,11 @@ float fine_tear_level(const Fine *fine, FineLocation location) {
     if (reach > 0) {
         Float3 corner[4], displacement = wander(sheet, fine_askew(fine_rest(shell, location)), size, reach);
         for (int i = 0; i < 4; i++) corner[i] = float3_load(shell->rest_position[at[i]]);
-        Float3 along = float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
+        Float3 along =
+            float3_scale(float3_sub(float3_add(corner[1], corner[2]), float3_add(corner[0], corner[3])), 0.5f);
         Float3 up = float3_scale(float3_sub(float3_add(corner[3], corner[2]), float3_add(corner[0], corner[1])), 0.5f);
         location = fine_walk(shell, location, float3_dot(displacement, along) / float3_dot(along, along),
-                          float3_dot(displacement, up) / float3_dot(up, up));
+                             float3_dot(displacement, up) / float3_dot(up, up));
     }
     float field = fine_spline_at(shell, &fine->splines[SPLINE_TEAR_EDGE], location);
     return 0.5f * fmaxf(field - TEAR_EDGE_MIN, location.weight[2] - TEAR_EDGE_CENTROID);

@@ -34,8 +34,8 @@ static void vertices_fill(const Fine *fine, const FinePatch *patch, uint32_t v) 
     uint32_t centre = shell_centre(shell, location->cell);
     const uint32_t particle[3] = {at[location->side], at[(location->side + 1) & 3], centre};
     fine_position_at(fine, patch, location, surface->position[v], surface->normal[v]);
-    float3_store(surface->velocity[v], blend(at, location, (const float (*)[4])state->dynamics.velocity));
-    float3_store(surface->rest_position[v], blend(at, location, (const float (*)[4])shell->rest_position));
+    float3_store(surface->velocity[v], blend(at, location, (const float(*)[4])state->dynamics.velocity));
+    float3_store(surface->rest_position[v], blend(at, location, (const float(*)[4])shell->rest_position));
     float mass_min = 0, yield = 0, u = 0, w = 0;
     for (int i = 0; i < 3; i++) {
         u += location->weight[i] * shell->uv[particle[i]][0], w += location->weight[i] * shell->uv[particle[i]][1];
@@ -63,7 +63,8 @@ static void fill_range(void *context, int begin, int end) {
     FinePatch patch;
     uint32_t cell = SHELL_NONE;
     for (int v = begin; v < end; v++) {
-        if (fine->vertices[v].location.cell != cell) cell = fine->vertices[v].location.cell, patch = fine_patch(fine, cell);
+        if (fine->vertices[v].location.cell != cell)
+            cell = fine->vertices[v].location.cell, patch = fine_patch(fine, cell);
         vertices_fill(fine, &patch, (uint32_t)v);
     }
 }

@@ -108,7 +108,7 @@ void surface_normals(SingeSurface *surface) {
         const uint32_t *triangle = surface->triangles[t];
         Float3 corner = float3_load(surface->position[triangle[0]]);
         Float3 doubled = float3_cross(float3_sub(float3_load(surface->position[triangle[1]]), corner),
-                                float3_sub(float3_load(surface->position[triangle[2]]), corner));
+                                      float3_sub(float3_load(surface->position[triangle[2]]), corner));
         for (int i = 0; i < 3; i++) {
             float *normal = surface->normal[triangle[i]];
             float3_store(normal, float3_add(float3_load(normal), doubled));
@@ -122,7 +122,7 @@ void surface_normals(SingeSurface *surface) {
 }
 
 static SingeResult surface_draw(AblatePlan *plan, const Shell *shell, const State *state, uint32_t *cell_first,
-                        SingeSurface *surface, SingeError *error) {
+                                SingeSurface *surface, SingeError *error) {
     TRY(surface_reserve_triangles(surface, max_triangles(plan, shell, state), error));
     draw_cells(plan, shell, state, cell_first, surface);
     TRY(surface_reserve_vertices(surface, count_vertices(plan), error));

@@ -7,12 +7,26 @@ typedef struct SurfaceArray {
     size_t offset, element_size;
 } SurfaceArray;
 
-#define ARRAY(field) {offsetof(SingeSurface, field), sizeof *((SingeSurface *)0)->field}
+#define ARRAY(field) \
+    { offsetof(SingeSurface, field), sizeof *((SingeSurface *)0)->field }
 
 static const SurfaceArray vertex_arrays[] = {
-    ARRAY(position), ARRAY(normal), ARRAY(uv), ARRAY(velocity), ARRAY(rest_position), ARRAY(temperature),
-    ARRAY(temperature_peak), ARRAY(mass), ARRAY(burn_rate), ARRAY(char_fraction), ARRAY(ash_fraction), ARRAY(burn), ARRAY(time_ignited), ARRAY(piece),
-    ARRAY(source_vertex), ARRAY(sheet),
+    ARRAY(position),
+    ARRAY(normal),
+    ARRAY(uv),
+    ARRAY(velocity),
+    ARRAY(rest_position),
+    ARRAY(temperature),
+    ARRAY(temperature_peak),
+    ARRAY(mass),
+    ARRAY(burn_rate),
+    ARRAY(char_fraction),
+    ARRAY(ash_fraction),
+    ARRAY(burn),
+    ARRAY(time_ignited),
+    ARRAY(piece),
+    ARRAY(source_vertex),
+    ARRAY(sheet),
 };
 static const SurfaceArray triangle_array = ARRAY(triangles);
 
@@ -31,7 +45,8 @@ static bool obtain(Memory *memory, SingeSurface *surface, const SurfaceArray *ar
 void singe_surface_release(SingeSurface *surface, size_t struct_size) {
     if (!surface || struct_size < sizeof *surface) return;
     Memory memory = memory_make(surface->allocator);
-    for (int i = 0; i < VERTEX_ARRAYS; i++) arrays_release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
+    for (int i = 0; i < VERTEX_ARRAYS; i++)
+        arrays_release(&memory, surface, &vertex_arrays[i], surface->vertex_capacity);
     arrays_release(&memory, surface, &triangle_array, surface->triangle_capacity);
     memset(surface, 0, struct_size);
 }
@@ -47,8 +62,8 @@ static SingeResult arrays_fail(SingeSurface *surface, SingeResult code, const ch
     return error_set(error, code, "ablate", -1, "%s", message);
 }
 
-static SingeResult arrays_reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count, uint32_t *capacity,
-                           uint64_t count, SingeError *error) {
+static SingeResult arrays_reserve(SingeSurface *surface, const SurfaceArray *arrays, int array_count,
+                                  uint32_t *capacity, uint64_t count, SingeError *error) {
     if (count > INT32_MAX) return arrays_fail(surface, SINGE_ERROR_LIMIT, "the surface has too many elements", error);
     if (count <= *capacity) return SINGE_OK;
     Memory memory = memory_make(surface->allocator);
@@ -86,7 +101,8 @@ SingeResult surface_grow_vertices(SingeSurface *surface, uint64_t count, SingeEr
         const SurfaceArray *array = &vertex_arrays[i];
         void *to;
         memcpy(&to, (char *)&grown + array->offset, sizeof to);
-        arrays_release(&memory, good ? surface : &grown, array, good ? surface->vertex_capacity : grown.vertex_capacity);
+        arrays_release(&memory, good ? surface : &grown, array,
+                       good ? surface->vertex_capacity : grown.vertex_capacity);
         if (good) memcpy((char *)surface + array->offset, &to, sizeof to);
     }
     if (!good) return arrays_fail(surface, SINGE_ERROR_MEMORY, "out of memory for the surface", error);

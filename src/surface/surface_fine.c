@@ -31,7 +31,7 @@ static int list_arrays(const Fine *fine, FineArray arrays[]) {
     const size_t cells = shell->cell_count, sides = shell->springs[SINGE_BLUE].count, corners = shell->vertex_count;
     int count = 0;
 #define ARRAY(field, number) \
-    arrays[count++] = (FineArray){offsetof(Fine, field), sizeof *fine->field, number}
+    arrays[count++] = (FineArray) { offsetof(Fine, field), sizeof *fine->field, number }
     if (shell->corner_uv) ARRAY(cell_triangle, cells + 1);
     ARRAY(sheets, shell->sheet_count), ARRAY(raw_level, shell->particle_count);
     ARRAY(normal, shell->particle_count), ARRAY(share, corners), ARRAY(max, corners), ARRAY(corner, corners);
@@ -103,10 +103,12 @@ static SingeResult fine_draw(Fine *fine, const SurfaceDetail *detail, SingeError
     for (uint32_t s = 0; s < fine->shell->sheet_count; s++)
         fine->sheets[s] = fine_describe(detail, &fine->shell->sheets[s], s);
     fill_levels(fine);
-    const float *const fields[SPLINE_COUNT] = {
-        [SPLINE_LEVEL] = fine->raw_level, [SPLINE_MASS] = state->burn.mass, [SPLINE_FUEL] = state->burn.fuel,
-        [SPLINE_TEMPERATURE] = state->heat.temperature, [SPLINE_PEAK] = state->heat.temperature_peak,
-        [SPLINE_RATE] = state->burn.burn_rate};
+    const float *const fields[SPLINE_COUNT] = {[SPLINE_LEVEL] = fine->raw_level,
+                                               [SPLINE_MASS] = state->burn.mass,
+                                               [SPLINE_FUEL] = state->burn.fuel,
+                                               [SPLINE_TEMPERATURE] = state->heat.temperature,
+                                               [SPLINE_PEAK] = state->heat.temperature_peak,
+                                               [SPLINE_RATE] = state->burn.burn_rate};
     for (int f = 0; f < SPLINE_COUNT; f++)
         if (fields[f]) fine_spline(fine, fields[f], &fine->splines[f]);
     fine_spline_cells(fine, &fine->splines[SPLINE_WHOLE]);

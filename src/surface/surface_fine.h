@@ -11,16 +11,24 @@ enum { FINE_SPLITS_MAX = 16 };
 
 /// Flags of a cell.
 enum {
-    FINE_NEAR = 1,  ///< near the front: its points are numbered
-    FINE_SPLIT = 2, ///< the level changes sign in it
-    FINE_EVEN = 4,  ///< nothing to draw finely: one mass, and not negative
-    FINE_WHOLE = 8, ///< nothing around it has gone
-    FINE_TEAR_EDGE = 16,  ///< at a tear
+    FINE_NEAR = 1,       ///< near the front: its points are numbered
+    FINE_SPLIT = 2,      ///< the level changes sign in it
+    FINE_EVEN = 4,       ///< nothing to draw finely: one mass, and not negative
+    FINE_WHOLE = 8,      ///< nothing around it has gone
+    FINE_TEAR_EDGE = 16, ///< at a tear
 };
 
 /// The fields that are drawn smoothly.
 typedef enum SplineField {
-    SPLINE_LEVEL, SPLINE_WHOLE, SPLINE_MASS, SPLINE_FUEL, SPLINE_TEMPERATURE, SPLINE_PEAK, SPLINE_RATE, SPLINE_TEAR_EDGE, SPLINE_COUNT
+    SPLINE_LEVEL,
+    SPLINE_WHOLE,
+    SPLINE_MASS,
+    SPLINE_FUEL,
+    SPLINE_TEMPERATURE,
+    SPLINE_PEAK,
+    SPLINE_RATE,
+    SPLINE_TEAR_EDGE,
+    SPLINE_COUNT
 } SplineField;
 
 /// One of them: the coefficients of a C1 quadratic spline over the cells' triangles (fine_spline.c).
@@ -64,42 +72,42 @@ typedef struct Fine {
     const State *state;
     Memory *memory;
     Pool *pool;
-    const float *room;       ///< [vertices] m, of SurfaceDetail
-    float bulge_max;       ///< m, of SurfaceDetail
-    FineSheet *sheets;       ///< [sheets]
+    const float *room; ///< [vertices] m, of SurfaceDetail
+    float bulge_max;   ///< m, of SurfaceDetail
+    FineSheet *sheets; ///< [sheets]
     Spline splines[SPLINE_COUNT];
-    float *raw_level;        ///< [particles] m'; below 0 for what is gone
-    float *cell_value;       ///< [cells] scratch of the splines
-    float *low;              ///< [cells] the level's smallest coefficient
-    float (*axes)[2];        ///< [cells] m, lengths of a cell's two axes at rest
-    uint8_t *flags;          ///< [cells] FINE_NEAR and the like
-    uint32_t *cell_point;    ///< [cells] first of its points; where FINE_NEAR
-    uint32_t *side_point;    ///< [blue springs] first of the points on a side, or SHELL_NONE
-    uint32_t *near;          ///< [near_count] the cells near the front
-    uint32_t *side_owner;    ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
-    uint8_t *bent;           ///< [cells] parts of a side that show how a cell is bent, if it is not split
-    uint32_t *bent_point;    ///< [cells] as cell_point, of points for that
-    uint32_t *bent_side;     ///< [blue springs] as side_point; those of a split cell's sides once cells are settled
-    uint8_t *splits;         ///< [cells] k of the cell as it is drawn
-    uint8_t *parts;          ///< [blue springs] of a side as it is drawn: the more of its cells'
+    float *raw_level;     ///< [particles] m'; below 0 for what is gone
+    float *cell_value;    ///< [cells] scratch of the splines
+    float *low;           ///< [cells] the level's smallest coefficient
+    float (*axes)[2];     ///< [cells] m, lengths of a cell's two axes at rest
+    uint8_t *flags;       ///< [cells] FINE_NEAR and the like
+    uint32_t *cell_point; ///< [cells] first of its points; where FINE_NEAR
+    uint32_t *side_point; ///< [blue springs] first of the points on a side, or SHELL_NONE
+    uint32_t *near;       ///< [near_count] the cells near the front
+    uint32_t *side_owner; ///< [side_count] 4 cell + side, which the points of a numbered side are evaluated in
+    uint8_t *bent;        ///< [cells] parts of a side that show how a cell is bent, if it is not split
+    uint32_t *bent_point; ///< [cells] as cell_point, of points for that
+    uint32_t *bent_side;  ///< [blue springs] as side_point; those of a split cell's sides once cells are settled
+    uint8_t *splits;      ///< [cells] k of the cell as it is drawn
+    uint8_t *parts;       ///< [blue springs] of a side as it is drawn: the more of its cells'
     uint32_t near_count, side_count, point_count;
-    FineValue *values;       ///< [point_count]
-    uint32_t *drawn;         ///< [point_count] 1 + index of the vertex drawn there, 0 for none
-    uint32_t *side_cut;      ///< [blue springs] first of the side's entries in `cuts`
-    uint32_t *cuts;          ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
+    FineValue *values;  ///< [point_count]
+    uint32_t *drawn;    ///< [point_count] 1 + index of the vertex drawn there, 0 for none
+    uint32_t *side_cut; ///< [blue springs] first of the side's entries in `cuts`
+    uint32_t *cuts;     ///< [cut_count] 1 + index of the vertex that cuts a fine side, 0 for none
     uint32_t cut_count;
-    float (*normal)[3];      ///< [particles] unit, or 0
-    float *max;             ///< [vertices] m, how far the surface leaves flat triangles there
-    float *share;            ///< [vertices] of its way to the patches that it goes there
-    float (*corner)[4];      ///< [vertices] m, of the flat triangles
-    uint8_t *sound;          ///< [cells] 1: it is there and not torn
-    float *valence;          ///< [vertices] n of fine_patch.c
-    float *regular;          ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
-    float (*inner)[4][3];    ///< [cells] m, points of the patches beside the corners,
-    float (*rail)[2][3];     ///< [blue springs] on sides, in the order of their ends,
-    float (*limit)[3];       ///< [vertices] and at the corners
-    float (*shift)[3];       ///< [vertices] m, by which the first two are moved; the third is
-    FineVertex *vertices;    ///< [vertex_capacity]
+    float (*normal)[3];   ///< [particles] unit, or 0
+    float *max;           ///< [vertices] m, how far the surface leaves flat triangles there
+    float *share;         ///< [vertices] of its way to the patches that it goes there
+    float (*corner)[4];   ///< [vertices] m, of the flat triangles
+    uint8_t *sound;       ///< [cells] 1: it is there and not torn
+    float *valence;       ///< [vertices] n of fine_patch.c
+    float *regular;       ///< [vertices] 1 where the patches around meet with the same derivatives, else 0
+    float (*inner)[4][3]; ///< [cells] m, points of the patches beside the corners,
+    float (*rail)[2][3];  ///< [blue springs] on sides, in the order of their ends,
+    float (*limit)[3];    ///< [vertices] and at the corners
+    float (*shift)[3];    ///< [vertices] m, by which the first two are moved; the third is
+    FineVertex *vertices; ///< [vertex_capacity]
     uint32_t vertex_count, vertex_capacity;
     uint32_t *cell_triangle; ///< [cells + 1] first of a cell's triangles, where the sheets have seams; else NULL
     SingeSurface *surface;
@@ -212,7 +220,7 @@ void fine_position(Fine *fine);
 
 /// Position and unit normal at a position, with the patch of its cell.
 void fine_position_at(const Fine *fine, const FinePatch *patch, const FineLocation *location, float position[3],
-                   float normal[3]);
+                      float normal[3]);
 
 // ---- fine_vertices.c
 

@@ -18,8 +18,8 @@
 typedef struct Seams {
     const Shell *shell;
     SingeSurface *surface;
-    uint8_t *claimed;   ///< [capacity] a triangle uses the vertex with its uv
-    uint32_t *next;     ///< [capacity] another copy of it, SHELL_NONE
+    uint8_t *claimed; ///< [capacity] a triangle uses the vertex with its uv
+    uint32_t *next;   ///< [capacity] another copy of it, SHELL_NONE
     uint32_t capacity;
 } Seams;
 
@@ -50,7 +50,8 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
     SINGE_ASSERT(side >= 0 && side < 4);
     Float3 c = centre_rest(shell, cell), a = float3_sub(corner_rest(shell, cell, side), c);
     Float3 b = float3_sub(corner_rest(shell, cell, (side + 1) & 3), c), p = float3_sub(point, c);
-    float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a), pb = float3_dot(p, b);
+    float aa = float3_dot(a, a), ab = float3_dot(a, b), bb = float3_dot(b, b), pa = float3_dot(p, a),
+          pb = float3_dot(p, b);
     float det = aa * bb - ab * ab;
     weight[0] = det > 0 ? (pa * bb - pb * ab) / det : 0;
     weight[1] = det > 0 ? (pb * aa - pa * ab) / det : 0;
@@ -61,7 +62,8 @@ static void weights_at(const Shell *shell, uint32_t cell, int side, Float3 point
 static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]) {
     SINGE_ASSERT(cell < seams->shell->cell_count);
     Float3 centroid = {0, 0, 0};
-    for (int k = 0; k < 3; k++) centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
+    for (int k = 0; k < 3; k++)
+        centroid = float3_add(centroid, float3_load(seams->surface->rest_position[triangle[k]]));
     centroid = float3_scale(centroid, 1 / 3.0f);
     int best = 0;
     float max = -INFINITY;
@@ -78,7 +80,7 @@ static int side_of(const Seams *seams, uint32_t cell, const uint32_t triangle[3]
 static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, float uv[2], int32_t *source) {
     SINGE_ASSERT(cell < shell->cell_count);
     SINGE_ASSERT(side >= 0 && side < 4);
-    const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
+    const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
     const int next = (side + 1) & 3;
     float weight[3];
     weights_at(shell, cell, side, point, weight);
@@ -92,7 +94,7 @@ static void cell_uv(const Shell *shell, uint32_t cell, int side, Float3 point, f
 
 static float cell_uv_size(const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
-    const float (*corner)[2] = (const float (*)[2])shell->corner_uv[cell];
+    const float(*corner)[2] = (const float(*)[2])shell->corner_uv[cell];
     float size = 0;
     for (int i = 1; i < 4; i++)
         size = fmaxf(size, fmaxf(fabsf(corner[i][0] - corner[0][0]), fabsf(corner[i][1] - corner[0][1])));

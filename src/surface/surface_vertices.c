@@ -40,21 +40,25 @@ static Float3 mean_of_corners(const uint32_t corners[4], const float (*field)[4]
 
 static Sample sample_particle(const Shell *shell, const State *state, uint32_t particle) {
     SINGE_ASSERT(particle < shell->particle_count);
-    const float (*position)[4] = (const float (*)[4])state->dynamics.position;
-    const float (*velocity)[4] = (const float (*)[4])state->dynamics.velocity;
-    const float (*rest)[4] = (const float (*)[4])shell->rest_position;
+    const float(*position)[4] = (const float(*)[4])state->dynamics.position;
+    const float(*velocity)[4] = (const float(*)[4])state->dynamics.velocity;
+    const float(*rest)[4] = (const float(*)[4])shell->rest_position;
     const BurnState *burn = &state->burn;
     float min = field_at(shell->matter.mass_min, particle), yield = field_at(shell->matter.char_yield, particle);
     float coal = yield * shell_char(burn->mass[particle], burn->fuel[particle], min, yield);
     Sample sample = {
-        .u = shell->uv[particle][0], .v = shell->uv[particle][1],
+        .u = shell->uv[particle][0],
+        .v = shell->uv[particle][1],
         .temperature = state->heat.temperature[particle],
         .temperature_peak = state->heat.temperature_peak[particle],
-        .mass = burn->mass[particle], .burn_rate = burn->burn_rate[particle],
-        .coal = coal, .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
+        .mass = burn->mass[particle],
+        .burn_rate = burn->burn_rate[particle],
+        .coal = coal,
+        .ash = fmaxf(burn->mass[particle] - burn->fuel[particle] - coal, 0),
         .burn = shell_burn_progress(burn->mass[particle], min),
         .time_ignited = burn->time_ignited[particle],
-        .piece = state->ablate.piece[particle], .sheet = shell->matter.sheet[particle],
+        .piece = state->ablate.piece[particle],
+        .sheet = shell->matter.sheet[particle],
     };
     if (shell_is_corner(shell, particle)) {
         sample.position = float3_load(position[particle]);
@@ -81,7 +85,8 @@ static Sample mix_samples(const Sample *a, const Sample *b, float t) {
         .position = mix_float3(a->position, b->position, t),
         .velocity = mix_float3(a->velocity, b->velocity, t),
         .rest = mix_float3(a->rest, b->rest, t),
-        .u = mix(a->u, b->u, t), .v = mix(a->v, b->v, t),
+        .u = mix(a->u, b->u, t),
+        .v = mix(a->v, b->v, t),
         .temperature = mix(a->temperature, b->temperature, t),
         .temperature_peak = mix(a->temperature_peak, b->temperature_peak, t),
         .mass = mix(a->mass, b->mass, t),
@@ -90,7 +95,8 @@ static Sample mix_samples(const Sample *a, const Sample *b, float t) {
         .ash = mix(a->ash, b->ash, t),
         .burn = mix(a->burn, b->burn, t),
         .time_ignited = mix_times(a->time_ignited, b->time_ignited, t),
-        .piece = a->piece, .sheet = a->sheet,
+        .piece = a->piece,
+        .sheet = a->sheet,
     };
 }
 

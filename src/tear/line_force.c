@@ -25,8 +25,8 @@
 #include <string.h>
 
 static const float LINE_FILTER = 5e-3f; ///< tau, s
-static const float LINE_ZONE = 1.5e-3f;   ///< m, standard deviation of the average
-static const float LINE_ASH = 0.05f; ///< strength of ash over that of char
+static const float LINE_ZONE = 1.5e-3f; ///< m, standard deviation of the average
+static const float LINE_ASH = 0.05f;    ///< strength of ash over that of char
 static const float EDGE_STRETCH = 1.4f;
 enum { LINE_PASSES = 12 };
 

@@ -87,7 +87,8 @@ static bool tear_edges_cross(const Shell *shell, const State *state, uint32_t on
 static void open_tear_edges(const Shell *shell, State *state, uint32_t one, uint32_t two) {
     enum { DIRECTIONS = 27 };
     float *x = state->dynamics.position[one], *y = state->dynamics.position[two];
-    Float3 position = float3_load(x), displacements[2] = {tear_edge_displacement(shell, state, one), tear_edge_displacement(shell, state, two)};
+    Float3 position = float3_load(x),
+           displacements[2] = {tear_edge_displacement(shell, state, one), tear_edge_displacement(shell, state, two)};
     float length = TEAR_EDGE_GAP * 0.5f * (float3_length(displacements[0]) + float3_length(displacements[1]));
     float3_store(x, float3_mad(position, displacements[0], TEAR_EDGE_GAP));
     float3_store(y, float3_mad(position, displacements[1], TEAR_EDGE_GAP));

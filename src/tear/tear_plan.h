@@ -26,23 +26,23 @@ static inline void tensor_add(float *t, Float3 n, float s) {
 
 /// The load at a vertex.
 typedef struct TearPull {
-    float ratio; ///< of the largest principal line force and the strength; 0 where nothing can tear
-    Float3 across;  ///< its direction at rest
+    float ratio;   ///< of the largest principal line force and the strength; 0 where nothing can tear
+    Float3 across; ///< its direction at rest
     Tensor force;
 } TearPull;
 
 struct TearPlan {
     uint32_t cell_count, vertex_count, particle_count;
-    Tensor *smooth[2];  ///< [cells] N/m, averaged over the process zone, alternating
-    float *ratio;       ///< [vertices] of TearPull
-    uint8_t *torn;      ///< [vertices] an edge at it is torn
+    Tensor *smooth[2];    ///< [cells] N/m, averaged over the process zone, alternating
+    float *ratio;         ///< [vertices] of TearPull
+    uint8_t *torn;        ///< [vertices] an edge at it is torn
     uint32_t split_count; ///< of the shell that `torn` is for
-    uint32_t *leader;   ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
-    double *partial;    ///< [pool_blocks(cells)]
+    uint32_t *leader;     ///< [particles] by piece: its weakest vertex, or LEADER_RUNS
+    double *partial;      ///< [pool_blocks(cells)]
     uint32_t sheet_count;
-    float safe;         ///< N/m, nothing tears below: the min of all strengths, as char or weakened
-    float *weakened;    ///< [sheets] max share of its fresh strength in this step
-    float *min;       ///< [sheets] that factor where it is pulled farther apart than it reaches
+    float safe;      ///< N/m, nothing tears below: the min of all strengths, as char or weakened
+    float *weakened; ///< [sheets] max share of its fresh strength in this step
+    float *min;      ///< [sheets] that factor where it is pulled farther apart than it reaches
 };
 
 /// N/m, the line force at which a vertex tears.

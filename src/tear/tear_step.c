@@ -70,8 +70,7 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
     if (!NEW(memory, plan->smooth[0], plan->cell_count) || !NEW(memory, plan->smooth[1], plan->cell_count) ||
         !NEW(memory, plan->ratio, plan->vertex_count) || !NEW(memory, plan->torn, plan->vertex_count) ||
         !NEW(memory, plan->leader, plan->particle_count) || !NEW(memory, plan->weakened, plan->sheet_count) ||
-        !NEW(memory, plan->min, plan->sheet_count) ||
-        !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
+        !NEW(memory, plan->min, plan->sheet_count) || !NEW(memory, plan->partial, pool_blocks((int)plan->cell_count))) {
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
@@ -166,7 +165,7 @@ static uint32_t edge_end(const Shell *shell, const Fan *fan, int k) {
 
 /// An edge of a vertex along which it may tear.
 typedef struct TearEdge {
-    Float3 along;      ///< from the vertex, at rest
+    Float3 along;   ///< from the vertex, at rest
     float strength; ///< N/m, both ends'; INFINITY where too little of N_1 is across
     bool solid;     ///< cells on both sides are left
 } TearEdge;
@@ -179,7 +178,8 @@ static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State 
                           uint32_t vertex, uint32_t end, Float3 normal) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     TearEdge edge = {.strength = INFINITY};
-    edge.along = float3_unit(float3_sub(float3_load(shell->rest_position[end]), float3_load(shell->rest_position[vertex])));
+    edge.along =
+        float3_unit(float3_sub(float3_load(shell->rest_position[end]), float3_load(shell->rest_position[vertex])));
     float across = tensor_across(pull->force, float3_unit(float3_cross(normal, edge.along)));
     if (across > EDGE_MIN * tensor_across(pull->force, pull->across))
         edge.strength = tear_strength(plan, shell, state, vertex) + tear_strength(plan, shell, state, end);
@@ -194,7 +194,8 @@ static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displac
     if (isinf(min)) return -1;
     for (int j = begin; j < count; j++) {
         float weaker = min / edges[j].strength;
-        weight[j] = edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, displacement)) * weaker * weaker * weaker * weaker : 0;
+        weight[j] =
+            edges[j].solid ? fmaxf(0, float3_dot(edges[j].along, displacement)) * weaker * weaker * weaker * weaker : 0;
         sum += weight[j];
     }
     int last = -1;
@@ -235,7 +236,9 @@ static Float3 fan_normal(const Shell *shell, const Fan *fan) {
 static int open_edge(const TearEdge *edges, int count, Float3 displacement) {
     int open = -1;
     for (int j = 0; j < count; j++)
-        if (!edges[j].solid && (open < 0 || float3_dot(edges[j].along, displacement) < float3_dot(edges[open].along, displacement))) open = j;
+        if (!edges[j].solid &&
+            (open < 0 || float3_dot(edges[j].along, displacement) < float3_dot(edges[open].along, displacement)))
+            open = j;
     return open;
 }
 

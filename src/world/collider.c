@@ -66,8 +66,8 @@ SingeResult collider_create(Memory *memory, const SingeColliderDef *def, Collide
         result = deform_create(memory, def->vertex_count, def->vertices, def->triangle_count, def->triangles,
                                &collider->deform, error);
     if (!result && def->kind == SINGE_COLLIDER_HEIGHTFIELD)
-        result = height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights,
-                                     error);
+        result =
+            height_solid_create(memory, def->columns, def->rows, def->heights, def->size, &collider->heights, error);
     if (result) collider_free(memory, collider);
     return result;
 }

@@ -8,7 +8,7 @@
 #include "world/path.h"
 
 typedef struct Collider {
-    uint32_t generation; ///< 0: the slot is free
+    uint32_t generation;  ///< 0: the slot is free
     SingeColliderDef def; ///< its pointers are not used
     Path path;
     MeshSolid mesh;      ///< of a mesh

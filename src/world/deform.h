@@ -3,7 +3,8 @@
 // Between them every point of the surface moves in a straight line. So a particle is followed from where it would have
 // been carried by the point of the surface that was nearest to it:
 //
-//   x' = x + sum_k w_k (v_k' - v_k),   w the weights of its foot in the triangle before, v and v' that triangle's vertices
+//   x' = x + sum_k w_k (v_k' - v_k),   w the weights of its foot in the triangle before, v and v' that triangle's
+//   vertices
 #ifndef WORLD_DEFORM_H
 #define WORLD_DEFORM_H
 

@@ -17,7 +17,8 @@ static void height_ranges(HeightSolid *solid) {
             float *range = solid->ranges[bj * solid->blocks[0] + bi];
             range[0] = INFINITY, range[1] = -INFINITY;
             for (uint32_t j = bj * HEIGHT_BLOCK; j <= height_solid_min((bj + 1) * HEIGHT_BLOCK, solid->rows - 1); j++)
-                for (uint32_t i = bi * HEIGHT_BLOCK; i <= height_solid_min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1); i++) {
+                for (uint32_t i = bi * HEIGHT_BLOCK; i <= height_solid_min((bi + 1) * HEIGHT_BLOCK, solid->columns - 1);
+                     i++) {
                     float h = solid->heights[(size_t)j * solid->columns + i];
                     range[0] = fminf(range[0], h), range[1] = fmaxf(range[1], h);
                 }
@@ -67,7 +68,7 @@ void height_solid_free(Memory *memory, HeightSolid *solid) {
 
 static Float3 height_node(const HeightSolid *solid, uint32_t i, uint32_t j) {
     return float3((float)i * solid->step[0] - solid->half[0], (float)j * solid->step[1] - solid->half[1],
-               solid->heights[(size_t)j * solid->columns + i]);
+                  solid->heights[(size_t)j * solid->columns + i]);
 }
 
 /// The triangle `upper` of a cell; all turn up.
@@ -189,6 +190,6 @@ float height_solid_distance(const HeightSolid *solid, Float3 p, float limit, Flo
     double distance = sqrt(best.square), sign = inside ? -1 : 1;
     if (distance > 1e-7 * (1 + (double)float3_length(p)))
         *normal = float3((float)(sign * best.away[0] / distance), (float)(sign * best.away[1] / distance),
-                      (float)(sign * best.away[2] / distance));
+                         (float)(sign * best.away[2] / distance));
     return (float)(sign * distance);
 }

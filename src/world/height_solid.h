@@ -8,7 +8,7 @@
 
 typedef struct HeightSolid {
     uint32_t columns, rows;
-    float *heights;  ///< [rows * columns] m, a row along x after another along y
+    float *heights; ///< [rows * columns] m, a row along x after another along y
     // what follows from them
     float half[2];   ///< m, of the rectangle about the origin
     float step[2];   ///< m, from node to node

@@ -85,7 +85,8 @@ static SingeResult mesh_join(Memory *memory, const MeshSolid *solid, uint32_t *f
 
 static Float3 mesh_cross(const MeshSolid *solid, const uint32_t t[3]) {
     Float3 a = float3_load(solid->vertices[t[0]]);
-    return float3_cross(float3_sub(float3_load(solid->vertices[t[1]]), a), float3_sub(float3_load(solid->vertices[t[2]]), a));
+    return float3_cross(float3_sub(float3_load(solid->vertices[t[1]]), a),
+                        float3_sub(float3_load(solid->vertices[t[2]]), a));
 }
 
 /// Triangles by the vertices that are left, without those that lost their extent; *source* has their numbers before.

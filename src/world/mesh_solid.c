@@ -28,7 +28,8 @@ static Float3 solid_corner(const MeshSolid *solid, uint32_t t, uint32_t corner) 
 
 static Float3 solid_face_normal(const MeshSolid *solid, uint32_t t) {
     Float3 a = solid_corner(solid, t, 0);
-    return float3_unit(float3_cross(float3_sub(solid_corner(solid, t, 1), a), float3_sub(solid_corner(solid, t, 2), a)));
+    return float3_unit(
+        float3_cross(float3_sub(solid_corner(solid, t, 1), a), float3_sub(solid_corner(solid, t, 2), a)));
 }
 
 static bool solid_normals(Memory *memory, MeshSolid *solid) {
@@ -59,7 +60,7 @@ static void solid_bounds(MeshSolid *solid) {
 
 static Float3 solid_centroid(const MeshSolid *solid, int i, int j, int k) {
     return float3(solid->origin.x + ((float)i + 0.5f) * solid->cell, solid->origin.y + ((float)j + 0.5f) * solid->cell,
-               solid->origin.z + ((float)k + 0.5f) * solid->cell);
+                  solid->origin.z + ((float)k + 0.5f) * solid->cell);
 }
 
 /// A vertex's normal, weighed by angles, from the triangles around it.
@@ -86,7 +87,7 @@ static Float3 solid_pseudonormal(const MeshSolid *solid, uint32_t t, int feature
     if (feature < TRIANGLE_EDGE)
         return float3_unit(solid_vertex_normal(solid, t, (uint32_t)(feature - TRIANGLE_CORNER)));
     Float3 sum = float3_add(solid_face_normal(solid, t),
-                      solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
+                            solid_face_normal(solid, solid->neighbours[t][feature - TRIANGLE_EDGE]));
     return float3_unit(sum);
 }
 
@@ -203,7 +204,8 @@ float mesh_solid_distance(const MeshSolid *solid, Float3 p, float limit, Float3 
         if (min > 0 && min >= limit && (coarse > 0 || limit == 0)) return coarse > 0 ? min : -min;
     } else {
         Float3 low = float3_sub(solid->low, p), high = float3_sub(p, solid->high);
-        Float3 out = float3(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
+        Float3 out =
+            float3(fmaxf(fmaxf(low.x, high.x), 0), fmaxf(fmaxf(low.y, high.y), 0), fmaxf(fmaxf(low.z, high.z), 0));
         min = float3_length(out);
         if (min > 0 && min >= limit) return min;
     }

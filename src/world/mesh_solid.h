@@ -23,22 +23,22 @@ typedef struct SolidNode {
 
 typedef struct MeshSolid {
     uint32_t vertex_count, triangle_count;
-    uint32_t room;             ///< triangles that were asked for, and one: of the arrays
+    uint32_t room; ///< triangles that were asked for, and one: of the arrays
     float (*vertices)[3];
     uint32_t (*triangles)[3];
     // what follows from them
-    uint32_t (*neighbours)[3]; ///< across edge k, which runs from corner k to the next
+    uint32_t (*neighbours)[3];  ///< across edge k, which runs from corner k to the next
     float (*vertex_normals)[3]; ///< weighed by angles, any length; NULL where vertices move
-    uint32_t *order;           ///< [triangles] as the leaves have them
+    uint32_t *order;            ///< [triangles] as the leaves have them
     uint32_t leaf_count, node_count;
     SolidLeaf *leaves;
     SolidNode *nodes;
-    Float3 low, high;             ///< of the vertices
-    float cell;                ///< m, side of the cells of the grid
+    Float3 low, high; ///< of the vertices
+    float cell;       ///< m, side of the cells of the grid
     int32_t cells[3];
     Float3 origin;
-    float *coarse;             ///< signed distances at the centroids of the cells; none where vertices move
-    bool turned;               ///< it was inside out
+    float *coarse; ///< signed distances at the centroids of the cells; none where vertices move
+    bool turned;   ///< it was inside out
 } MeshSolid;
 
 /// Checks and copies a mesh, and builds what its distances need. Vertices at the same position become one, triangles

@@ -68,8 +68,9 @@ Pose path_pose(const Path *path, double time) {
     const SingePoseKey *b = &path->keys[next < path->count ? next : path->count - 1];
     const SingePoseKey *a = next > 0 ? &path->keys[next - 1] : b;
     float t = a == b ? 0 : (float)((time - a->time) / ((double)b->time - a->time));
-    Pose pose = {float3_mad(float3_load(a->position), float3_sub(float3_load(b->position), float3_load(a->position)), t),
-                 {0, 0, 0, 1}};
+    Pose pose = {
+        float3_mad(float3_load(a->position), float3_sub(float3_load(b->position), float3_load(a->position)), t),
+        {0, 0, 0, 1}};
     // the shorter way round, then normalised
     float dot = 0, length = 0;
     for (int k = 0; k < 4; k++) dot += a->rotation[k] * b->rotation[k];

@@ -7,14 +7,14 @@
 #include "world/path.h"
 
 typedef struct Pin {
-    uint32_t generation;   ///< 0: the slot is free
+    uint32_t generation; ///< 0: the slot is free
     uint32_t count;
-    uint32_t *particles;   ///< held particles, increasing
-    float (*anchors)[3];   ///< m, in the frame of the path's pose
+    uint32_t *particles; ///< held particles, increasing
+    float (*anchors)[3]; ///< m, in the frame of the path's pose
     Path path;
-    Motion motion;         ///< of the particles, in space, in place of the path; its arrays are NULL where the path holds
+    Motion motion; ///< of the particles, in space, in place of the path; its arrays are NULL where the path holds
     void *user_data;
-    SingePinDef waiting;   ///< of a pin that was added before the commit, until then: its points and vertices are its own
+    SingePinDef waiting; ///< of a pin that was added before the commit, until then: its points and vertices are its own
 } Pin;
 
 /// Where held particle k is at a time; `pose` is that of the path then.

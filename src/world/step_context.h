@@ -11,17 +11,17 @@
 /// events and the error. It owns nothing.
 typedef struct StepContext {
     const Shell *shell;
-    StateInput state;              ///< all parts but the one that the stage writes
+    StateInput state; ///< all parts but the one that the stage writes
     const PinList *pins;
     const ColliderList *colliders; ///< may be NULL
     const SingeWindDef *wind;
-    const SingeView *view;         ///< of the State, for callback sources
-    Pool *pool;                    ///< NULL: the stage runs here
+    const SingeView *view; ///< of the State, for callback sources
+    Pool *pool;            ///< NULL: the stage runs here
     EventList *events;
     SingeError *error;
-    float h;                       ///< s, of the scene: length of the step
-    float pace;                    ///< s of fire over s of the scene
-    float ambient_temperature;     ///< K
+    float h;                   ///< s, of the scene: length of the step
+    float pace;                ///< s of fire over s of the scene
+    float ambient_temperature; ///< K
 } StepContext;
 
 #endif

@@ -13,9 +13,9 @@ typedef enum TriangleFeature {
 } TriangleFeature;
 
 typedef struct TriangleFoot {
-    double square;   ///< of the distance
-    double away[3];  ///< from the foot to the point
-    double s, t;     ///< weights of the second and third corner in it
+    double square;  ///< of the distance
+    double away[3]; ///< from the foot to the point
+    double s, t;    ///< weights of the second and third corner in it
     int feature;
 } TriangleFoot;
 

@@ -27,8 +27,14 @@ typedef struct BurningSheet {
 
 /// One step of a stage on the sheet, with nothing around it.
 static inline StepContext sheet_context(BurningSheet *b, Pool *pool, float h, float pace) {
-    return (StepContext){.shell = &b->shell, .state = state_input(&b->state), .pool = pool, .events = &b->events,
-                         .error = &b->error, .h = h, .pace = pace, .ambient_temperature = 293};
+    return (StepContext){.shell = &b->shell,
+                         .state = state_input(&b->state),
+                         .pool = pool,
+                         .events = &b->events,
+                         .error = &b->error,
+                         .h = h,
+                         .pace = pace,
+                         .ambient_temperature = 293};
 }
 
 static inline SingeResult sheet_burn(BurningSheet *b, Pool *pool, float h, float pace, const float *thickening,

@@ -310,7 +310,11 @@ static BurningSheet *cut_off(float drop_below_cells, bool pinned, AblatePlan **p
 
 static void small_loose_pieces_are_dropped(void **unused) {
     (void)unused;
-    const struct { float below; bool pinned; uint32_t pieces; } cases[] = {
+    const struct {
+        float below;
+        bool pinned;
+        uint32_t pieces;
+    } cases[] = {
         {0, false, 3}, {4.4f, false, 3}, {4.6f, false, 2}, {4.6f, true, 3}, {1e6f, false, 2},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

@@ -243,7 +243,7 @@ static void test_tree(void **state) {
 /// A sheet of cells x cells squares of side 1/cells at a height of its own.
 static void add_sheet(uint32_t cells, int sheet, float tilt, float (*position)[3], uint32_t (*triangles)[3]) {
     const uint32_t side = cells + 1, first = (uint32_t)sheet * side * side;
-    uint32_t (*t)[3] = triangles + 2 * (size_t)sheet * cells * cells;
+    uint32_t(*t)[3] = triangles + 2 * (size_t)sheet * cells * cells;
     for (uint32_t v = 0; v < side * side; v++) {
         float *p = position[first + v];
         p[0] = (float)(v % side) / (float)cells, p[1] = (float)(v / side) / (float)cells;
@@ -331,9 +331,13 @@ static void test_linear(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orientation), cmocka_unit_test(test_orientation_near_a_plane),
-        cmocka_unit_test(test_orientation_far_apart), cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_tree), cmocka_unit_test(test_hinges), cmocka_unit_test(test_linear),
+        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_orientation_near_a_plane),
+        cmocka_unit_test(test_orientation_far_apart),
+        cmocka_unit_test(test_pairs),
+        cmocka_unit_test(test_tree),
+        cmocka_unit_test(test_hinges),
+        cmocka_unit_test(test_linear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,14 +181,10 @@ static void test_nothing_left(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat_rim_has_no_curl),
-        cmocka_unit_test(test_rolled_rim_curls),
-        cmocka_unit_test(test_shrunk_rim_is_smaller),
-        cmocka_unit_test(test_only_burnt_edges_are_rims),
-        cmocka_unit_test(test_seams_are_no_rims),
-        cmocka_unit_test(test_only_the_largest_piece_counts),
-        cmocka_unit_test(test_sums_are_of_areas),
-        cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(test_flat_rim_has_no_curl),  cmocka_unit_test(test_rolled_rim_curls),
+        cmocka_unit_test(test_shrunk_rim_is_smaller), cmocka_unit_test(test_only_burnt_edges_are_rims),
+        cmocka_unit_test(test_seams_are_no_rims),     cmocka_unit_test(test_only_the_largest_piece_counts),
+        cmocka_unit_test(test_sums_are_of_areas),     cmocka_unit_test(test_nothing_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 
 static const double YIELD = 0.35, MIN = 0.15, RATE = 0.5, AIR = 0.1;
 static const double SLOWING = 4; // of char without fuel
-static const float HOT = 1500; // K: kinetics are no limit
+static const float HOT = 1500;   // K: kinetics are no limit
 
 static SingeResult step(BurningSheet *b, float h, float pace, float thickening) {
     double partial[64];
@@ -134,8 +134,7 @@ static void no_char_is_the_papers_eq_4(void **unused) {
         SingeMaterialDef material = charring();
         material.char_yield = singe_param(k ? (float)MIN : 0), material.char_rate = singe_param(k ? 1e6f : 0);
         b[k] = burning_sheet(3, 3, 0.01f, &material);
-        for (uint32_t i = 0; i < b[k]->shell.particle_count; i++)
-            b[k]->state.heat.temperature[i] = 500 + 20 * (float)i;
+        for (uint32_t i = 0; i < b[k]->shell.particle_count; i++) b[k]->state.heat.temperature[i] = 500 + 20 * (float)i;
         for (int n = 0; n < 50; n++) assert_int_equal(step(b[k], 0.1f, 1, 1), SINGE_OK);
     }
     assert_memory_equal(b[0]->state.arena, b[1]->state.arena, b[0]->state.arena_size);
@@ -166,10 +165,8 @@ static void char_and_ash_have_densities_of_their_own(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_glow_at_two_resistances_in_series),
-        cmocka_unit_test(leaves_glow_slower_than_edges),
-        cmocka_unit_test(ledgers_close_from_fuel_to_ash),
-        cmocka_unit_test(no_char_is_the_papers_eq_4),
+        cmocka_unit_test(edges_glow_at_two_resistances_in_series),  cmocka_unit_test(leaves_glow_slower_than_edges),
+        cmocka_unit_test(ledgers_close_from_fuel_to_ash),           cmocka_unit_test(no_char_is_the_papers_eq_4),
         cmocka_unit_test(char_and_ash_have_densities_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

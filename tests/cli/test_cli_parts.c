@@ -112,7 +112,7 @@ static void averages_tiles(void **state) {
     uint8_t *rgb = malloc(W * H * 3);
     for (int i = 0; i < W * H; i++) {
         int x = i % W, y = i / W;
-        rgb[3 * i] = (uint8_t)(x % 2 ? 200 : 100);  // mean over 2 columns: 150
+        rgb[3 * i] = (uint8_t)(x % 2 ? 200 : 100);   // mean over 2 columns: 150
         rgb[3 * i + 1] = (uint8_t)(y < 2 ? 10 : 30); // rows of the tile keep theirs
         rgb[3 * i + 2] = 7;
     }
@@ -191,11 +191,14 @@ static void an_abort_of_a_library_is_an_error(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_json_members), cmocka_unit_test(refuses_cut_json),
-        cmocka_unit_test(unquotes_what_it_quotes),
-        cmocka_unit_test(finds_the_nearest_word), cmocka_unit_test(reads_arguments), cmocka_unit_test(averages_tiles),
-        cmocka_unit_test(spreads_frames), cmocka_unit_test(writes_durations),
-        cmocka_unit_test(an_abort_of_a_library_is_an_error)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(finds_json_members),
+                                       cmocka_unit_test(refuses_cut_json),
+                                       cmocka_unit_test(unquotes_what_it_quotes),
+                                       cmocka_unit_test(finds_the_nearest_word),
+                                       cmocka_unit_test(reads_arguments),
+                                       cmocka_unit_test(averages_tiles),
+                                       cmocka_unit_test(spreads_frames),
+                                       cmocka_unit_test(writes_durations),
+                                       cmocka_unit_test(an_abort_of_a_library_is_an_error)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

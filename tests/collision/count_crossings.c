@@ -14,8 +14,8 @@ static Point minus(Point a, Point b) {
 static double dot(Point a, Point b) { return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2]; }
 
 static Point cross(Point a, Point b) {
-    return (Point){{a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2],
-                    a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
+    return (Point){
+        {a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2], a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
 }
 
 /// Six times the volume of a tetrahedron.
@@ -71,8 +71,8 @@ long crossings_count(const SingeSurface *s) {
     for (uint32_t i = 0; i < s->triangle_count; i++)
         for (uint32_t j = i + 1; j < s->triangle_count && boxes[j].low[0] <= boxes[i].high[0]; j++) {
             const Box *a = &boxes[i], *b = &boxes[j];
-            bool apart = a->low[1] > b->high[1] || b->low[1] > a->high[1] || a->low[2] > b->high[2] ||
-                         b->low[2] > a->high[2];
+            bool apart =
+                a->low[1] > b->high[1] || b->low[1] > a->high[1] || a->low[2] > b->high[2] || b->low[2] > a->high[2];
             if (!apart) found += triangles_cross(s, s->triangles[a->triangle], s->triangles[b->triangle]);
         }
     free(boxes);

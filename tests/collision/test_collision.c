@@ -38,8 +38,8 @@ static SingeSheetId add_flat(SingeSim *sim, const Flat *flat, float cells_thick,
         }
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = row * row, def.positions = x, def.cell_count = n * n, def.cells = cells;
-    def.material.thickness = singe_param(cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] +
-                                                      flat->u[2] * flat->u[2]) / (float)n);
+    def.material.thickness = singe_param(
+        cells_thick * sqrtf(flat->u[0] * flat->u[0] + flat->u[1] * flat->u[1] + flat->u[2] * flat->u[2]) / (float)n);
     for (int k = 0; k < 3; k++) def.velocity[k] = velocity ? velocity[k] : 0;
     SingeSheetId id;
     assert_int_equal(singe_sim_add_sheet(sim, &def, &id), SINGE_OK);
@@ -131,8 +131,11 @@ static void layers_keep_their_thickness(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     for (int k = 0; k < 3; k++)
-        add_flat(sim, &(Flat){12, {0.003f * (float)k, 0.002f * (float)k, 1.2e-3f + 2e-3f * (float)k}, {0.05f, 0, 0},
-                              {0, 0.05f, 0}}, 0.6f, 0, NULL);
+        add_flat(
+            sim,
+            &(Flat){
+                12, {0.003f * (float)k, 0.002f * (float)k, 1.2e-3f + 2e-3f * (float)k}, {0.05f, 0, 0}, {0, 0.05f, 0}},
+            0.6f, 0, NULL);
     assert_int_equal(singe_sim_commit(sim), SINGE_OK);
     add_ground(sim);
     steps(sim, 480);
@@ -325,9 +328,10 @@ static float cell_distance(const Searched *s, uint32_t a, uint32_t b, bool owned
         }
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 8; j++) {
-            Float4 apart = feature_from_segment(p[collision_edge[i][0]], p[collision_edge[i][1]], q[collision_edge[j][0]],
-                                            q[collision_edge[j][1]], &u, &t);
-            if (!owned || (collision_owns_edge(plan, a, i) && collision_owns_edge(plan, b, j))) min = at_most(min, apart);
+            Float4 apart = feature_from_segment(p[collision_edge[i][0]], p[collision_edge[i][1]],
+                                                q[collision_edge[j][0]], q[collision_edge[j][1]], &u, &t);
+            if (!owned || (collision_owns_edge(plan, a, i) && collision_owns_edge(plan, b, j)))
+                min = at_most(min, apart);
         }
     return min;
 }
@@ -396,7 +400,7 @@ static void features_are_measured(void **unused) {
                 const NarrowCell *own = n->kind == COLLISION_NODE_OF_A ? &a : &b, *other = own == &a ? &b : &a;
                 const uint8_t *t = collision_triangle[n->second];
                 apart = feature_from_triangle(own->node[n->first], other->node[t[0]], other->node[t[1]],
-                                            other->node[t[2]], weight);
+                                              other->node[t[2]], weight);
                 if (own == &b) apart = -apart;
                 u = weight[1], v = weight[2];
             }
@@ -510,13 +514,18 @@ static void bad_values_are_refused(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_heap_does_not_cross),       cmocka_unit_test(thrown_sheets_do_not_cross),
-        cmocka_unit_test(layers_keep_their_thickness), cmocka_unit_test(sheets_rub),
+        cmocka_unit_test(a_heap_does_not_cross),
+        cmocka_unit_test(thrown_sheets_do_not_cross),
+        cmocka_unit_test(layers_keep_their_thickness),
+        cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone),
-        cmocka_unit_test(cells_of_other_crossings_are_kept_apart), cmocka_unit_test(sheets_at_one_place_are_left_alone),
+        cmocka_unit_test(cells_of_other_crossings_are_kept_apart),
+        cmocka_unit_test(sheets_at_one_place_are_left_alone),
         cmocka_unit_test(any_number_of_threads),
-        cmocka_unit_test(the_search_finds_all),        cmocka_unit_test(features_are_measured),
-        cmocka_unit_test(cells_out_of_bounds_are_found),            cmocka_unit_test(the_search_is_linear),
+        cmocka_unit_test(the_search_finds_all),
+        cmocka_unit_test(features_are_measured),
+        cmocka_unit_test(cells_out_of_bounds_are_found),
+        cmocka_unit_test(the_search_is_linear),
         cmocka_unit_test(the_grid_has_bounds),
         cmocka_unit_test(bad_values_are_refused),
     };

@@ -147,8 +147,8 @@ static const CollisionPlan *collision(const SingeSim *sim) { return sim->dynamic
 /// Gives a simulation lists of other sizes.
 static void resize(SingeSim *sim, const CollisionSizes *sizes) {
     collision_plan_free(&sim->memory, sim->dynamics->collision);
-    assert_int_equal(collision_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step, sizes,
-                                             &sim->dynamics->collision),
+    assert_int_equal(collision_plan_create_sized(&sim->memory, &sim->shell, &sim->def.contact, sim->def.time_step,
+                                                 sizes, &sim->dynamics->collision),
                      SINGE_OK);
 }
 
@@ -182,7 +182,8 @@ static void check_growth(const Crowd *scene, bool pairs) {
     const CollisionSizes *sizes = &collision(one)->sizes;
     print_message("%u pairs where %u are usual, %u pushes where %u are\n", collision(one)->pair_capacity, sizes->pairs,
                   collision(one)->repulsion_capacity, sizes->repulsions);
-    assert_true(pairs ? collision(one)->pair_capacity > sizes->pairs : collision(one)->repulsion_capacity > sizes->repulsions);
+    assert_true(pairs ? collision(one)->pair_capacity > sizes->pairs
+                      : collision(one)->repulsion_capacity > sizes->repulsions);
     assert_int_equal(singe_sim_timers(one).contact_dropped, 0);
     test_assert_same(one, three);
     test_assert_same(one, resumed);
@@ -278,9 +279,9 @@ static void no_memory_to_grow(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_list_keeps_what_comes_first),      cmocka_unit_test(a_block_counts_up_to_the_most),
-        cmocka_unit_test(crowds_grow_the_lists),              cmocka_unit_test(what_lists_grow_to_decides_nothing),
-        cmocka_unit_test(what_is_dropped_is_counted),         cmocka_unit_test(no_memory_to_grow),
+        cmocka_unit_test(a_list_keeps_what_comes_first), cmocka_unit_test(a_block_counts_up_to_the_most),
+        cmocka_unit_test(crowds_grow_the_lists),         cmocka_unit_test(what_lists_grow_to_decides_nothing),
+        cmocka_unit_test(what_is_dropped_is_counted),    cmocka_unit_test(no_memory_to_grow),
     };
     return cmocka_run_group_tests_name("touch_crowd", tests, NULL, NULL);
 }

@@ -66,7 +66,8 @@ static void distance_to_slivers(void **unused) {
         float weight[3], s, t;
         triangles = fmaxf(triangles, fabsf(length(feature_from_triangle(p, a, b, c, weight)) - far));
         Float4 displacement = along + powf(10, -2 + 2 * uniform()) * side, centroid = 0.5f * (a + b) + far * normal;
-        float got = length(feature_from_segment(a, b, centroid - u * displacement, centroid + 0.4f * displacement, &s, &t));
+        float got =
+            length(feature_from_segment(a, b, centroid - u * displacement, centroid + 0.4f * displacement, &s, &t));
         edges = fmaxf(edges, fabsf(got - far));
     }
     print_message("off by %.2g over triangles, %.2g at edges\n", (double)triangles, (double)edges);
@@ -81,7 +82,7 @@ static float stepped(const FeatureSweep *sweep, float near) {
         float s, t, weight[3], time = (float)k / STEPS;
         for (int i = 0; i < 4; i++) x[i] = sweep->position[i] + time * sweep->displacement[i];
         Float4 apart = sweep->edges ? feature_from_segment(x[0], x[1], x[2], x[3], &s, &t)
-                                  : feature_from_triangle(x[0], x[1], x[2], x[3], weight);
+                                    : feature_from_triangle(x[0], x[1], x[2], x[3], weight);
         if (length(apart) < near) return time;
     }
     return 2;
@@ -126,7 +127,8 @@ static void fast_displacements_are_free(void **unused) {
     fall.displacement[0] = (Float4){0, 0, -0.305f, 0}; // and through
     float hit = feature_sweep(&fall, gap, 0);
     assert_true(hit <= 1 && hit * 0.305f < 0.299f && hit * 0.305f > 0.29f);
-    FeatureSweep slide = {.position = {{-1, -5, 5e-3f, 0}, {1, -5, 5e-3f, 0}, {0, -1, 0, 0}, {0, 1, 0, 0}}, .edges = true};
+    FeatureSweep slide = {.position = {{-1, -5, 5e-3f, 0}, {1, -5, 5e-3f, 0}, {0, -1, 0, 0}, {0, 1, 0, 0}},
+                          .edges = true};
     slide.displacement[0] = slide.displacement[1] = (Float4){0.1f, 10, 0, 0};
     assert_true(feature_sweep(&slide, gap, 0) > 1);
     slide.displacement[0][2] = slide.displacement[1][2] = -0.01f; // and through

@@ -18,12 +18,12 @@ static void print(char *out, size_t size, const char *format, ...) {
 }
 
 /// Prints by both, with a name before and behind, and fails where they differ.
-#define same(format, ...)                                                 \
-    do {                                                                  \
-        char ours[700], theirs[700];                                      \
-        print(ours, sizeof ours, "a " format " b", __VA_ARGS__);          \
-        snprintf(theirs, sizeof theirs, "a " format " b", __VA_ARGS__);   \
-        assert_string_equal(ours, theirs);                                \
+#define same(format, ...)                                               \
+    do {                                                                \
+        char ours[700], theirs[700];                                    \
+        print(ours, sizeof ours, "a " format " b", __VA_ARGS__);        \
+        snprintf(theirs, sizeof theirs, "a " format " b", __VA_ARGS__); \
+        assert_string_equal(ours, theirs);                              \
     } while (0)
 
 static void prints_as_the_c_library(void **state) {

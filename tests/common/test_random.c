@@ -92,8 +92,12 @@ static void any_coordinate_is_defined(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(range_and_spread), cmocka_unit_test(fractal_range), cmocka_unit_test(continuity),
-        cmocka_unit_test(lattice_values), cmocka_unit_test(noted_values), cmocka_unit_test(seeds_differ),
+        cmocka_unit_test(range_and_spread),
+        cmocka_unit_test(fractal_range),
+        cmocka_unit_test(continuity),
+        cmocka_unit_test(lattice_values),
+        cmocka_unit_test(noted_values),
+        cmocka_unit_test(seeds_differ),
         cmocka_unit_test(any_coordinate_is_defined),
     };
     return cmocka_run_group_tests_name("common_random", tests, NULL, NULL);

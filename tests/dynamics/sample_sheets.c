@@ -39,9 +39,11 @@ void quads_free(Quads *quads) {
 
 void bench_open(Bench *bench, Quads quads, const SingeMaterialDef *material, int threads) {
     *bench = (Bench){.memory = memory_make((SingeAllocator){0}), .wind = singe_default_wind()};
-    bench->settings = (DynamicsSettings){
-        .gravity = {0, 0, -9.81f}, .air_density = 1.2f, .solver = singe_default_solver(), .thread_count = threads,
-        .time_step = 1.0f / 480};
+    bench->settings = (DynamicsSettings){.gravity = {0, 0, -9.81f},
+                                         .air_density = 1.2f,
+                                         .solver = singe_default_solver(),
+                                         .thread_count = threads,
+                                         .time_step = 1.0f / 480};
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = quads.vertex_count, def.positions = quads.positions;
     def.cell_count = quads.cell_count, def.cells = quads.cells;
@@ -77,9 +79,14 @@ void bench_close(Bench *bench) {
 }
 
 void bench_step(Bench *bench, float h) {
-    StepContext context = {.shell = &bench->shell, .state = state_input(&bench->state), .pins = &bench->pins,
-                           .colliders = &bench->colliders, .wind = &bench->wind, .pool = bench->pool,
-                           .error = &bench->error, .h = h};
+    StepContext context = {.shell = &bench->shell,
+                           .state = state_input(&bench->state),
+                           .pins = &bench->pins,
+                           .colliders = &bench->colliders,
+                           .wind = &bench->wind,
+                           .pool = bench->pool,
+                           .error = &bench->error,
+                           .h = h};
     context.state.dynamics = NULL;
     SingeResult result = dynamics_step(bench->plan, &context, &bench->state.dynamics, &bench->counters);
     assert_int_equal(result, SINGE_OK);
@@ -94,8 +101,8 @@ double bench_height(const Bench *bench, uint32_t cell) {
         mean = float3_mad(mean, p[i], 0.25f);
     }
     Float3 normal = float3_unit(float3_cross(float3_sub(p[2], p[0]), float3_sub(p[3], p[1])));
-    return (double)float3_dot(float3_sub(float3_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean),
-                           normal);
+    return (double)float3_dot(
+        float3_sub(float3_load(bench->state.dynamics.position[shell_centre(&bench->shell, cell)]), mean), normal);
 }
 
 float bench_weight(const Bench *bench, SingeColour colour, uint32_t spring) {

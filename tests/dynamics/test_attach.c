@@ -86,8 +86,9 @@ static void test_slack_is_left_alone(void **unused) {
     Bench bench;
     hold(&bench, NULL, 1, &corner);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        if (i != corner) bench.state.dynamics.position[i][2] = 0.3f * bench.state.dynamics.position[i][0],
-                         bench.state.dynamics.position[i][0] *= 0.9f;
+        if (i != corner)
+            bench.state.dynamics.position[i][2] = 0.3f * bench.state.dynamics.position[i][0],
+            bench.state.dynamics.position[i][0] *= 0.9f;
     float(*before)[4] = malloc(bench.shell.particle_count * sizeof *before);
     assert_non_null(before);
     memcpy(before, bench.state.dynamics.position, bench.shell.particle_count * sizeof *before);
@@ -142,8 +143,7 @@ static void test_let_go(void **unused) {
                          &bench.state.dynamics);
         for (uint32_t v = 1; v < bench.shell.vertex_count; v++) bench.state.dynamics.position[v][2] = -1;
         project(&bench);
-        for (uint32_t v = 1; v < bench.shell.vertex_count; v++)
-            assert_true(bench.state.dynamics.position[v][2] == -1);
+        for (uint32_t v = 1; v < bench.shell.vertex_count; v++) assert_true(bench.state.dynamics.position[v][2] == -1);
         bench_close(&bench);
     }
 }
@@ -391,7 +391,8 @@ int main(void) {
         cmocka_unit_test(test_loose_piece_is_free),
         cmocka_unit_test(test_let_go),
         cmocka_unit_test(test_sources),
-        cmocka_unit_test(test_lengths_grow_at_once), cmocka_unit_test(test_lengths_shorten_by_and_by),
+        cmocka_unit_test(test_lengths_grow_at_once),
+        cmocka_unit_test(test_lengths_shorten_by_and_by),
         cmocka_unit_test(test_rest_ends_without_a_jerk),
         cmocka_unit_test(test_pulled_apart),
         cmocka_unit_test(test_same_for_any_thread_count),

@@ -49,7 +49,7 @@ static Float3 centroid(const Bench *bench) {
 static void position(Bench *bench, const float rotation[4], Float3 at) {
     for (uint32_t i = 0; i < bench->shell.particle_count; i++)
         float3_store(bench->state.dynamics.position[i],
-                  float3_add(at, quat_rotate(rotation, float3_load(bench->shell.rest_position[i]))));
+                     float3_add(at, quat_rotate(rotation, float3_load(bench->shell.rest_position[i]))));
 }
 
 // ---- thin things
@@ -301,8 +301,10 @@ static void what_is_pressed_stays_and_rests(void **unused) {
         Triangles triangles = triangles_box(4, 0.02f, 0.02f, 0.01f);
         SingeColliderDef def = triangles_def(&triangles), plate = singe_default_collider();
         const float high = 0.005f + 0.006f, low = 0.005f + gap, x = 0.016f;
-        SingePoseKey keys[] = {{0, {x, x, high}, {0, 0, 0, 1}},       {0.05f, {x, x, low}, {0, 0, 0, 1}},
-                               {0.25f, {x, x, low}, {0, 0, 0, 1}},    {0.3f, {x, x, high}, {0, 0, 0, 1}},
+        SingePoseKey keys[] = {{0, {x, x, high}, {0, 0, 0, 1}},
+                               {0.05f, {x, x, low}, {0, 0, 0, 1}},
+                               {0.25f, {x, x, low}, {0, 0, 0, 1}},
+                               {0.3f, {x, x, high}, {0, 0, 0, 1}},
                                {0.31f, {x, x, 2 * high}, {0, 0, 0, 1}}};
         add_collider(&bench, def, 5, keys);
         Collider *both = calloc(2, sizeof *both);
@@ -414,11 +416,10 @@ static void what_is_far_costs_next_to_nothing(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_passes_thin_plates),     cmocka_unit_test(sheets_slip_above_the_angle_of_friction),
-        cmocka_unit_test(what_lies_still_does_not_creep), cmocka_unit_test(a_belt_carries_what_friction_allows),
+        cmocka_unit_test(nothing_passes_thin_plates),        cmocka_unit_test(sheets_slip_above_the_angle_of_friction),
+        cmocka_unit_test(what_lies_still_does_not_creep),    cmocka_unit_test(a_belt_carries_what_friction_allows),
         cmocka_unit_test(sheets_rest_on_meshes_and_heights), cmocka_unit_test(small_spheres_hold),
-        cmocka_unit_test(what_is_pressed_stays_and_rests),
-        cmocka_unit_test(a_swat_passes_nothing),
+        cmocka_unit_test(what_is_pressed_stays_and_rests),   cmocka_unit_test(a_swat_passes_nothing),
         cmocka_unit_test(what_is_far_costs_next_to_nothing),
     };
     return cmocka_run_group_tests_name("collider_contact", tests, NULL, NULL);

@@ -264,8 +264,7 @@ static void test_trembling_leaves_nothing(void **unused) {
         rig_roll(&rig, 0.004, s & 2 ? 0.7 : -0.7); // 175 1/m, by 60 Hz and more
         rig_pass(&rig, 1);
     }
-    for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++)
-        assert_true(rig.state.dynamics.crease[k] == 0);
+    for (uint32_t k = 0; k < rig.shell.springs[SINGE_GREEN].count; k++) assert_true(rig.state.dynamics.crease[k] == 0);
     rig_close(&rig);
 }
 

@@ -47,7 +47,8 @@ static double sharpest(const Bench *bench) {
     for (uint32_t v = 0; v < bench->shell.vertex_count; v++) {
         if (v % (NX + 1) == 0 || v % (NX + 1) == NX) continue;
         const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
-        Float3 a = float3_sub(float3_load(x[v]), float3_load(x[v - 1])), b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
+        Float3 a = float3_sub(float3_load(x[v]), float3_load(x[v - 1])),
+               b = float3_sub(float3_load(x[v + 1]), float3_load(x[v]));
         max = fmax(max, (double)float3_length(float3_sub(b, a)));
     }
     return max / (double)(2 * cell * sinf(0.5f * curvature * cell));
@@ -79,8 +80,7 @@ static bool is_touched(Bench *bench) {
     prepare(bench);
     float(*before)[4] = copy_positions(bench);
     curvature_project(bench->plan, bench->pool, &bench->state.dynamics);
-    bool touched = memcmp(before, bench->state.dynamics.position,
-                          bench->shell.particle_count * sizeof *before) != 0;
+    bool touched = memcmp(before, bench->state.dynamics.position, bench->shell.particle_count * sizeof *before) != 0;
     free(before);
     return touched;
 }
@@ -206,7 +206,7 @@ static void rings_are_limited_all_around(void **unused) {
         for (uint32_t v = 0; v < 32; v++) {
             const float(*x)[4] = (const float(*)[4])bench.state.dynamics.position;
             Float3 r = float3_add(float3_sub(float3_load(x[(v + 31) % 32]), float3_scale(float3_load(x[v]), 2)),
-                            float3_load(x[(v + 1) % 32]));
+                                  float3_load(x[(v + 1) % 32]));
             assert_true(float3_length(r) < 1.15f * 2 * cell * sinf(0.5f * curvature * cell) + 0.2f * cell);
         }
     }

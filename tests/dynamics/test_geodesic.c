@@ -35,8 +35,8 @@ static void distances_from(Distances *d, uint32_t source) {
 }
 
 static double apart(const Distances *d, uint32_t a, uint32_t b) {
-    return (double)float3_length(float3_sub(float3_load(d->bench.shell.rest_position[a]),
-                                      float3_load(d->bench.shell.rest_position[b])));
+    return (double)float3_length(
+        float3_sub(float3_load(d->bench.shell.rest_position[a]), float3_load(d->bench.shell.rest_position[b])));
 }
 
 /// The largest relative error against straight lines, from some sources to all vertices.
@@ -60,8 +60,7 @@ static double straight_error(Quads quads) {
 static void test_straight_lines(void **unused) {
     (void)unused;
     Quads sheared = quads_grid(24, 16, 0.01f, 0.01f, false);
-    for (uint32_t v = 0; v < sheared.vertex_count; v++)
-        sheared.positions[3 * v] += 0.4f * sheared.positions[3 * v + 1];
+    for (uint32_t v = 0; v < sheared.vertex_count; v++) sheared.positions[3 * v] += 0.4f * sheared.positions[3 * v + 1];
     double square = straight_error(quads_grid(24, 16, 0.01f, 0.01f, false));
     double flat = straight_error(quads_grid(12, 30, 0.02f, 0.007f, false)), leaning = straight_error(sheared);
     print_message("worst error: square cells %.1e, 1 : 3 %.1e, sheared %.1e\n", square, flat, leaning);
@@ -206,8 +205,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_straight_lines), cmocka_unit_test(test_cylinder),
         cmocka_unit_test(test_around_a_slit),  cmocka_unit_test(test_around_a_hole),
-        cmocka_unit_test(test_no_way_across), cmocka_unit_test(test_follows_targets),  cmocka_unit_test(test_symmetric),
-        cmocka_unit_test(test_held_does_not_shrink),
+        cmocka_unit_test(test_no_way_across),  cmocka_unit_test(test_follows_targets),
+        cmocka_unit_test(test_symmetric),      cmocka_unit_test(test_held_does_not_shrink),
     };
     return cmocka_run_group_tests_name("geodesic", tests, NULL, NULL);
 }

@@ -60,7 +60,7 @@ static void test_waves_decay(void **unused) {
     double fine = wave_left(0.0025f, 0.1f, 5), coarse = wave_left(0.005f, 0.1f, 5);
     assert_true(fine > 0.2 && fine < 0.9);
     assert_true(fabs(fine - coarse) < 0.05);
-    assert_true(wave_left(0.0025f, 0.4f, 5) > 0.99); // long waves go on
+    assert_true(wave_left(0.0025f, 0.4f, 5) > 0.99);  // long waves go on
     assert_true(wave_left(0.0025f, 0.02f, 20) < 0.8); // nodes 2 cm apart do not see this one, neighbours do
     assert_true(fabs(wave_left(0.0025f, 0.005f, 20)) < 0.1);
 }
@@ -173,8 +173,8 @@ static void test_sides_have_a_max(void **unused) {
         dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
         assert_true(longest_side(&bench) < 1.3);
     }
-    assert_false(dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool,
-                                &bench.state.dynamics));
+    assert_false(
+        dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics));
     bench_close(&bench);
 }
 
@@ -191,14 +191,13 @@ static void test_some_sides_have_no_max(void **unused) {
         const float far = x[7][0] + 0.02f;
         x[3][0] += 0.02f, x[7][0] += 0.02f; // the end of the strip
         const CellSprings *springs = &bench.shell.cell_springs[2];
-        for (uint32_t k = 0; kind == 0 && k < 4; k++)
-            bench.state.ablate.spring_flags[SINGE_BLUE][springs->blue[k]] = 0;
+        for (uint32_t k = 0; kind == 0 && k < 4; k++) bench.state.ablate.spring_flags[SINGE_BLUE][springs->blue[k]] = 0;
         for (uint32_t k = 0; kind == 0 && k < 2; k++)
             bench.state.ablate.spring_flags[SINGE_YELLOW][springs->yellow[k]] = 0;
         for (uint32_t v = 0; kind == 2 && v < bench.shell.vertex_count; v++) x[v][3] = 0;
         bench.plan->attachments.spread[0].tight = kind == 3;
-        bool found = dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool,
-                                    &bench.state.dynamics);
+        bool found =
+            dynamics_limit(bench.plan, &bench.shell, STATE_INPUT(&bench.state), bench.pool, &bench.state.dynamics);
         assert_true(found == (kind == 4)); // there is none of these
         assert_true(kind == 4 ? x[7][0] < far - 1e-3f : x[7][0] == far);
         bench_close(&bench);

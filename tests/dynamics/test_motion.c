@@ -34,7 +34,7 @@ static double blue_strain(const Bench *bench) {
     double worst = 0;
     for (uint32_t k = 0; k < blue->count; k++) {
         Float3 d = float3_sub(float3_load(bench->state.dynamics.position[blue->ends[k][1]]),
-                        float3_load(bench->state.dynamics.position[blue->ends[k][0]]));
+                              float3_load(bench->state.dynamics.position[blue->ends[k][0]]));
         worst = fmax(worst, fabs((double)float3_length(d) / (double)blue->rest[k] - 1));
     }
     return worst;
@@ -167,7 +167,7 @@ static double spin_left(int axis, float smoothing, bool bent) {
     Float3 centre = centre_of_mass(&bench), turn = float3(axis == 0 ? 6.2832f : 0, 0, axis == 2 ? 6.2832f : 0);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         float3_store(bench.state.dynamics.velocity[i],
-                  float3_cross(turn, float3_sub(float3_load(bench.shell.rest_position[i]), centre)));
+                     float3_cross(turn, float3_sub(float3_load(bench.shell.rest_position[i]), centre)));
     double before[3], after[3];
     angular_momentum(&bench, before);
     for (int step = 0; step < 480; step++) bench_step(&bench, 1.0f / 480);
@@ -204,8 +204,7 @@ static double open_crushed(uint32_t seed) {
     for (uint32_t i = 0; i < bench.shell.particle_count; i++) {
         float *x = bench.state.dynamics.position[i];
         const float *rest = bench.shell.rest_position[i];
-        for (int k = 0; k < 3; k++)
-            x[k] = 0.01f * rest[k] + 1e-5f * random_unit(random_hash(i, (uint32_t)k, 3, seed));
+        for (int k = 0; k < 3; k++) x[k] = 0.01f * rest[k] + 1e-5f * random_unit(random_hash(i, (uint32_t)k, 3, seed));
     }
     double fastest = 0;
     for (int step = 0; step < 480; step++) {
@@ -241,7 +240,8 @@ static double slide(float slope, float friction) {
     SingePoseKey key = {0, {0, 0, 0}, {0, sinf(slope / 2), 0, cosf(slope / 2)}};
     add_collider(&bench, plane, 1, &key);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
-        float3_store(bench.state.dynamics.position[i], quat_rotate(key.rotation, float3_load(bench.shell.rest_position[i])));
+        float3_store(bench.state.dynamics.position[i],
+                     quat_rotate(key.rotation, float3_load(bench.shell.rest_position[i])));
     Float3 start = centre_of_mass(&bench);
     for (int step = 0; step < 240; step++) bench_step(&bench, 1.0f / 480);
     double displacement = (double)float3_length(float3_sub(centre_of_mass(&bench), start));

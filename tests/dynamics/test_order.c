@@ -34,7 +34,7 @@ static double parting(const Bench *bench, uint32_t c) {
     const float(*x)[4] = (const float(*)[4])bench->state.dynamics.position;
     const float(*v)[4] = (const float(*)[4])bench->state.dynamics.velocity;
     Float3 normal = float3_unit(float3_cross(float3_sub(float3_load(x[corner[2]]), float3_load(x[corner[0]])),
-                                    float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
+                                             float3_sub(float3_load(x[corner[3]]), float3_load(x[corner[1]]))));
     Float3 away = float3_load(v[shell_centre(&bench->shell, c)]);
     for (int i = 0; i < 4; i++) away = float3_mad(away, float3_load(v[corner[i]]), -0.25f);
     return (double)float3_dot(away, normal);
@@ -124,7 +124,7 @@ static void test_pressed_on_the_ground(void **unused) {
         SingeColliderDef ground = singe_default_collider(), box = singe_default_collider();
         const SingePoseKey floor = test_key(0, 0, 0, 0);
         const SingePoseKey displacement[] = {test_key(0, 0.06f, 0.06f, 0.08f), test_key(0.3f, 0.06f, 0.06f, 0.032f),
-                                    test_key(0.5f, 0.10f, 0.07f, 0.032f)};
+                                             test_key(0.5f, 0.10f, 0.07f, 0.032f)};
         SingeColliderId id;
         ground.path_count = 1, ground.path = &floor;
         box.kind = SINGE_COLLIDER_BOX, box.friction = 0.8f, box.path_count = 3, box.path = displacement;
@@ -162,8 +162,10 @@ static void test_shrinks(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moves_centres_alone), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_pinned_and_crushed),  cmocka_unit_test(test_pressed_on_the_ground),
+        cmocka_unit_test(test_moves_centres_alone),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_pinned_and_crushed),
+        cmocka_unit_test(test_pressed_on_the_ground),
         cmocka_unit_test(test_shrinks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,14 +32,18 @@ static size_t crate_unpack(const uint8_t *in, size_t size, uint8_t *out, size_t 
     assert_int_equal(*in++, 0);
     while (in < end) {
         size_t token = *in++, literals = token >> 4, match = (token & 15) + 4, more;
-        if (literals == 15) do literals += more = *in++; while (more == 255);
+        if (literals == 15) do
+                literals += more = *in++;
+            while (more == 255);
         assert_true(in + literals <= end && n + literals <= most);
         memcpy(out + n, in, literals);
         n += literals, in += literals;
         if (in == end) break;
         size_t distance = in[0] | (size_t)in[1] << 8;
         in += 2;
-        if (match == 19) do match += more = *in++; while (more == 255);
+        if (match == 19) do
+                match += more = *in++;
+            while (more == 255);
         assert_true(distance && distance <= n && n + match <= most);
         for (; match; match--, n++) out[n] = out[n - distance];
     }
@@ -72,8 +76,8 @@ static int32_t *crate_read_ints(const CrateFile *file, size_t *at, size_t count)
     return values;
 }
 
-static void crate_read_tree(CrateFile *file, const int32_t *numbers, const int32_t *names, const int32_t *jumps, size_t *at,
-                            const char *above) {
+static void crate_read_tree(CrateFile *file, const int32_t *numbers, const int32_t *names, const int32_t *jumps,
+                            size_t *at, const char *above) {
     for (bool more = true; more;) {
         const size_t i = *at;
         assert_true(i < file->path_count);
@@ -115,7 +119,8 @@ static void crate_open(CrateFile *file, const uint8_t *bytes, size_t size) {
     file->field_tokens = crate_read_ints(file, &at, file->field_count);
     file->field_values = malloc(8 * file->field_count);
     assert_int_equal(crate_unpack(bytes + at + 8, (size_t)crate_number(file, at, 8), (uint8_t *)file->field_values,
-                                  8 * file->field_count), 8 * file->field_count);
+                                  8 * file->field_count),
+                     8 * file->field_count);
     at = file->section[3][0];
     file->set_count = crate_number(file, at, 8), at += 8;
     file->sets = crate_read_ints(file, &at, file->set_count);
@@ -161,7 +166,8 @@ static const char *crate_text(const CrateFile *file, const char *path, const cha
 }
 
 /// The only sample of an attribute, of `width` values of 4 bytes an entry; from malloc. `type`: 3 int, 8 float, ...
-static uint32_t *crate_samples(const CrateFile *file, const char *path, int type, int width, double *time, size_t *count) {
+static uint32_t *crate_samples(const CrateFile *file, const char *path, int type, int width, double *time,
+                               size_t *count) {
     uint64_t value = crate_field(file, path, "timeSamples");
     assert_int_equal(value >> 48, 46);
     size_t at = (size_t)(value & 0xffffffffffff);

@@ -16,12 +16,18 @@ typedef struct GasSample {
 /// Arrays come from malloc; free with gas_sample_free.
 static inline bool gas_sample_make(GasSample *s, uint32_t nx, uint32_t ny, uint32_t nz) {
     size_t count = (size_t)nx * ny * nz;
-    *s = (GasSample){.temperature = malloc(count * sizeof(float)), .smoke = malloc(count * sizeof(float)),
-                     .flame = malloc(count * sizeof(float)), .velocity = malloc(count * sizeof(float[3]))};
+    *s = (GasSample){.temperature = malloc(count * sizeof(float)),
+                     .smoke = malloc(count * sizeof(float)),
+                     .flame = malloc(count * sizeof(float)),
+                     .velocity = malloc(count * sizeof(float[3]))};
     if (!s->temperature || !s->smoke || !s->flame || !s->velocity) return false;
-    s->gas = (SingeGas){.size = {nx, ny, nz}, .origin = {-0.1f, -0.07f, 0.013f}, .cell = 0.008f,
-                        .temperature = s->temperature, .smoke = s->smoke, .flame = s->flame,
-                        .velocity = (const float (*)[3])s->velocity};
+    s->gas = (SingeGas){.size = {nx, ny, nz},
+                        .origin = {-0.1f, -0.07f, 0.013f},
+                        .cell = 0.008f,
+                        .temperature = s->temperature,
+                        .smoke = s->smoke,
+                        .flame = s->flame,
+                        .velocity = (const float(*)[3])s->velocity};
     for (size_t i = 0; i < count; i++) {
         float x = (float)(i % nx) - 0.4f * (float)nx, y = (float)(i / nx % ny) - 0.5f * (float)ny;
         float z = (float)(i / nx / ny), across = expf(-0.12f * ((x - 0.2f * z) * (x - 0.2f * z) + y * y));

@@ -11,8 +11,8 @@ enum { VERTICES = 5, TRIANGLES = 3 };
 // A surface of odd values: subnormals, negative zero, the largest float.
 typedef struct Sample {
     float position[VERTICES][3], normal[VERTICES][3], uv[VERTICES][2], velocity[VERTICES][3], rest[VERTICES][3];
-    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], coal[VERTICES], ash[VERTICES], burn[VERTICES],
-        time_ignited[VERTICES];
+    float temperature[VERTICES], peak[VERTICES], mass[VERTICES], burn_rate[VERTICES], coal[VERTICES], ash[VERTICES],
+        burn[VERTICES], time_ignited[VERTICES];
     int32_t piece[VERTICES], source_vertex[VERTICES], sheet[VERTICES];
     uint32_t triangles[TRIANGLES][3];
     SingeSurface surface;
@@ -29,22 +29,32 @@ static void fill(void *values, size_t count, uint32_t seed) {
 
 static void make_sample(Sample *s) {
     memset(s, 0, sizeof *s);
-    float *floats[] = {s->position[0], s->normal[0], s->uv[0],     s->velocity[0], s->rest[0],     s->temperature,
-                       s->peak,        s->mass,      s->burn_rate, s->coal, s->ash, s->burn, s->time_ignited};
+    float *floats[] = {s->position[0], s->normal[0], s->uv[0], s->velocity[0], s->rest[0], s->temperature, s->peak,
+                       s->mass,        s->burn_rate, s->coal,  s->ash,         s->burn,    s->time_ignited};
     size_t widths[] = {3, 3, 2, 3, 3, 1, 1, 1, 1, 1, 1, 1, 1};
     for (uint32_t i = 0; i < 13; i++) fill(floats[i], VERTICES * widths[i], i + 1);
     for (int i = 0; i < VERTICES; i++)
         s->piece[i] = i * 1000003, s->source_vertex[i] = i % 2 ? -1 : INT32_MAX - i, s->sheet[i] = i;
     uint32_t triangles[TRIANGLES][3] = {{0, 1, 2}, {2, 3, 4}, {4, 0, 0}};
     memcpy(s->triangles, triangles, sizeof triangles);
-    s->surface = (SingeSurface){.vertex_count = VERTICES, .triangle_count = TRIANGLES, .position = s->position,
+    s->surface = (SingeSurface){.vertex_count = VERTICES,
+                                .triangle_count = TRIANGLES,
+                                .position = s->position,
                                 .normal = s->normal,
-                                .uv = s->uv, .velocity = s->velocity, .rest_position = s->rest,
-                                .temperature = s->temperature, .temperature_peak = s->peak,
-                                .mass = s->mass, .burn_rate = s->burn_rate, .burn = s->burn,
-                                .char_fraction = s->coal, .ash_fraction = s->ash,
+                                .uv = s->uv,
+                                .velocity = s->velocity,
+                                .rest_position = s->rest,
+                                .temperature = s->temperature,
+                                .temperature_peak = s->peak,
+                                .mass = s->mass,
+                                .burn_rate = s->burn_rate,
+                                .burn = s->burn,
+                                .char_fraction = s->coal,
+                                .ash_fraction = s->ash,
                                 .time_ignited = s->time_ignited,
-                                .piece = s->piece, .source_vertex = s->source_vertex, .sheet = s->sheet,
+                                .piece = s->piece,
+                                .source_vertex = s->source_vertex,
+                                .sheet = s->sheet,
                                 .triangles = s->triangles};
 }
 
@@ -224,8 +234,8 @@ static void allocation_failure_is_clean(void **state) {
         TestAllocator counter = {.fail_at = n, .once = true};
         SingeSurface read;
         SingeError error;
-        SingeResult result = ply_read_surface("a.ply", bytes.data, bytes.size, test_allocator(&counter), &read,
-                                              NULL, &error);
+        SingeResult result =
+            ply_read_surface("a.ply", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error);
         if (result) assert_int_equal(result, SINGE_ERROR_MEMORY);
         singe_surface_free(&read);
         test_allocator_check(&counter);
@@ -246,10 +256,13 @@ int main(void) {
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.0001.ply", folder);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip_is_bitwise),     cmocka_unit_test(header_is_as_documented),
+        cmocka_unit_test(round_trip_is_bitwise),
+        cmocka_unit_test(header_is_as_documented),
         cmocka_unit_test(the_old_name_of_burnt_is_read),
-        cmocka_unit_test(nothing_left_is_a_surface_too), cmocka_unit_test(damage_is_noticed),
-        cmocka_unit_test(refuses_to_write_nonsense), cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(nothing_left_is_a_surface_too),
+        cmocka_unit_test(damage_is_noticed),
+        cmocka_unit_test(refuses_to_write_nonsense),
+        cmocka_unit_test(allocation_failure_is_clean),
     };
     int failures = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(folder);

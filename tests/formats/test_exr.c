@@ -60,8 +60,10 @@ static void test_read_back(void **state) {
         depth[i] = i % 7 ? 1 / (1 + (float)i) : INFINITY;
         id[i] = (uint32_t)i * 2654435761u;
     }
-    const ExrChannel channels[] = {{"R", EXR_KIND_HALF, &colour[0][0], 3}, {"G", EXR_KIND_HALF, &colour[0][1], 3},
-                                   {"B", EXR_KIND_HALF, &colour[0][2], 3}, {"Z", EXR_KIND_FLOAT, depth, 1},
+    const ExrChannel channels[] = {{"R", EXR_KIND_HALF, &colour[0][0], 3},
+                                   {"G", EXR_KIND_HALF, &colour[0][1], 3},
+                                   {"B", EXR_KIND_HALF, &colour[0][2], 3},
+                                   {"Z", EXR_KIND_FLOAT, depth, 1},
                                    {"id.piece", EXR_KIND_ID, id, 1}};
     SingeError error = {0};
     assert_int_equal(exr_write(path, WIDTH, HEIGHT, channels, 5, &error), SINGE_OK);

@@ -196,8 +196,10 @@ static void allocation_failure_is_clean(void **state) {
 int main(void) {
     folder = test_folder();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(writes_and_reads),         cmocka_unit_test(reading_says_why),
-        cmocka_unit_test(writing_says_why),         cmocka_unit_test(links_are_replaced),
+        cmocka_unit_test(writes_and_reads),
+        cmocka_unit_test(reading_says_why),
+        cmocka_unit_test(writing_says_why),
+        cmocka_unit_test(links_are_replaced),
         cmocka_unit_test(drafts_take_the_place_later),
         cmocka_unit_test(failed_write_keeps_the_old_file),
         cmocka_unit_test(allocation_failure_is_clean),

@@ -17,9 +17,8 @@ typedef struct Data {
 } Data;                    // 152
 
 static Data data(void) {
-    Data d = {.bytes = {0, 1, 2, 3, 1, 3},
-              .sparse = {5, 0, 0, 0, 5, 0},
-              .uv = {0, 0, 65535, 0, 65535, 65535, 0, 65535}};
+    Data d = {
+        .bytes = {0, 1, 2, 3, 1, 3}, .sparse = {5, 0, 0, 0, 5, 0}, .uv = {0, 0, 65535, 0, 65535, 65535, 0, 65535}};
     memcpy(d.positions, square, sizeof square);
     memcpy(d.indices, two, sizeof two);
     for (int i = 0; i < 16; i++) d.quarters[i] = i % 4 == 3 ? 9 : (uint16_t)(4 * square[i / 4 * 3 + i % 4]);
@@ -39,17 +38,17 @@ static size_t make_glb(const char *json, const Data *d, uint8_t *file) {
     return head[2];
 }
 
-#define LISTS                                                                                                     \
-    "\"buffers\":[{\"byteLength\":152}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"                       \
-    "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32,\"byteStride\":8},"                                        \
-    "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":72}],"                                                        \
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                     \
-    "{\"bufferView\":1,\"componentType\":5123,\"count\":4,\"type\":\"VEC3\"},"                                    \
-    "{\"bufferView\":2,\"componentType\":5125,\"count\":6,\"type\":\"SCALAR\"},"                                  \
-    "{\"bufferView\":2,\"byteOffset\":24,\"componentType\":5121,\"count\":4,\"type\":\"SCALAR\"},"                \
-    "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"             \
-    "\"indices\":{\"bufferView\":2,\"byteOffset\":28,\"componentType\":5121},"                                    \
-    "\"values\":{\"bufferView\":2,\"byteOffset\":32}}},"                                                          \
+#define LISTS                                                                                         \
+    "\"buffers\":[{\"byteLength\":152}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"           \
+    "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32,\"byteStride\":8},"                            \
+    "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":72}],"                                            \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"         \
+    "{\"bufferView\":1,\"componentType\":5123,\"count\":4,\"type\":\"VEC3\"},"                        \
+    "{\"bufferView\":2,\"componentType\":5125,\"count\":6,\"type\":\"SCALAR\"},"                      \
+    "{\"bufferView\":2,\"byteOffset\":24,\"componentType\":5121,\"count\":4,\"type\":\"SCALAR\"},"    \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"sparse\":{\"count\":2," \
+    "\"indices\":{\"bufferView\":2,\"byteOffset\":28,\"componentType\":5121},"                        \
+    "\"values\":{\"bufferView\":2,\"byteOffset\":32}}},"                                              \
     "{\"bufferView\":2,\"byteOffset\":56,\"componentType\":5123,\"normalized\":true,\"count\":4,\"type\":\"VEC2\"}]"
 #define SCENE "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}]," LISTS
 #define NODE ",\"nodes\":[{\"mesh\":0}]"
@@ -112,12 +111,13 @@ static void transforms_are_applied(void **state) {
     (void)state;
     static const float turned[] = {1, 2, 3, 1, 4, 3, -1, 4, 3, -1, 2, 3};
     Polygons mesh = expect(SCENE ",\"nodes\":[{\"children\":[1],\"translation\":[1,2,3]},"
-                                 "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":[2,2,2]}]"
-                                 MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}"), two, 6);
+                                 "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":[2,2,2]}]" MESH(
+                                     "{\"attributes\":{\"POSITION\":0},\"indices\":2}"),
+                           two, 6);
     expect_positions(&mesh, turned, 4);
     static const float mirrored[] = {7, 0, 0, 6, 0, 0, 6, 1, 0, 7, 1, 0};
-    mesh = expect(SCENE ",\"nodes\":[{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,7,0,0,1]}]"
-                        MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}"),
+    mesh = expect(SCENE ",\"nodes\":[{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,7,0,0,1]}]" MESH(
+                      "{\"attributes\":{\"POSITION\":0},\"indices\":2}"),
                   (const uint32_t[]){2, 1, 0, 3, 2, 0}, 6);
     expect_positions(&mesh, mirrored, 4);
 }
@@ -182,11 +182,12 @@ static void copies_are_limited(void **state) {
     for (int i = 1; i < COPIES; i++) length += (size_t)sprintf(text + length, ",%d", i);
     length += (size_t)sprintf(text + length, "]}],\"nodes\":[{\"mesh\":0}");
     for (int i = 1; i < COPIES; i++) length += (size_t)sprintf(text + length, ",{\"mesh\":0}");
-    length += (size_t)sprintf(text + length,
-                              "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"
-                              "\"bufferView\":0,\"componentType\":5126,\"count\":%d,\"type\":\"VEC3\"}],"
-                              "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d}],\"buffers\":[{\"uri\":\"data:;base64,",
-                              VERTICES, 12 * VERTICES);
+    length +=
+        (size_t)sprintf(text + length,
+                        "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"
+                        "\"bufferView\":0,\"componentType\":5126,\"count\":%d,\"type\":\"VEC3\"}],"
+                        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d}],\"buffers\":[{\"uri\":\"data:;base64,",
+                        VERTICES, 12 * VERTICES);
     memset(text + length, 'A', 16 * VERTICES), length += 16 * VERTICES;
     length += (size_t)sprintf(text + length, "\"}]}");
     TestAllocator counts = {0};

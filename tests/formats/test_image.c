@@ -83,8 +83,8 @@ static void reads_every_kind_of_png(void **state) {
     expect_pixels(&encoded, 2, 2, flat);
 
     static const uint8_t grey[] = {0, 7, 255};
-    static const uint8_t grey_rgb[] = {0, 0, 0, 7, 7, 7, 255, 255, 255}, keyed[] = {0, 0, 0, 255, 255, 255, 255, 255,
-                                                                                    255};
+    static const uint8_t grey_rgb[] = {0, 0, 0, 7, 7, 7, 255, 255, 255},
+                         keyed[] = {0, 0, 0, 255, 255, 255, 255, 255, 255};
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_GRAY, 0, 0}, grey, 3);
     expect_pixels(&encoded, 3, 1, grey_rgb);
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_GRAY, 0, 1}, grey, 3);
@@ -106,8 +106,8 @@ static void reads_every_kind_of_png(void **state) {
     expect_pixels(&encoded, 1, 1, deep_rgb);
 
     static const uint8_t indices[] = {0, 1, 2};
-    static const uint8_t colours[] = {10, 20, 30, 40, 50, 60, 200, 100, 0}, over_white[] = {10, 20, 30, 255, 255, 255,
-                                                                                            244, 224, 204};
+    static const uint8_t colours[] = {10, 20, 30, 40, 50, 60, 200, 100, 0},
+                         over_white[] = {10, 20, 30, 255, 255, 255, 244, 224, 204};
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_PALETTE, 0, 0}, indices, 3);
     expect_pixels(&encoded, 3, 1, colours);
     encode_png(&encoded, (PngKind){3, 1, 8, PNG_COLOR_TYPE_PALETTE, 0, 1}, indices, 3);
@@ -340,8 +340,8 @@ static void allocation_failure_is_clean(void **state) {
             TestAllocator counter = {.fail_at = n, .once = true};
             Image image;
             SingeError error;
-            SingeResult result = image_read("a", encoded[i].bytes, encoded[i].size, test_allocator(&counter),
-                                            &image, &error);
+            SingeResult result =
+                image_read("a", encoded[i].bytes, encoded[i].size, test_allocator(&counter), &image, &error);
             if (result == SINGE_OK) image_free(&image);
             else assert_int_equal(result, SINGE_ERROR_MEMORY);
             test_allocator_check(&counter);
@@ -356,10 +356,14 @@ int main(void) {
     folder = test_folder();
     snprintf(path, sizeof path, "%s/a.png", folder);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_kind_of_png),  cmocka_unit_test(png_write_reads_back),
-        cmocka_unit_test(reads_jpeg),               cmocka_unit_test(reads_grey_and_ink),
-        cmocka_unit_test(refuses_what_is_no_picture), cmocka_unit_test(luminance_is_exact_at_the_ends),
-        cmocka_unit_test(allocation_failure_is_clean), cmocka_unit_test(a_size_is_known_beforehand),
+        cmocka_unit_test(reads_every_kind_of_png),
+        cmocka_unit_test(png_write_reads_back),
+        cmocka_unit_test(reads_jpeg),
+        cmocka_unit_test(reads_grey_and_ink),
+        cmocka_unit_test(refuses_what_is_no_picture),
+        cmocka_unit_test(luminance_is_exact_at_the_ends),
+        cmocka_unit_test(allocation_failure_is_clean),
+        cmocka_unit_test(a_size_is_known_beforehand),
     };
     int failures = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(folder);

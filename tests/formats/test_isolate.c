@@ -158,7 +158,8 @@ static void interrupts_stop_the_child(void **state) {
 
 static SingeResult spin(void *context, IsolateAnswer *answer, SingeError *error) {
     (void)context, (void)answer, (void)error;
-    for (volatile unsigned i = 0;; i++) {}
+    for (volatile unsigned i = 0;; i++) {
+    }
     return SINGE_OK;
 }
 

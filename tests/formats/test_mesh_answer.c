@@ -78,8 +78,9 @@ static void damaged_answers_are_refused(void **state) {
     assert_int_equal(take(&answer, WHOLE, &polygons, &error), SINGE_ERROR_MESH);
     assert_message(&error, "vertex 2");
     MeshCounts none = {0};
-    assert_int_equal(mesh_answer_take("a.glb", (const uint8_t *)&none, sizeof none, (SingeAllocator){0}, &polygons,
-                                      &error), SINGE_ERROR_MESH);
+    assert_int_equal(
+        mesh_answer_take("a.glb", (const uint8_t *)&none, sizeof none, (SingeAllocator){0}, &polygons, &error),
+        SINGE_ERROR_MESH);
     assert_message(&error, "no faces");
 }
 
@@ -90,8 +91,8 @@ static void failing_memory_is_reported(void **state) {
         TestAllocator counts = {.fail_at = at};
         Polygons polygons;
         SingeError error;
-        SingeResult result = mesh_answer_take("a.glb", (const uint8_t *)&answer, WHOLE,
-                                              test_allocator(&counts), &polygons, &error);
+        SingeResult result =
+            mesh_answer_take("a.glb", (const uint8_t *)&answer, WHOLE, test_allocator(&counts), &polygons, &error);
         if (!result) polygons_free(&polygons);
         else assert_int_equal(result, SINGE_ERROR_MEMORY);
         test_allocator_check(&counts);

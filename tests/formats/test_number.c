@@ -83,8 +83,8 @@ static void agrees_with_libc(void **state) {
 
 static void refuses_what_is_no_number(void **state) {
     (void)state;
-    static const char *const junk[] = {"", "-", "+", ".", "-.", "e5", "1e", "1e+", "x", "--1", "+-1", "abc", " 1",
-                                       ",5", "#"};
+    static const char *const junk[] = {"",  "-",   "+",   ".",   "-.", "e5", "1e", "1e+",
+                                       "x", "--1", "+-1", "abc", " 1", ",5", "#"};
     float value;
     size_t used;
     for (size_t i = 0; i < sizeof junk / sizeof *junk; i++) {
@@ -113,10 +113,8 @@ static void reads_integers(void **state) {
         NumberStatus status;
         int64_t value;
     } cases[] = {
-        {"0", NUMBER_OK, 0},           {"-12", NUMBER_OK, -12},
-        {"+7", NUMBER_OK, 7},          {"4294967296", NUMBER_OK, 4294967296},
-        {"", NUMBER_JUNK, 0},          {"-", NUMBER_JUNK, 0},
-        {"x", NUMBER_JUNK, 0},         {"99999999999999999999", NUMBER_RANGE, 0},
+        {"0", NUMBER_OK, 0},  {"-12", NUMBER_OK, -12}, {"+7", NUMBER_OK, 7},  {"4294967296", NUMBER_OK, 4294967296},
+        {"", NUMBER_JUNK, 0}, {"-", NUMBER_JUNK, 0},   {"x", NUMBER_JUNK, 0}, {"99999999999999999999", NUMBER_RANGE, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const uint8_t *at = (const uint8_t *)cases[i].text;
@@ -128,8 +126,8 @@ static void reads_integers(void **state) {
 
 static void doubles_survive_printing(void **state) {
     (void)state;
-    static const double values[] = {0, -0.0, 1 / 24.0, 0.1, 1e22, 1e23, 123456789.123456789, 5e-324,
-                                    1.7976931348623157e308, -2.5e-10};
+    static const double values[] = {
+        0, -0.0, 1 / 24.0, 0.1, 1e22, 1e23, 123456789.123456789, 5e-324, 1.7976931348623157e308, -2.5e-10};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         char text[40];
         double back;
@@ -157,9 +155,9 @@ static void ignores_the_locale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_plain_numbers),      cmocka_unit_test(rounds_exactly),
-        cmocka_unit_test(agrees_with_libc),         cmocka_unit_test(refuses_what_is_no_number),
-        cmocka_unit_test(reads_integers),           cmocka_unit_test(doubles_survive_printing),
+        cmocka_unit_test(reads_plain_numbers), cmocka_unit_test(rounds_exactly),
+        cmocka_unit_test(agrees_with_libc),    cmocka_unit_test(refuses_what_is_no_number),
+        cmocka_unit_test(reads_integers),      cmocka_unit_test(doubles_survive_printing),
         cmocka_unit_test(ignores_the_locale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -208,8 +208,8 @@ static void allocation_failure_is_clean(void **state) {
         TestAllocator counter = {.fail_at = n, .once = true};
         Polygons mesh;
         SingeError error;
-        SingeResult result = obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, test_allocator(&counter),
-                                      &mesh, &error);
+        SingeResult result =
+            obj_read("a.obj", (const uint8_t *)sample, sizeof sample - 1, test_allocator(&counter), &mesh, &error);
         if (result == SINGE_OK) polygons_free(&mesh);
         else assert_int_equal(result, SINGE_ERROR_MEMORY);
         test_allocator_check(&counter);

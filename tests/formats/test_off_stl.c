@@ -122,8 +122,8 @@ static void stl_text_is_read(void **state) {
     (void)state;
     static const char *const texts[] = {
         "solid a b\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid a b\n",
-        "solid\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nsolid two\nendsolid\nsolid 3\n"
-        FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid",
+        "solid\n" FACET("0 0 0", "1 0 0", "1 1 0") "endsolid\nsolid two\nendsolid\nsolid 3\n" FACET(
+            "0 0 0", "1 1 0", "0 1 .5") "endsolid",
         "\nSOLID x\r\nFACET NORMAL nan -nan(ind) 0\r\nOUTER LOOP\r\nVERTEX 0 0 0\r\nVERTEX 1 0 0\r\nVERTEX 1 1 0\r\n"
         "ENDLOOP\r\nENDFACET\r\n" FACET("0 0 0", "1 1 0", "0 1 .5") "EndSolid\r\n",
     };
@@ -164,7 +164,8 @@ static void stl_bytes_are_refused(void **state) {
     size_t size = binary((uint8_t *)bytes, "a", 2);
     expect_error("a.stl", bytes, 0, SINGE_ERROR_FORMAT, 1, "empty");
     expect_error("a.stl", bytes, 83, SINGE_ERROR_FORMAT, 0, "83 bytes are too few");
-    expect_error("a.stl", bytes, size - 1, SINGE_ERROR_FORMAT, 80, "byte 80: the file has not the length that its number of triangles asks for");
+    expect_error("a.stl", bytes, size - 1, SINGE_ERROR_FORMAT, 80,
+                 "byte 80: the file has not the length that its number of triangles asks for");
     expect_error("a.stl", bytes, size + 1, SINGE_ERROR_FORMAT, 80, "the file has not the length");
     bytes[83] = (char)0xff;
     expect_error("a.stl", bytes, size, SINGE_ERROR_FORMAT, 80, "the file has not the length");
@@ -200,8 +201,8 @@ static void stl_text_is_refused(void **state) {
 // ---- both
 
 static const char good_off[] = "OFF\n4 2 0\n" POINTS "4 0 1 2 3\n3 0 2 3\n";
-static const char good_stl[] = "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5")
-    "endsolid";
+static const char good_stl[] =
+    "solid a\n" FACET("0 0 0", "1 0 0", "1 1 0") FACET("0 0 0", "1 1 0", "0 1 .5") "endsolid";
 
 static void every_cut_is_refused(void **state) {
     (void)state;
@@ -224,7 +225,8 @@ static void failing_memory_is_reported(void **state) {
         const char *name;
         const void *data;
         size_t size;
-    } files[] = {{"a.off", good_off, sizeof good_off - 1}, {"a.stl", good_stl, sizeof good_stl - 1},
+    } files[] = {{"a.off", good_off, sizeof good_off - 1},
+                 {"a.stl", good_stl, sizeof good_stl - 1},
                  {"b.stl", bytes, sizeof bytes}};
     for (int i = 0; i < 3; i++)
         for (long at = 1;; at++) {

@@ -99,7 +99,7 @@ static Maker make_binary(bool big) {
     put_text(&maker, "ply\nformat ");
     put_text(&maker, big ? "binary_big_endian" : "binary_little_endian");
     put_text(&maker, " 1.0\nelement vertex 4\nproperty double x\nproperty list ushort short junk\n"
-             "property float y\nproperty float z\n"
+                     "property float y\nproperty float z\n"
                      "property char a\nproperty uchar b\nproperty short c\nproperty ushort d\nproperty int e\n"
                      "property uint f\n"
                      "property float texture_u\nproperty float texture_v\n"
@@ -187,16 +187,16 @@ static void refuses_bad_bodies(void **state) {
     expect_error(HEADER "element vertex 4\n" XYZ "end_header\n" SQUARE, SINGE_ERROR_FORMAT, -1, "no faces");
     expect_error(HEADER "element vertex 0\n" XYZ "element face 0\n" FACES "end_header\n", SINGE_ERROR_FORMAT, -1,
                  "no vertices");
-    expect_error(HEADER "element vertex 4\n" XYZ "element face 0\n" FACES "end_header\n" SQUARE, SINGE_ERROR_FORMAT,
-                 -1, "no faces");
-    expect_error(HEADER "element vertex 4\nproperty float x\nproperty float y\nelement face 1\n"
-                 FACES "end_header\n0 0\n0 0\n0 0\n0 0\n4 0 1 2 3\n",
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 0\n" FACES "end_header\n" SQUARE, SINGE_ERROR_FORMAT, -1,
+                 "no faces");
+    expect_error(HEADER "element vertex 4\nproperty float x\nproperty float y\nelement face 1\n" FACES
+                        "end_header\n0 0\n0 0\n0 0\n0 0\n4 0 1 2 3\n",
                  SINGE_ERROR_FORMAT, -1, "no property \"z\"");
-    expect_error(HEADER "element vertex 4\n" XYZ "element face 1\nproperty list uchar int corners\nend_header\n"
-                 SQUARE "4 0 1 2 3\n",
+    expect_error(HEADER "element vertex 4\n" XYZ "element face 1\nproperty list uchar int corners\nend_header\n" SQUARE
+                        "4 0 1 2 3\n",
                  SINGE_ERROR_FORMAT, -1, "no list \"vertex_indices\"");
-    expect_error(HEADER "element vertex 4\n"
-                 XYZ "element face 1\nproperty list uchar float vertex_indices\nend_header\n" SQUARE "4 0 1 2 3\n",
+    expect_error(HEADER "element vertex 4\n" XYZ
+                        "element face 1\nproperty list uchar float vertex_indices\nend_header\n" SQUARE "4 0 1 2 3\n",
                  SINGE_ERROR_FORMAT, -1, "integer type");
     expect_error(GOOD_HEADER SQUARE "2 0 1\n", SINGE_ERROR_MESH, 14, "a.ply:14: face has 2 corners; it needs three");
     expect_error(GOOD_HEADER SQUARE "255 0 1 2 3 0\n", SINGE_ERROR_FORMAT, 14, "too few values");
@@ -210,10 +210,8 @@ static void refuses_bad_bodies(void **state) {
     expect_error(GOOD_HEADER SQUARE, SINGE_ERROR_FORMAT, -1, "too short");
     expect_error(GOOD_HEADER "0 0 0\n1 nan 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
                  "is not a finite number");
-    expect_error(GOOD_HEADER "0 0 0\n1 1e39 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
-                 "is out of range");
-    expect_error(GOOD_HEADER "0 0 0\n1 y 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11,
-                 "is not a number");
+    expect_error(GOOD_HEADER "0 0 0\n1 1e39 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "is out of range");
+    expect_error(GOOD_HEADER "0 0 0\n1 y 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "is not a number");
     expect_error(GOOD_HEADER "0 0 0\n1 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", SINGE_ERROR_FORMAT, 11, "too few values");
 }
 
@@ -222,9 +220,8 @@ static void refuses_bad_binary_values(void **state) {
     static const double bad[] = {NAN, INFINITY, 1e300, -3.5e38};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Maker maker = {0};
-        put_text(&maker,
-                 "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\nproperty float y\n"
-                 "property float z\n"
+        put_text(&maker, "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\nproperty float y\n"
+                         "property float z\n"
                          "element face 1\n" FACES "end_header\n");
         size_t body = maker.size;
         put_double(&maker, bad[i]);
@@ -245,20 +242,19 @@ static void large_claims_take_no_memory(void **state) {
         "ply\nformat ascii 1.0\nelement vertex 2147483647\n" XYZ "element face 1\n" FACES "end_header\n0 0 0\n",
         "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "element face 2147483647\n" FACES "end_header\n0 0 0\n"
         "4 0 0 0 0\n",
-        "ply\nformat binary_big_endian 1.0\nelement nothing 2147483647\nelement vertex 1\n"
-        XYZ "element face 2147483647\n" FACES
-        "end_header\n0123456789012345",
-        "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty list uint double l\n" XYZ "element face 1\n"
-        FACES
+        "ply\nformat binary_big_endian 1.0\nelement nothing 2147483647\nelement vertex 1\n" XYZ
+        "element face 2147483647\n" FACES "end_header\n0123456789012345",
+        "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty list uint double l\n" XYZ
+        "element face 1\n" FACES
         "end_header\n\xff\xff\xff\xff\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01\x01",
     };
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         TestAllocator counter = {0};
         Polygons mesh;
         SingeError error;
-        assert_int_equal(ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), test_allocator(&counter),
-                                  &mesh, &error),
-                         SINGE_ERROR_FORMAT);
+        assert_int_equal(
+            ply_read("a.ply", (const uint8_t *)claims[i], strlen(claims[i]), test_allocator(&counter), &mesh, &error),
+            SINGE_ERROR_FORMAT);
         assert_true(counter.largest < 4096);
         test_allocator_check(&counter);
     }
@@ -269,7 +265,7 @@ static void faces_have_uv_of_their_own(void **state) {
     (void)state;
     static const char text[] =
         HEADER "element vertex 4\n" XYZ "element face 2\nproperty list uchar float texcoord\n" FACES
-        "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
+               "end_header\n" SQUARE "6 0 0 1 0 1 1 3 0 1 2\n8 0 0 1 1 0 1 .5 .5 4 0 2 3 1\n";
     Polygons mesh;
     SingeError error;
     if (parse_bytes(text, sizeof text - 1, &mesh, &error)) fail_msg("%s", error.message);
@@ -281,7 +277,8 @@ static void faces_have_uv_of_their_own(void **state) {
     assert_memory_equal(mesh.first, first, sizeof first);
     polygons_free(&mesh);
     expect_error(HEADER "element vertex 4\n" XYZ "element face 1\nproperty list uchar float texcoord\n" FACES
-                        "end_header\n" SQUARE "4 0 0 1 0 3 0 1 2\n", SINGE_ERROR_MESH, -1, "u and v for each");
+                        "end_header\n" SQUARE "4 0 0 1 0 3 0 1 2\n",
+                 SINGE_ERROR_MESH, -1, "u and v for each");
 }
 
 static void truncated_ascii(void **state) {
@@ -333,8 +330,8 @@ static void kinds_of_elements_and_properties_are_limited(void **state) {
 /// A count of elements without properties needs no bytes in the file, and must get none in memory.
 static void counts_without_bytes_take_no_memory(void **state) {
     (void)state;
-    static const char text[] = "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n" FACES
-                               "end_header\n\3";
+    static const char text[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 2147483647\nelement face 1\n" FACES "end_header\n\3";
     TestAllocator counts = {0};
     Polygons mesh;
     SingeError error;

@@ -60,7 +60,8 @@ static void all_characters(void **state) {
 
 static void cuts(void **state) {
     (void)state;
-    static const char *const pieces[] = {"x", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x94\xa5", "\xf3\xa0\x80\x81", "\xff"};
+    static const char *const pieces[] = {"x",   "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x94\xa5", "\xf3\xa0\x80\x81",
+                                         "\xff"};
     for (size_t p = 0; p < sizeof pieces / sizeof *pieces; p++)
         for (int count = 0; count < 260; count += count < 78 ? 13 : 1) {
             char text[2000] = "";
@@ -75,8 +76,13 @@ static void cuts(void **state) {
 
 static void trims(void **state) {
     (void)state;
-    static const char *const cases[][2] = {{"", ""}, {"a", "a"}, {"a\xc3", "a"}, {"a\xc3\xa9", "a\xc3\xa9"},
-                                           {"\xe2\x82", ""}, {"b\xf0\x9f\x94", "b"}, {"\x80\x80\x80\x80\x80", NULL}};
+    static const char *const cases[][2] = {{"", ""},
+                                           {"a", "a"},
+                                           {"a\xc3", "a"},
+                                           {"a\xc3\xa9", "a\xc3\xa9"},
+                                           {"\xe2\x82", ""},
+                                           {"b\xf0\x9f\x94", "b"},
+                                           {"\x80\x80\x80\x80\x80", NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[16];
         strcpy(text, cases[i][0]);

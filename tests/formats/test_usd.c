@@ -50,7 +50,8 @@ static void make_sheet(SingeSurface *s, uint32_t side, int32_t sheets) {
         }
 }
 
-static SingeResult write_as(int format, const SingeSurface *s, uint32_t sheets, const char *picture, SingeError *error) {
+static SingeResult write_as(int format, const SingeSurface *s, uint32_t sheets, const char *picture,
+                            SingeError *error) {
     static const OutputSheet pair[2] = {{.name = "a b", .colour = {1, 1, 1}}, {.name = "a/b", .colour = {1, 0, 0}}};
     static const float uv[8] = {0, 0, 1, 0, 1, 1, 0, 1}, corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     static const uint32_t cell[4] = {0, 1, 2, 3};
@@ -77,8 +78,8 @@ static Bytes written(const SingeSurface *s, uint32_t sheets, const char *picture
 }
 
 /// Compares an attribute of a mesh with the values of the vertices that its sheet has.
-static void check_attribute(const CrateFile *file, const SingeSurface *s, const char *mesh, int32_t sheet, const char *name,
-                            const void *values, int type, int width) {
+static void check_attribute(const CrateFile *file, const SingeSurface *s, const char *mesh, int32_t sheet,
+                            const char *name, const void *values, int type, int width) {
     char full[300];
     double time;
     size_t count, at = 0;
@@ -88,7 +89,8 @@ static void check_attribute(const CrateFile *file, const SingeSurface *s, const 
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->sheet[v] != sheet) continue;
         assert_true(at < count);
-        assert_memory_equal(read + (size_t)width * at++, (const uint32_t *)values + (size_t)width * v, 4 * (size_t)width);
+        assert_memory_equal(read + (size_t)width * at++, (const uint32_t *)values + (size_t)width * v,
+                            4 * (size_t)width);
     }
     assert_int_equal(at, count);
     free(read);
@@ -208,7 +210,11 @@ static void packed_bytes_come_back(void **state) {
             uint32_t seed = 7;
             for (size_t i = 0; i < size; i++) {
                 seed = seed * 1664525u + 1013904223u;
-                in[i] = (uint8_t)(kind == 0 ? 0 : kind == 1 ? seed >> 24 : kind == 2 ? i % 37 : i % 1000 ? i / 3 : seed >> 20);
+                in[i] = (uint8_t)(kind == 0   ? 0
+                                  : kind == 1 ? seed >> 24
+                                  : kind == 2 ? i % 37
+                                  : i % 1000  ? i / 3
+                                              : seed >> 20);
             }
             packed[0] = 0;
             const size_t length = lz4_pack(in, size, packed + 1);
@@ -316,10 +322,11 @@ static void is_fast_and_small(void **state) {
     unlink(path);
     const double share = (double)usd.size / (double)ply.size;
     const double bar = 5e-3 * fmax(1, yard / usual);
-    printf("%u vertices: %.2f ms a frame (bar %.2f, yardstick %.2f) and %.2f of the system, PLY %.2f and %.2f; %.0f %% of "
-           "its bytes (bar 75)\n",
-           s.vertex_count, 1e3 * mean, 1e3 * bar, 1e3 * yard, 1e3 * (system[1] - system[0]) / FRAMES, 1e3 * ply_mean,
-           1e3 * (ply_system[1] - ply_system[0]) / FRAMES, 100 * share);
+    printf(
+        "%u vertices: %.2f ms a frame (bar %.2f, yardstick %.2f) and %.2f of the system, PLY %.2f and %.2f; %.0f %% of "
+        "its bytes (bar 75)\n",
+        s.vertex_count, 1e3 * mean, 1e3 * bar, 1e3 * yard, 1e3 * (system[1] - system[0]) / FRAMES, 1e3 * ply_mean,
+        1e3 * (ply_system[1] - ply_system[0]) / FRAMES, 100 * share);
     assert_true(share <= 0.75);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__OPTIMIZE__)
     assert_true(mean <= bar);
@@ -331,16 +338,17 @@ static void is_fast_and_small(void **state) {
 static int make_path(void **state) {
     (void)state;
     // in memory where that can be: what is timed is the writer, not the disk
-    snprintf(path, sizeof path, "%s/singe-usd-%ld.usdc", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm", (long)getpid());
+    snprintf(path, sizeof path, "%s/singe-usd-%ld.usdc", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm",
+             (long)getpid());
     return 0;
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(packed_bytes_come_back),        cmocka_unit_test(every_value_comes_back),
+        cmocka_unit_test(packed_bytes_come_back),         cmocka_unit_test(every_value_comes_back),
         cmocka_unit_test(sheets_are_meshes_of_their_own), cmocka_unit_test(pictured_sheets_have_subsets),
-        cmocka_unit_test(nothing_left_is_a_frame_too),   cmocka_unit_test(without_memory_there_is_no_file),
-        cmocka_unit_test(every_format_has_empty_frames), cmocka_unit_test(is_fast_and_small),
+        cmocka_unit_test(nothing_left_is_a_frame_too),    cmocka_unit_test(without_memory_there_is_no_file),
+        cmocka_unit_test(every_format_has_empty_frames),  cmocka_unit_test(is_fast_and_small),
     };
     return cmocka_run_group_tests(tests, make_path, NULL);
 }

@@ -155,10 +155,9 @@ static void no_memory_is_reported(void **state) {
         TestAllocator counter = {.fail_at = fail_at, .once = true};
         SingeResult result = gas_copy(&sample.gas, test_allocator(&counter), &gas, &error);
         if (!result) result = vdb_write_gas(path, &gas, 0, &error);
-        if (!result && !bytes.data)
-            assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
-        if (!result) result = vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL,
-                                           &error);
+        if (!result && !bytes.data) assert_int_equal(file_read(path, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
+        if (!result)
+            result = vdb_read_gas("a.vdb", bytes.data, bytes.size, test_allocator(&counter), &read, NULL, &error);
         if (!result) gas_free(&read);
         gas_free(&gas);
         test_allocator_check(&counter);

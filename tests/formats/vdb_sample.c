@@ -19,8 +19,8 @@ int main(int argc, char **argv) {
     const float *o = gas.view.origin;
     printf("%u %u %u %.9g %.9g %.9g %.9g\n", n[0], n[1], n[2], o[0], o[1], o[2], gas.view.cell);
     for (size_t i = 0; !result && i < (size_t)n[0] * n[1] * n[2]; i++)
-        printf("%.9g %.9g %.9g %.9g %.9g %.9g\n", gas.extinction[i], gas.flame_share[i], gas.temperature[i], gas.velocity[i][0],
-               gas.velocity[i][1], gas.velocity[i][2]);
+        printf("%.9g %.9g %.9g %.9g %.9g %.9g\n", gas.extinction[i], gas.flame_share[i], gas.temperature[i],
+               gas.velocity[i][0], gas.velocity[i][1], gas.velocity[i][2]);
     gas_free(&gas);
     gas_sample_free(&sample);
     return result != 0;

@@ -8,8 +8,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     SceneMessages messages = {0};
     if (scene_parse("fuzz", (const char *)data, size, NULL, NULL, 0, &scene, &messages))
         expect_reported(&messages, scene);
-    else
-        expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
+    else expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
     scene_free(scene);
     scene_messages_free(&messages);
     return 0;

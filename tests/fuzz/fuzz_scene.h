@@ -11,12 +11,10 @@
 
 /// A refusal says why, and where by a line or a --set.
 static inline void expect_reported(const SceneMessages *messages, const Scene *scene) {
-    if (!messages->count || scene)
-        abort();
+    if (!messages->count || scene) abort();
     for (uint32_t i = 0; i < messages->count; i++) {
         const SceneLocation *place = &messages->items[i].location;
-        if (!place->set && (place->line < 1 || place->column < 1))
-            abort();
+        if (!place->set && (place->line < 1 || place->column < 1)) abort();
     }
 }
 
@@ -27,8 +25,7 @@ static inline void expect_back(const Scene *scene, SceneSyntax syntax) {
     char *text = NULL;
     size_t length = 0;
     FILE *file = open_memstream(&text, &length);
-    if (!file)
-        abort();
+    if (!file) abort();
     scene_dump(scene, syntax, 0, file);
     fclose(file);
     // a dump says more than its scene did, and so may exceed the limit that scenes have

@@ -20,20 +20,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = malloc(size + 1);
     const char *sets[SETS_MAX];
     int count = 0;
-    if (!text)
-        abort();
-    for (size_t i = 1; i < size; i++)
-        text[i] = data[i] == '\n' ? 0 : (char)data[i];
+    if (!text) abort();
+    for (size_t i = 1; i < size; i++) text[i] = data[i] == '\n' ? 0 : (char)data[i];
     text[size] = 0;
-    for (size_t i = 1; i < size && count < SETS_MAX; i += strlen(text + i) + 1)
-        sets[count++] = text + i;
+    for (size_t i = 1; i < size && count < SETS_MAX; i += strlen(text + i) + 1) sets[count++] = text + i;
     const char *base = scenes[size ? data[0] % (sizeof scenes / sizeof *scenes) : 0];
     Scene *scene = NULL;
     SceneMessages messages = {0};
     if (scene_parse("fuzz", base, strlen(base), NULL, sets, count, &scene, &messages))
         expect_reported(&messages, scene);
-    else
-        expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
+    else expect_back(scene, size % 2 ? SCENE_JSON : SCENE_YAML);
     scene_free(scene);
     scene_messages_free(&messages);
     free(text);

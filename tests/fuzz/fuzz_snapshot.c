@@ -55,7 +55,8 @@ static void *limited_resize(void *context, void *block, size_t old_size, size_t 
 }
 
 static void put_word(Input *input, uint8_t *at) {
-    static const float specials[] = {NAN, INFINITY, -INFINITY, -1, 0, -0.0f, 1, 1e-45f, 1e-30f, 1e9f, 1e19f, 3e38f, -3e38f};
+    static const float specials[] = {NAN,    INFINITY, -INFINITY, -1,    0,     -0.0f, 1,
+                                     1e-45f, 1e-30f,   1e9f,      1e19f, 3e38f, -3e38f};
     static const uint32_t words[] = {0, 1, 2, 0xFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
     uint32_t word;
     float number;
@@ -87,7 +88,8 @@ static void change(Input *input, uint8_t *body, size_t *size) {
     else if (how < 12) put_double(input, body + at / 4 * 4);
     else if (how < 13) memset(body + at, input_byte(input), 1);
     else if (how < 14) memcpy(body + at / 4 * 4, body + (size_t)(input_word(input) % (*size - 15)) / 4 * 4, 4);
-    else if (how < 15) for (size_t i = 0; i < 15; i++) body[at + i] ^= input_byte(input);
+    else if (how < 15)
+        for (size_t i = 0; i < 15; i++) body[at + i] ^= input_byte(input);
     else if (input_rarely(input, 4)) *size = at + 16;
 }
 

@@ -13,12 +13,10 @@ enum { SHEETS = 16, SIDE = 6, VERTICES = 64, FACES = 24, STEPS = 3 };
 /// Most of a mesh's polygons lie in a square of this side, m.
 static const float size = 0.06f;
 
-static const float extreme[] = {0,    1e-30f, 1e-9f, 1e-4f, 0.01f, 0.1f, 0.25f, 0.5f,     0.75f,
+static const float extreme[] = {0,    1e-30f, 1e-9f, 1e-4f, 0.01f, 0.1f, 0.25f, 0.5f,  0.75f,
                                 0.9f, 1,      2,     10,    500,   1e4f, 1e9f,  1e30f, INFINITY};
 
-static float input_extreme(Input *input) {
-    return extreme[input_pick(input, sizeof extreme / sizeof *extreme)];
-}
+static float input_extreme(Input *input) { return extreme[input_pick(input, sizeof extreme / sizeof *extreme)]; }
 
 // ---- meshes
 
@@ -84,9 +82,9 @@ static void vary_material(Input *input, SingeMaterialDef *material) {
     static const size_t params[] = {
 #define SINGE_PARAM(number, NAME, name, ...) offsetof(SingeMaterialDef, name),
 #define SINGE_PARAM_BACK SINGE_PARAM
-#define SINGE_PARAM_COLOURS(number, NAME, name, range, text) \
+#define SINGE_PARAM_COLOURS(number, NAME, name, range, text)                                                       \
     offsetof(SingeMaterialDef, name[0]), offsetof(SingeMaterialDef, name[1]), offsetof(SingeMaterialDef, name[2]), \
-    offsetof(SingeMaterialDef, name[3]),
+        offsetof(SingeMaterialDef, name[3]),
 #include "singe/material.def"
     };
     for (unsigned k = input_pick(input, 8); k > 0; k--) {

@@ -14,8 +14,11 @@ typedef struct Air {
 } Air;
 
 static GasSettings settings_default(void) {
-    GasSettings settings = {.def = singe_default_gas(), .gravity = {0, 0, -9.81f}, .ambient_temperature = 293,
-                            .time_step = 1.0f / 72, .pace = 1};
+    GasSettings settings = {.def = singe_default_gas(),
+                            .gravity = {0, 0, -9.81f},
+                            .ambient_temperature = 293,
+                            .time_step = 1.0f / 72,
+                            .pace = 1};
     settings.def.cell_size = 0.01f, settings.def.height = 0.5f, settings.def.radiated = 0, settings.def.conductance = 0;
     return settings;
 }
@@ -35,8 +38,11 @@ static void air_close(Air *air) {
 
 static void air_step(Air *air) {
     Rig *rig = &air->rig;
-    StepContext context = {.shell = &rig->shell, .state = state_input(&rig->state), .colliders = &rig->colliders,
-                           .wind = &air->wind, .pool = rig->pool};
+    StepContext context = {.shell = &rig->shell,
+                           .state = state_input(&rig->state),
+                           .colliders = &rig->colliders,
+                           .wind = &air->wind,
+                           .pool = rig->pool};
     context.state.gas = NULL;
     gas_step(air->plan, &context, &rig->state.gas);
     rig->state.step++;
@@ -339,7 +345,8 @@ int main(void) {
         cmocka_unit_test(heat_is_kept),
         cmocka_unit_test(power_is_the_real_fires),
         cmocka_unit_test(plumes_rise_by_their_law),
-        cmocka_unit_test(solids_shut_cells), cmocka_unit_test(flow_goes_around),
+        cmocka_unit_test(solids_shut_cells),
+        cmocka_unit_test(flow_goes_around),
         cmocka_unit_test(gas_heats_what_it_flows_by),
         cmocka_unit_test(it_comes_to_rest),
         cmocka_unit_test(copes_with_anything),

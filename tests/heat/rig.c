@@ -28,12 +28,15 @@ static void rig_mesh(const RigDef *def, float *positions, float *uv, uint32_t *c
         for (int i = 0; i < def->nx; i++) {
             uint32_t *cell = cells + 4 * (j * def->nx + i), row = (uint32_t)def->nx + 1;
             cell[0] = (uint32_t)j * row + (uint32_t)i, cell[1] = cell[0] + 1, cell[2] = cell[1] + row,
-                cell[3] = cell[0] + row;
+            cell[3] = cell[0] + row;
         }
 }
 
 void rig_open(Rig *rig, const RigDef *def) {
-    *rig = (Rig){.memory = memory_make((SingeAllocator){0}), .nx = def->nx, .ny = def->ny, .settings = def->settings,
+    *rig = (Rig){.memory = memory_make((SingeAllocator){0}),
+                 .nx = def->nx,
+                 .ny = def->ny,
+                 .settings = def->settings,
                  .h = 0.002f};
     size_t vertices = (size_t)(def->nx + 1) * (size_t)(def->ny + 1), count = (size_t)def->nx * (size_t)def->ny;
     float *positions = malloc(vertices * 3 * sizeof *positions), *uv = malloc(vertices * 2 * sizeof *uv);
@@ -67,10 +70,16 @@ void rig_close(Rig *rig) {
 }
 
 SingeResult rig_try_step(Rig *rig) {
-    SingeView view = {.time = rig->state.time, .particle_count = rig->shell.particle_count,
+    SingeView view = {.time = rig->state.time,
+                      .particle_count = rig->shell.particle_count,
                       .temperature = rig->state.heat.temperature};
-    StepContext context = {.shell = &rig->shell, .state = state_input(&rig->state), .colliders = &rig->colliders,
-                           .view = &view, .pool = rig->pool, .error = &rig->error, .h = rig->h};
+    StepContext context = {.shell = &rig->shell,
+                           .state = state_input(&rig->state),
+                           .colliders = &rig->colliders,
+                           .view = &view,
+                           .pool = rig->pool,
+                           .error = &rig->error,
+                           .h = rig->h};
     context.state.heat = NULL;
     return heat_step(rig->plan, &context, &rig->sources, &rig->state.heat, &rig->counters);
 }

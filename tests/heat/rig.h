@@ -68,11 +68,11 @@ double rig_content(const Rig *rig, int weight);
 /// A repeatable number in [0, 1).
 float rig_random(uint32_t a, uint32_t b);
 
-#define CHECK_NEAR(value, expected, tolerance)                                                                      \
-    do {                                                                                                             \
-        double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                                   \
-        if (!(fabs(value_ - expected_) <= tolerance_))                                                               \
-            fail_msg("%s is %.9g, expected %.9g within %.3g", #value, value_, expected_, tolerance_);                \
+#define CHECK_NEAR(value, expected, tolerance)                                                        \
+    do {                                                                                              \
+        double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                    \
+        if (!(fabs(value_ - expected_) <= tolerance_))                                                \
+            fail_msg("%s is %.9g, expected %.9g within %.3g", #value, value_, expected_, tolerance_); \
     } while (0)
 
 #endif

@@ -49,7 +49,7 @@ static void slab_mode_decays_with_second_order(void **unused) {
         for (int k = 0; k < 2; k++) {
             float aspect = k ? 0.5f : 1, exchange = k ? 2 : 0;
             double coarse = mode_error(8, aspect, centres, exchange),
-                middle = mode_error(16, aspect, centres, exchange);
+                   middle = mode_error(16, aspect, centres, exchange);
             double fine = mode_error(32, aspect, centres, exchange);
             if (log2(coarse / middle) < 1.9 || log2(middle / fine) < 1.9)
                 fail_msg("orders %.3f, %.3f", log2(coarse / middle), log2(middle / fine));
@@ -59,7 +59,9 @@ static void slab_mode_decays_with_second_order(void **unused) {
 
 // --- Gaussian: variances grow by 2 alpha t ------------------------------------------------------------------
 
-typedef struct Moments { double x, y, xy, sum; } Moments;
+typedef struct Moments {
+    double x, y, xy, sum;
+} Moments;
 
 /// Second moments of T - 300 in a layer (0 corners, 1 centres, 2 both), or with the umbrella's capacity as weight (3).
 static Moments moments(const Rig *rig, int layer) {
@@ -77,8 +79,9 @@ static Moments moments(const Rig *rig, int layer) {
             double w = weight[i] * ((double)rig->state.heat.temperature[i] - 300);
             double x = (double)rig_place(rig, i)[0], y = (double)rig_place(rig, i)[1];
             if (pass == 0) m.sum += w, mx += w * x, my += w * y;
-            else m.x += w * (x - mx / m.sum) * (x - mx / m.sum), m.y += w * (y - my / m.sum) * (y - my / m.sum),
-                 m.xy += w * (x - mx / m.sum) * (y - my / m.sum);
+            else
+                m.x += w * (x - mx / m.sum) * (x - mx / m.sum), m.y += w * (y - my / m.sum) * (y - my / m.sum),
+                    m.xy += w * (x - mx / m.sum) * (y - my / m.sum);
         }
     test_free(weight);
     m.x /= m.sum, m.y /= m.sum, m.xy /= m.sum;
@@ -156,8 +159,9 @@ static double umbrella_factor(double dx, double dy, double t) {
 static void umbrella_has_its_derived_diffusivity(void **unused) {
     (void)unused;
     CHECK_NEAR(umbrella_factor(1, 1, 0), 0.5, 1e-12);
-    const struct { float dx, dy, t; } cases[] = {{0.002f, 0.002f, 1e-4f}, {0.002f, 0.002f, 0.002f},
-                                                 {0.004f, 0.002f, 1e-3f}};
+    const struct {
+        float dx, dy, t;
+    } cases[] = {{0.002f, 0.002f, 1e-4f}, {0.002f, 0.002f, 0.002f}, {0.004f, 0.002f, 1e-3f}};
     for (int k = 0; k < 3; k++) {
         RigDef def = rig_default((int)(0.16f / cases[k].dx), (int)(0.16f / cases[k].dy), cases[k].dx, cases[k].dy);
         def.material.heat_operator = SINGE_HEAT_UMBRELLA;
@@ -200,8 +204,7 @@ static void umbrella_slab_mode_decays(void **unused) {
 // --- properties ------------------------------------------------------------------------------------------------
 
 static void jitter(float position[3], int column, int row) {
-    for (int k = 0; k < 2; k++)
-        position[k] += 0.0012f * (rig_random((uint32_t)column, (uint32_t)(2 * row + k)) - 0.5f);
+    for (int k = 0; k < 2; k++) position[k] += 0.0012f * (rig_random((uint32_t)column, (uint32_t)(2 * row + k)) - 0.5f);
 }
 
 static void insulated_sheet_keeps_its_heat(void **unused) {
@@ -324,7 +327,7 @@ static void what_is_gone_conducts_nothing(void **unused) {
         for (int column = 0; column < 9; column++) {
             if (column == 4) continue;
             double *side = column < 4 ? &left : &right,
-                a = (double)rig.shell.matter.area[rig_vertex(&rig, column, row)];
+                   a = (double)rig.shell.matter.area[rig_vertex(&rig, column, row)];
             *side += a * (double)T[rig_vertex(&rig, column, row)];
             area += a / 2;
         }

@@ -52,12 +52,14 @@ static double cool(float h, float mass, float thickening) {
 
 static void cooling_follows_radiation_and_convection(void **unused) {
     (void)unused;
-    const struct { float mass, thickening; double effective; } cases[] = {{1, 1, 1}, {0.4f, 1, 0.4f}, {1, 3, 1},
-                                                                          {0.01f, 1, 0.15f}};
+    const struct {
+        float mass, thickening;
+        double effective;
+    } cases[] = {{1, 1, 1}, {0.4f, 1, 0.4f}, {1, 3, 1}, {0.01f, 1, 0.15f}};
     for (int k = 0; k < 4; k++) {
         double exact = cooled(2, cases[k].effective, (double)cases[k].thickening);
         double coarse = cool(0.02f, cases[k].mass, cases[k].thickening) - exact,
-            fine = cool(0.01f, cases[k].mass, cases[k].thickening) - exact;
+               fine = cool(0.01f, cases[k].mass, cases[k].thickening) - exact;
         CHECK_NEAR(fine, 0, 0.05 * (exact - 293));
         if (fabs(fine) > 0.05) CHECK_NEAR(coarse / fine, 2, 0.2); // first order in time
     }
@@ -88,7 +90,8 @@ static void combustion_is_eta_times_burnt_mass(void **unused) {
     Rig rig;
     rig_open(&rig, &def);
     fill(&rig, 600);
-    for (uint32_t i = 0; i < rig.shell.particle_count; i++) rig.state.burn.burn_rate[i] = 2, rig.state.burn.release[i] = 2 * 2400;
+    for (uint32_t i = 0; i < rig.shell.particle_count; i++)
+        rig.state.burn.burn_rate[i] = 2, rig.state.burn.release[i] = 2 * 2400;
     rig_step(&rig);
     CHECK_NEAR(rig.state.heat.temperature[1], 600 + 2400 * 2 * 0.002, 1e-3);
     CHECK_NEAR(rig.state.heat.heat_of_combustion, 2 * 6 * 4e-6 * 0.04 * 1400 * 9.6, 1e-6);
@@ -128,8 +131,7 @@ static void the_peak_is_the_hottest_so_far(void **unused) {
         rig.state.burn.burn_rate[i] = 8, rig.state.burn.release[i] = 8 * 2400;
     }
     for (int step = 0; step < 30; step++) {
-        for (uint32_t i = 0; step == 10 && i < n; i++)
-            rig.state.burn.burn_rate[i] = rig.state.burn.release[i] = 0;
+        for (uint32_t i = 0; step == 10 && i < n; i++) rig.state.burn.burn_rate[i] = rig.state.burn.release[i] = 0;
         rig_step(&rig);
         for (uint32_t i = 0; i < n; i++) {
             float T = rig.state.heat.temperature[i];
@@ -304,9 +306,9 @@ static void running_out_of_memory_is_clean(void **unused) {
             Memory memory = memory_make(test_allocator(&allocator));
             HeatPlan *plan = NULL;
             Source source = {0};
-            SingeResult result = what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)
-                                           : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source,
-                                                           &rig.error);
+            SingeResult result =
+                what == 0 ? heat_plan_create(&memory, &rig.shell, &rig.settings, &plan, &rig.error)
+                          : source_create(&memory, &rig.shell, what == 1 ? &picture : &ball, &source, &rig.error);
             if (!result) {
                 assert_true(n >= (what == 0 ? 12 : what == 1 ? 2 : 1));
                 heat_plan_free(&memory, plan);

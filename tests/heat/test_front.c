@@ -52,8 +52,10 @@ static void calibrated_paper_burns_at_its_real_pace(void **unused) {
 /// 20 g/m2 (Thomas & Law again) are predictions.
 static void speed_is_in_proportion_to_one_over_grammage(void **unused) {
     (void)unused;
-    static const struct { float grammage; double slowest, fastest; } sheets[] = {
-        {0.080f, 4.4e-3, 7.0e-3}, {0.045f, 7.8e-3, 12.4e-3}, {0.020f, 17.5e-3, 28e-3}};
+    static const struct {
+        float grammage;
+        double slowest, fastest;
+    } sheets[] = {{0.080f, 4.4e-3, 7.0e-3}, {0.045f, 7.8e-3, 12.4e-3}, {0.020f, 17.5e-3, 28e-3}};
     StripResult office = {0};
     for (int k = 0; k < 3; k++) {
         float grammage = sheets[k].grammage, ratio = grammage / 0.080f;
@@ -110,7 +112,9 @@ static void bad_cells_do_not_hold_a_front_up(void **unused) {
         const char *name;
         void (*shape)(float x[3], uint32_t column, uint32_t row, float cell);
         double off;
-    } cases[] = {{"moved by 0.4", moved, 0.05}, {"leaning", leaning, 0.2}, {"long across", long_across, 0.1},
+    } cases[] = {{"moved by 0.4", moved, 0.05},
+                 {"leaning", leaning, 0.2},
+                 {"long across", long_across, 0.1},
                  {"narrow", narrow, 0.1}};
     SingeMaterialDef material = singe_default_material();
     material.thickening = 2.4f; // enough for the longest sides
@@ -153,8 +157,8 @@ static void a_strip_takes_so_much_work(void **unused) {
 
 static void thickening_by_hand_and_its_limits(void **unused) {
     (void)unused;
-    FrontMatter front = {.diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513,
-                         .rate_ceiling = 260};
+    FrontMatter front = {
+        .diffusivity = 1e-5f, .mass_rate = 9e-3f, .heating = 2400, .ignition_temperature = 513, .rate_ceiling = 260};
     assert_true(heat_thickening_for(3.5f, &front, 293, 0.01f) == 3.5f);
     float a = heat_thickening_for(0, &front, 293, 0.01f);
     CHECK_NEAR(heat_thickening_for(0, &front, 293, 0.02f), 2 * (double)a, 1e-3);
@@ -178,13 +182,16 @@ static void thickening_goes_by_the_means(void **unused) {
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
     for (int k = 0; k < 2; k++)
-        *params[k] = (SingeParam){.value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_TEXTURE,
-                                  .texture = {2, 1, halves}};
+        *params[k] = (SingeParam){
+            .value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
     def.material.thickening = 0;
     Rig rig;
     rig_open(&rig, &def);
-    FrontMatter front = {.diffusivity = 1e-4f, .mass_rate = 10e-3f, .heating = 2250,
-                         .ignition_temperature = def.material.ignition_temperature.value, .rate_ceiling = 200};
+    FrontMatter front = {.diffusivity = 1e-4f,
+                         .mass_rate = 10e-3f,
+                         .heating = 2250,
+                         .ignition_temperature = def.material.ignition_temperature.value,
+                         .rate_ceiling = 200};
     double expected = (double)heat_thickening_for(0, &front, 293, 0.01f);
     assert_true(expected > 1.5);
     CHECK_NEAR(heat_thickening(rig.plan, 0), expected, 1e-5 * expected);

@@ -119,9 +119,9 @@ static void a_new_plan_goes_on_to_the_bit(void **unused) {
         for (int step = 0; step < 60; step++) {
             if (k && step == 35) {
                 heat_plan_free(&rigs[k].memory, rigs[k].plan);
-                assert_int_equal(heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan,
-                                                  &rigs[k].error),
-                                 SINGE_OK);
+                assert_int_equal(
+                    heat_plan_create(&rigs[k].memory, &rigs[k].shell, &rigs[k].settings, &rigs[k].plan, &rigs[k].error),
+                    SINGE_OK);
             }
             burn(&rigs[k], step % 10 == 0);
             rig_step(&rigs[k]);

@@ -80,9 +80,17 @@ typedef struct Bad {
     void (*shape)(float x[3], int column, int row);
 } Bad;
 
-static const Bad meshes[] = {{"straight", straight}, {"moved by 0.4", moved_by_40}, {"moved by 0.48", moved_by_48},
-                             {"leaning", leaning}, {"needles", needles}, {"slivers", slivers}, {"uneven", uneven},
-                             {"arrows", arrows}, {"triangles", triangles}, {"folded", folded}, {"tiny", tiny},
+static const Bad meshes[] = {{"straight", straight},
+                             {"moved by 0.4", moved_by_40},
+                             {"moved by 0.48", moved_by_48},
+                             {"leaning", leaning},
+                             {"needles", needles},
+                             {"slivers", slivers},
+                             {"uneven", uneven},
+                             {"arrows", arrows},
+                             {"triangles", triangles},
+                             {"folded", folded},
+                             {"tiny", tiny},
                              {"huge", huge}};
 enum { MESHES = sizeof meshes / sizeof *meshes };
 
@@ -214,8 +222,7 @@ static void cells_conduct_nothing_negative(void **unused) {
         Float3 x[4];
         double w[6], linear[6], t[3], min = 0;
         float squeeze = powf(10, -3 * rig_random(n, 50));
-        for (uint32_t k = 0; k < 4; k++)
-            x[k] = float3(rig_random(n, k), squeeze * rig_random(n, k + 4), 0);
+        for (uint32_t k = 0; k < 4; k++) x[k] = float3(rig_random(n, k), squeeze * rig_random(n, k + 4), 0);
         double turn = (double)((x[2].x - x[0].x) * (x[3].y - x[1].y) - (x[2].y - x[0].y) * (x[3].x - x[1].x));
         if (turn < 0.02 * (double)squeeze) continue;
         if (!heat_cell_linear(x, linear)) continue;
@@ -261,10 +268,8 @@ static void neighbours_make_up_for_a_side(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(conduction_keeps_to_its_range),
-        cmocka_unit_test(so_does_the_umbrella),
-        cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(cells_conduct_nothing_negative),
+        cmocka_unit_test(conduction_keeps_to_its_range), cmocka_unit_test(so_does_the_umbrella),
+        cmocka_unit_test(threads_do_not_matter),         cmocka_unit_test(cells_conduct_nothing_negative),
         cmocka_unit_test(neighbours_make_up_for_a_side),
     };
     return cmocka_run_group_tests_name("heat_range", tests, NULL, NULL);

@@ -70,7 +70,7 @@ static void falls_off_smoothly_and_moves(void **unused) {
     for (uint32_t i = 0; i < rig.shell.particle_count; i++) {
         const float *x = rig_place(&rig, i);
         double d = sqrt(pow((double)x[0] - 0.01, 2) + pow((double)x[1] - 0.01, 2) + pow((double)x[2], 2)),
-            s = (d - 0.003) / 0.004;
+               s = (d - 0.003) / 0.004;
         double g = 100 * (s <= 0 ? 1 : s >= 1 ? 0 : 1 - s * s * (3 - 2 * s)), a = 0.002 * g / PER_AREA;
         CHECK_NEAR(rig.state.heat.temperature[i], (300 + a * 1200) / (1 + a), 1e-3);
     }
@@ -174,8 +174,7 @@ static void contact_heat_goes_through_the_sheet(void **unused) {
     float before = 300;
     for (int k = 0; k < 1500; k++) {
         rig_step(&rig);
-        if (k == 20)
-            assert_true(rig.state.heat.temperature[near] > 330 && rig.state.heat.temperature[behind] < 310);
+        if (k == 20) assert_true(rig.state.heat.temperature[near] > 330 && rig.state.heat.temperature[behind] < 310);
         assert_true(rig.state.heat.temperature[behind] >= before - 1e-3f);
         before = rig.state.heat.temperature[behind];
     }
@@ -347,12 +346,16 @@ static void bad_defs_are_refused(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(relaxes_to_the_source_by_the_formula), cmocka_unit_test(never_overshoots),
-        cmocka_unit_test(falls_off_smoothly_and_moves),         cmocka_unit_test(contact_heats_the_near_layer),
+        cmocka_unit_test(relaxes_to_the_source_by_the_formula),
+        cmocka_unit_test(never_overshoots),
+        cmocka_unit_test(falls_off_smoothly_and_moves),
+        cmocka_unit_test(contact_heats_the_near_layer),
         cmocka_unit_test(contact_takes_the_sides_it_is_told),
         cmocka_unit_test(contact_heat_goes_through_the_sheet),
-        cmocka_unit_test(picture_and_key_frames),               cmocka_unit_test(callback_adds_to_the_rest),
-        cmocka_unit_test(a_sink_stops_at_1_kelvin),             cmocka_unit_test(hot_gas_heats_up_to_itself),
+        cmocka_unit_test(picture_and_key_frames),
+        cmocka_unit_test(callback_adds_to_the_rest),
+        cmocka_unit_test(a_sink_stops_at_1_kelvin),
+        cmocka_unit_test(hot_gas_heats_up_to_itself),
         cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests_name("heat_source", tests, NULL, NULL);

@@ -140,10 +140,10 @@ static void attributes_and_ids_follow_their_vertices(void **state) {
     Polygons polygons;
     Made made;
     MeshOptions options = mesh_default_options();
-    assert_int_equal(ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons,
-                              &made.error), SINGE_OK);
-    assert_int_equal(mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report,
-                               &made.error), SINGE_OK);
+    assert_int_equal(
+        ply_read("a.ply", (const uint8_t *)ply, sizeof ply - 1, (SingeAllocator){0}, &polygons, &made.error), SINGE_OK);
+    assert_int_equal(
+        mesh_make("a.ply", &polygons, &options, (SingeAllocator){0}, &made.mesh, &made.report, &made.error), SINGE_OK);
     static const int32_t source[] = {1, 2, 3, -1};
     static const float wet[] = {1, 3, 5, 4};
     assert_memory_equal(made.mesh.source, source, sizeof source);
@@ -220,8 +220,9 @@ static void other_formats_are_made_too(void **state) {
     assert_int_equal(polygons.face_count, 2);
     assert_int_equal(polygons.corner_count, 7); // quads stay quads
     polygons_free(&polygons);
-    assert_int_equal(polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons,
-                                   &error), SINGE_ERROR_FORMAT);
+    assert_int_equal(
+        polygons_read("a.glb", (const uint8_t *)off + 4, sizeof off - 5, (SingeAllocator){0}, &polygons, &error),
+        SINGE_ERROR_FORMAT);
     assert_non_null(strstr(error.message, "a.glb"));
 }
 

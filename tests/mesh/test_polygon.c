@@ -26,7 +26,7 @@ static Shape shape_of(const double (*at)[2], int positions, const int *corner, i
     return shape;
 }
 
-#define SHAPE(positions, ...) \
+#define SHAPE(positions, ...)                                                                    \
     shape_of(positions, (int)(sizeof positions / sizeof *positions), (const int[]){__VA_ARGS__}, \
              (int)(sizeof(int[]){__VA_ARGS__} / sizeof(int)))
 
@@ -142,8 +142,8 @@ static void assert_refused(const Shape *shape, const char *name) {
 
 // ---- holes
 
-static const double holes[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {1, 1}, {3, 1}, {3, 3}, {1, 3},
-                                  {5, 5}, {7, 5}, {7, 7}, {5, 7}, {10, 2}, {4, 2}};
+static const double holes[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {1, 1}, {3, 1},  {3, 3},
+                                  {1, 3}, {5, 5}, {7, 5}, {7, 7}, {5, 7}, {10, 2}, {4, 2}};
 
 static void holes_stay_open(void **state) {
     (void)state;
@@ -239,8 +239,8 @@ static void random_stars_are_covered(void **state) {
 
 // ---- corners that say nothing, or twice
 
-static const double few[][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 0}, {6, 6}, {-2, 2}, {2, 2}, {-2, -2}, {4, -2},
-                                {6, 0}, {2, 5}};
+static const double few[][2] = {{0, 0},  {4, 0}, {4, 4},   {0, 4},  {2, 0}, {6, 6},
+                                {-2, 2}, {2, 2}, {-2, -2}, {4, -2}, {6, 0}, {2, 5}};
 
 static void faces_that_touch_themselves_fall_apart(void **state) {
     (void)state;

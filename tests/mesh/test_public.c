@@ -5,7 +5,8 @@
 #include <string.h>
 
 // two triangles and a pentagon beside them, and a vertex of no face
-static const float positions[] = {0, 0, 0, 0.1f, 0, 0, 0.1f, 0.1f, 0, 0, 0.1f, 0, 0.2f, 0, 0, 0.25f, 0.05f, 0, 0.2f, 0.1f, 0, 9, 9, 9};
+static const float positions[] = {0,    0, 0, 0.1f,  0,     0, 0.1f, 0.1f, 0, 0, 0.1f, 0,
+                                  0.2f, 0, 0, 0.25f, 0.05f, 0, 0.2f, 0.1f, 0, 9, 9,    9};
 static const uint32_t sizes[] = {3, 3, 5}, corners[] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 6, 2};
 static const float uv[] = {0, 0, 0.4f, 0, 0.4f, 1, 0, 1, 0.8f, 0, 1, 0.5f, 0.8f, 1, 0, 0};
 
@@ -247,10 +248,10 @@ static void materials_have_names(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polygons_become_a_sheet),    cmocka_unit_test(quads_stay),
-        cmocka_unit_test(bad_meshes_are_refused),     cmocka_unit_test(grids_are_meshes),
+        cmocka_unit_test(polygons_become_a_sheet),     cmocka_unit_test(quads_stay),
+        cmocka_unit_test(bad_meshes_are_refused),      cmocka_unit_test(grids_are_meshes),
         cmocka_unit_test(every_allocation_fails_once), cmocka_unit_test(defs_of_other_versions),
-        cmocka_unit_test(repairs_are_logged),         cmocka_unit_test(materials_have_names),
+        cmocka_unit_test(repairs_are_logged),          cmocka_unit_test(materials_have_names),
     };
     return cmocka_run_group_tests_name("mesh_public", tests, NULL, NULL);
 }

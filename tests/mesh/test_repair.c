@@ -73,7 +73,7 @@ static void faults_are_repaired_and_said(void **state) {
     text.size = 0;
     text_grid(&text, 3, 3); // lines 1 to 16
     text_add(&text, "v 9 9 9\n");
-    text_cells(&text, 3, 3, WHOLE);                  // lines 18 to 26
+    text_cells(&text, 3, 3, WHOLE);                   // lines 18 to 26
     text_add(&text, "f 1 5 6 2\nf 1 2 3\nf 4 4 8\n"); // there already, the other way round; flat; two corners
     Made made = make(&text);
     assert_int_equal(made.mesh.cell_count, 9);
@@ -122,7 +122,8 @@ static double volume(const Mesh *mesh) {
             const float *b = mesh->positions + 3 * mesh->cells[4 * c + k];
             const float *d = mesh->positions + 3 * mesh->cells[4 * c + k + 1];
             sum += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) +
-                    a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+                    a[2] * (b[0] * d[1] - b[1] * d[0])) /
+                   6;
         }
     return sum;
 }
@@ -171,7 +172,7 @@ static void edges_of_many_faces_are_cut(void **state) {
     assert_int_equal(made.mesh.vertex_count, 12 + 3);
     int copies = 0;
     for (uint32_t v = 0; v < made.mesh.vertex_count; v++) copies += made.mesh.source[v] == 4;
-    assert_int_equal(copies, 2); // both are the file's vertex
+    assert_int_equal(copies, 2);      // both are the file's vertex
     for (uint32_t v = 9; v < 15; v++) // and the fin does not begin on the sheet
         assert_true(made.mesh.positions[3 * v + 2] > 1e-4f && made.mesh.positions[3 * v + 2] < 0.02f);
     mesh_free(&made.mesh);
@@ -210,7 +211,8 @@ static uint32_t assert_manifold(const Mesh *mesh) {
     }
     qsort(sides, count, sizeof *sides, by_ends);
     for (uint32_t i = 0, size; i < count; i += size) {
-        for (size = 1; i + size < count && by_ends(&sides[i], &sides[i + size]) == 0; size++) {}
+        for (size = 1; i + size < count && by_ends(&sides[i], &sides[i + size]) == 0; size++) {
+        }
         assert_true(size <= 2);
         assert_true(size == 1 || sides[i].up != sides[i + 1].up);
         open += size == 1;

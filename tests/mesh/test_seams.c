@@ -122,7 +122,8 @@ static int open_edges(const SingeSurface *surface) {
     qsort(edge, edges, sizeof *edge, by_ends);
     int open = 0;
     for (uint32_t e = 0, size; e < edges; e += size) {
-        for (size = 1; e + size < edges && by_ends(&edge[e], &edge[e + size]) == 0; size++) {}
+        for (size = 1; e + size < edges && by_ends(&edge[e], &edge[e + size]) == 0; size++) {
+        }
         open += size == 1;
     }
     free(positions), free(one), free(edge);

@@ -52,8 +52,12 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
     SingeError error = {0};
     PreviewDef def = preview_default();
     const Image *pictures[1] = {picture};
-    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0.02f, -0.03f, 0.24f}, .rotation = {0, 0, 0, 1},
-                         .radius = 0.02f, .colour = {0.3f, 0.3f, 0.32f}, .temperature = 1250};
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0.02f, -0.03f, 0.24f},
+                         .rotation = {0, 0, 0, 1},
+                         .radius = 0.02f,
+                         .colour = {0.3f, 0.3f, 0.32f},
+                         .temperature = 1250};
     memcpy(def.camera.eye, shot->eye, sizeof shot->eye), memcpy(def.camera.target, shot->target, sizeof shot->target);
     if (shot->flames) def.width = 1280, def.height = 720;
     def.camera.fov = shot->fov, def.samples = shot->samples, def.thread_count = threads;
@@ -77,8 +81,9 @@ static int draw(const Shot *shot, const Image *picture, const char *folder, int 
     snprintf(path, sizeof path, "%s/%s.png", folder, shot->name);
     if (!result) result = png_write(path, def.width, def.height, rgb, &error);
     if (result) fprintf(stderr, "%s: %s\n", shot->name, error.message);
-    else printf("%-11s %6u triangles, %d samples: %.3f s, %.3f s of processor", shot->name, surface.triangle_count,
-                shot->samples, wall, cpu);
+    else
+        printf("%-11s %6u triangles, %d samples: %.3f s, %.3f s of processor", shot->name, surface.triangle_count,
+               shot->samples, wall, cpu);
     if (!result && shot->flames) printf(", of which flames %.3f s", cpu - without);
     if (!result) printf("\n");
     preview_destroy(preview);

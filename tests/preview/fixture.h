@@ -60,11 +60,18 @@ static inline void quad_make(Float4 *q, float half, float z) {
     }
     const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
     memcpy(q->triangles, triangles, sizeof triangles);
-    q->surface = (SingeSurface){
-        .vertex_count = 4, .triangle_count = 2, .position = q->position, .normal = q->normal, .uv = q->uv,
-        .rest_position = q->rest, .temperature = q->temperature, .temperature_peak = q->peak,
-        .burn = q->burn, .burn_rate = q->rate,
-        .sheet = q->sheet, .triangles = q->triangles};
+    q->surface = (SingeSurface){.vertex_count = 4,
+                                .triangle_count = 2,
+                                .position = q->position,
+                                .normal = q->normal,
+                                .uv = q->uv,
+                                .rest_position = q->rest,
+                                .temperature = q->temperature,
+                                .temperature_peak = q->peak,
+                                .burn = q->burn,
+                                .burn_rate = q->rate,
+                                .sheet = q->sheet,
+                                .triangles = q->triangles};
 }
 
 #endif

@@ -12,7 +12,7 @@ static bool reserve(SyntheticGas *s) {
     size_t count = (size_t)s->gas.size[0] * s->gas.size[1] * s->gas.size[2];
     s->temperature = plane(count), s->smoke = plane(count), s->flame = plane(count), s->velocity = calloc(count, 12);
     s->gas.temperature = s->temperature, s->gas.smoke = s->smoke, s->gas.flame = s->flame;
-    s->gas.velocity = (const float (*)[3])s->velocity;
+    s->gas.velocity = (const float(*)[3])s->velocity;
     return s->temperature && s->smoke && s->flame && s->velocity;
 }
 

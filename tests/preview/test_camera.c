@@ -125,8 +125,11 @@ static void test_threads(void **state) {
     SingeSurface surface;
     assert_true(synthetic_make(SYNTHETIC_FLAT, 24, 0.05f, &surface));
     for (uint32_t i = 0; i < surface.vertex_count; i++) surface.velocity[i][2] = 0.2f * surface.rest_position[i][0];
-    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.03f}, .radius = 0.01f,
-                         .temperature = 1200, .velocity = {0.3f, 0.1f, 0}};
+    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
+                         .position = {0, 0, 0.03f},
+                         .radius = 0.01f,
+                         .temperature = 1200,
+                         .velocity = {0.3f, 0.1f, 0}};
     for (int threads = 1; threads <= 3; threads++) {
         PreviewDef def = small();
         def.width = BIG_W, def.height = BIG_H, def.thread_count = threads, def.shapes = &ball, def.shape_count = 1;
@@ -141,7 +144,7 @@ static void test_threads(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lens), cmocka_unit_test(test_lens_reaches), cmocka_unit_test(test_shutter),
+        cmocka_unit_test(test_lens),        cmocka_unit_test(test_lens_reaches), cmocka_unit_test(test_shutter),
         cmocka_unit_test(test_moving_ball), cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,9 +18,13 @@ typedef struct Ball {
 static void ball_make(Ball *b, float x, float y, float z, float radius, float flame, float smoke) {
     const float cell = 0.008f, half = 0.5f * SIDE * cell;
     memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE}, .origin = {x - half, y - half, z - half}, .cell = cell,
-                        .temperature = b->temperature, .smoke = b->smoke, .flame = b->flame,
-                        .velocity = (const float (*)[3])b->velocity};
+    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
+                        .origin = {x - half, y - half, z - half},
+                        .cell = cell,
+                        .temperature = b->temperature,
+                        .smoke = b->smoke,
+                        .flame = b->flame,
+                        .velocity = (const float(*)[3])b->velocity};
     for (int i = 0; i < CELLS; i++) {
         float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
         for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
@@ -122,10 +126,13 @@ typedef struct Line {
 static void line_make(Line *l, float above) {
     const float cell = 0.008f;
     memset(l, 0, sizeof *l);
-    l->gas = (SingeGas){.size = {WIDE, DEEP, LONG}, .cell = cell,
+    l->gas = (SingeGas){.size = {WIDE, DEEP, LONG},
+                        .cell = cell,
                         .origin = {-0.5f * WIDE * cell, -0.5f * DEEP * cell, -0.5f * cell - above},
-                        .temperature = l->temperature, .smoke = l->smoke, .flame = l->flame,
-                        .velocity = (const float (*)[3])l->velocity};
+                        .temperature = l->temperature,
+                        .smoke = l->smoke,
+                        .flame = l->flame,
+                        .velocity = (const float(*)[3])l->velocity};
     for (int i = 0; i < COLUMN; i++) {
         int z = i / (WIDE * DEEP), y = i / WIDE % DEEP, x = i % WIDE;
         bool in = (y == 1 || y == 2) && x > 0 && x < WIDE - 1;
@@ -158,18 +165,26 @@ static void burning_make(Burning *b) {
         for (int t = 0; t < 2; t++)
             for (int c = 0; c < 3; c++) b->triangles[2 * k + t][c] = q.triangles[t][c] + 4 * (uint32_t)k;
     }
-    b->surface = (SingeSurface){
-        .vertex_count = 4 * WIDE, .triangle_count = 2 * WIDE, .position = b->position, .normal = b->normal, .uv = b->uv,
-        .rest_position = b->rest, .temperature = b->temperature, .temperature_peak = b->temperature, .burn = b->burn,
-        .burn_rate = b->rate, .sheet = b->sheet, .triangles = b->triangles};
+    b->surface = (SingeSurface){.vertex_count = 4 * WIDE,
+                                .triangle_count = 2 * WIDE,
+                                .position = b->position,
+                                .normal = b->normal,
+                                .uv = b->uv,
+                                .rest_position = b->rest,
+                                .temperature = b->temperature,
+                                .temperature_peak = b->temperature,
+                                .burn = b->burn,
+                                .burn_rate = b->rate,
+                                .sheet = b->sheet,
+                                .triangles = b->triangles};
 }
 
 /// The fire's layer of that line from the side; row 0 of `mean` is the paper's height, others are a mm higher each.
 static void see_line(const SingeSurface *surface, const SingeGas *gas, float (*fire)[4], float (*mean)[4], int rows) {
     PreviewDef def = aside(0.02f);
     // a mm is a pixel
-    def.camera = (PreviewCamera){.eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1},
-                                 .fov = 2 * atanf(H / 2000.0f)};
+    def.camera = (PreviewCamera){
+        .eye = {0, -1, H / 2000.0f}, .target = {0, 0, H / 2000.0f}, .up = {0, 0, 1}, .fov = 2 * atanf(H / 2000.0f)};
     Preview *preview = NULL;
     SingeError error;
     PreviewLayers layers = {.fire = fire};
@@ -401,10 +416,17 @@ static void test_bad_gas(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_burns), cmocka_unit_test(test_flame),
-        cmocka_unit_test(test_base_and_tongues), cmocka_unit_test(test_clear_over_rim), cmocka_unit_test(test_flicker),
-        cmocka_unit_test(test_hidden), cmocka_unit_test(test_far_and_near), cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_light), cmocka_unit_test(test_smoke), cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_nothing_burns),
+        cmocka_unit_test(test_flame),
+        cmocka_unit_test(test_base_and_tongues),
+        cmocka_unit_test(test_clear_over_rim),
+        cmocka_unit_test(test_flicker),
+        cmocka_unit_test(test_hidden),
+        cmocka_unit_test(test_far_and_near),
+        cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_smoke),
+        cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_bad_gas),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

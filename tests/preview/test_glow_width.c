@@ -2,7 +2,6 @@
 
 #include "fixture.h"
 
-
 #include <math.h>
 #include <string.h>
 

@@ -14,8 +14,8 @@ typedef struct Kept {
 static void draw_layers(const PreviewDef *def, const SingeSurface *surface, uint8_t *rgb, Kept *kept) {
     Preview *preview = NULL;
     SingeError error = {0};
-    const PreviewLayers layers = {kept->beauty, kept->glow, kept->coverage, kept->normal, kept->temperature, kept->burn,
-                                  kept->depth, kept->sheet, kept->piece, NULL};
+    const PreviewLayers layers = {kept->beauty, kept->glow,  kept->coverage, kept->normal, kept->temperature,
+                                  kept->burn,   kept->depth, kept->sheet,    kept->piece,  NULL};
     assert_int_equal(preview_create(def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
     assert_int_equal(preview_draw_layers(preview, surface, 1, rgb, &layers, &error), SINGE_OK);
     preview_destroy(preview);
@@ -35,7 +35,7 @@ static void test_values(void **state) {
     draw_layers(&def, &q.surface, NULL, &kept);
     assert_float_equal(kept.depth[ON], 0.4f, 1e-4);
     assert_float_equal(kept.depth[ON + 10], 0.4f, 1e-4); // along the view, not along the ray
-    assert_float_equal(kept.normal[ON][0], 0, 0.5); // char's wrinkles
+    assert_float_equal(kept.normal[ON][0], 0, 0.5);      // char's wrinkles
     assert_true(kept.normal[ON][2] > 0.7f);
     assert_float_equal(kept.temperature[ON], 500, 0.01);
     assert_float_equal(kept.burn[ON], 0.25, 1e-5);
@@ -97,8 +97,8 @@ static void test_ember_line(void **state) {
     assert_true(synthetic_make(SYNTHETIC_FLAT, 84, 0.04f, &surface));
     PreviewDef def = above();
     def.width = def.height = SIDE;
-    def.camera = (PreviewCamera){
-        .eye = {0.012f, 0.02f, 0.5f}, .target = {0.012f, 0.02f, 0}, .up = {0, 1, 0}, .fov = 0.24f};
+    def.camera =
+        (PreviewCamera){.eye = {0.012f, 0.02f, 0.5f}, .target = {0.012f, 0.02f, 0}, .up = {0, 1, 0}, .fov = 0.24f};
     Preview *preview = NULL;
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
     for (int k = 0; k < 2; k++) {
@@ -147,8 +147,8 @@ static void test_same(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values), cmocka_unit_test(test_normal), cmocka_unit_test(test_glow),
-        cmocka_unit_test(test_same), cmocka_unit_test(test_ember_line),
+        cmocka_unit_test(test_values), cmocka_unit_test(test_normal),     cmocka_unit_test(test_glow),
+        cmocka_unit_test(test_same),   cmocka_unit_test(test_ember_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

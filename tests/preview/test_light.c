@@ -15,9 +15,13 @@ typedef struct Ball {
 static void ball_make(Ball *b, float x, float z) {
     const float cell = 0.008f, half = 0.5f * SIDE * cell;
     memset(b, 0, sizeof *b);
-    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE}, .origin = {x - half, -half, z - half}, .cell = cell,
-                        .temperature = b->temperature, .smoke = b->smoke, .flame = b->flame,
-                        .velocity = (const float (*)[3])b->velocity};
+    b->gas = (SingeGas){.size = {SIDE, SIDE, SIDE},
+                        .origin = {x - half, -half, z - half},
+                        .cell = cell,
+                        .temperature = b->temperature,
+                        .smoke = b->smoke,
+                        .flame = b->flame,
+                        .velocity = (const float(*)[3])b->velocity};
     for (int i = 0; i < CELLS; i++) {
         float at[3] = {(float)(i % SIDE), (float)(i / SIDE % SIDE), (float)(i / SIDE / SIDE)}, r2 = 0;
         for (int c = 0; c < 3; c++) r2 += (at[c] + 0.5f - 0.5f * SIDE) * (at[c] + 0.5f - 0.5f * SIDE);
@@ -161,8 +165,10 @@ static void test_bad_transmittance(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shadow_of_flame), cmocka_unit_test(test_lit_through),
-        cmocka_unit_test(test_rim_of_shadow), cmocka_unit_test(test_bad_transmittance),
+        cmocka_unit_test(test_shadow_of_flame),
+        cmocka_unit_test(test_lit_through),
+        cmocka_unit_test(test_rim_of_shadow),
+        cmocka_unit_test(test_bad_transmittance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -229,9 +229,9 @@ static void test_char_leaf(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_white_paper), cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember), cmocka_unit_test(test_ash_pales),
-        cmocka_unit_test(test_skies), cmocka_unit_test(test_char_leaf), cmocka_unit_test(test_grounds),
+        cmocka_unit_test(test_white_paper),  cmocka_unit_test(test_print_and_white), cmocka_unit_test(test_states),
+        cmocka_unit_test(test_cold_remains), cmocka_unit_test(test_ember),           cmocka_unit_test(test_ash_pales),
+        cmocka_unit_test(test_skies),        cmocka_unit_test(test_char_leaf),       cmocka_unit_test(test_grounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,8 @@ static void test_threads(void **state) {
     // enough tiles that every thread gets some
     enum { BIG_W = 330, BIG_H = 250, BIG = BIG_W * BIG_H * 3 };
     static uint8_t pictures[3][BIG];
-    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
-                         .position = {0, 0, 0.03f}, .radius = 0.01f, .temperature = 1200};
+    PreviewShape ball = {
+        .kind = SINGE_COLLIDER_SPHERE, .position = {0, 0, 0.03f}, .radius = 0.01f, .temperature = 1200};
     for (int threads = 1; threads <= 3; threads++) {
         PreviewDef def = small();
         def.width = BIG_W, def.height = BIG_H;
@@ -59,8 +59,8 @@ static void test_same_after_others(void **state) {
     PreviewDef def = small();
     draw(&def, &burning, 2, alone);
     Preview *preview = NULL;
-    PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE, .position = {0.05f, 0, 0.03f}, .radius = 0.03f,
-                         .temperature = 1200};
+    PreviewShape ball = {
+        .kind = SINGE_COLLIDER_SPHERE, .position = {0.05f, 0, 0.03f}, .radius = 0.03f, .temperature = 1200};
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, NULL), SINGE_OK);
     assert_int_equal(preview_set_shapes(preview, &ball, 1, NULL), SINGE_OK);
     assert_int_equal(preview_draw(preview, &hanging, 1, after, NULL), SINGE_OK);
@@ -120,9 +120,13 @@ static void test_shapes(void **state) {
     static uint8_t rgb[BYTES];
     SingeSurface nothing = {0};
     PreviewDef def = above();
-    PreviewShape shape = {.position = {0.1f, 0, 0.05f}, .rotation = {0, 0, 0, 1}, .radius = 0.03f,
-                          .half_size = {0.03f, 0.03f, 0.03f}, .height = 0.02f,
-                          .colour = {0.1f, 0.1f, 0.8f}, .temperature = 293};
+    PreviewShape shape = {.position = {0.1f, 0, 0.05f},
+                          .rotation = {0, 0, 0, 1},
+                          .radius = 0.03f,
+                          .half_size = {0.03f, 0.03f, 0.03f},
+                          .height = 0.02f,
+                          .colour = {0.1f, 0.1f, 0.8f},
+                          .temperature = 293};
     def.shapes = &shape, def.shape_count = 1;
     const SingeColliderKind kinds[3] = {SINGE_COLLIDER_SPHERE, SINGE_COLLIDER_BOX, SINGE_COLLIDER_CAPSULE};
     for (int k = 0; k < 3; k++) {
@@ -151,8 +155,11 @@ static void test_solids(void **state) {
                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     for (int k = 0; k < 24; k++) vertices[k] = (k / 3 >> k % 3 & 1 ? 1 : -1) * (0.02f + 0.01f * (float)(k % 3));
     PreviewSolid solid = {8, 12, vertices, triangles, false};
-    PreviewShape shape = {.position = {0.06f, 0.02f, 0.05f}, .rotation = {0.2f, 0.1f, 0.3f, 0.9274f},
-                          .half_size = {0.02f, 0.03f, 0.04f}, .colour = {0.1f, 0.1f, 0.8f}, .temperature = 293};
+    PreviewShape shape = {.position = {0.06f, 0.02f, 0.05f},
+                          .rotation = {0.2f, 0.1f, 0.3f, 0.9274f},
+                          .half_size = {0.02f, 0.03f, 0.04f},
+                          .colour = {0.1f, 0.1f, 0.8f},
+                          .temperature = 293};
     def.shapes = &shape, def.shape_count = 1;
     for (int moving = 0; moving < 2; moving++) {
         shape.velocity[0] = moving ? 1.5f : 0;
@@ -185,7 +192,9 @@ static void test_hot_ball(void **state) {
     SingeSurface nothing = {0};
     PreviewDef def = above();
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
-                         .position = {0, 0, 0.03f}, .radius = 0.025f, .colour = {0.2f, 0.2f, 0.2f},
+                         .position = {0, 0, 0.03f},
+                         .radius = 0.025f,
+                         .colour = {0.2f, 0.2f, 0.2f},
                          .temperature = 1250};
     def.shapes = &ball, def.shape_count = 1;
     draw(&def, &nothing, 0, hot);
@@ -373,7 +382,7 @@ static void test_out_of_memory(void **state) {
                               {.kind = SINGE_COLLIDER_PLANE, .rotation = {0, 0, 0, 1}, .temperature = 293}};
     PreviewDef def = small();
     def.samples = 1, def.shutter = 0.01f, def.pictures = pictures, def.sheet_count = 1, def.shapes = shapes,
-        def.shape_count = 2;
+    def.shape_count = 2;
     Float4 q;
     quad_make(&q, 0.1f, 0.01f);
     bool succeeded = false;
@@ -404,7 +413,9 @@ static void test_set_shapes(void **state) {
     SingeError error = {0};
     assert_int_equal(preview_create(&def, (SingeAllocator){0}, &preview, &error), SINGE_OK);
     PreviewShape ball = {.kind = SINGE_COLLIDER_SPHERE,
-                         .position = {0, 0, 0.03f}, .radius = 0.03f, .colour = {0.1f, 0.1f, 0.8f},
+                         .position = {0, 0, 0.03f},
+                         .radius = 0.03f,
+                         .colour = {0.1f, 0.1f, 0.8f},
                          .temperature = 293};
     assert_int_equal(preview_set_shapes(preview, &ball, 1, &error), SINGE_OK);
     ball.radius = -1; // copied: this must not matter, but is refused when set
@@ -422,11 +433,13 @@ static void test_set_shapes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_threads), cmocka_unit_test(test_repeatable), cmocka_unit_test(test_empty_surface),
-        cmocka_unit_test(test_same_after_others), cmocka_unit_test(test_picture), cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_solids), cmocka_unit_test(test_hot_ball),
-        cmocka_unit_test(test_shadow), cmocka_unit_test(test_bad_vertices), cmocka_unit_test(test_bad_surface),
-        cmocka_unit_test(test_bad_defs), cmocka_unit_test(test_odd_sizes), cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_threads),       cmocka_unit_test(test_repeatable),
+        cmocka_unit_test(test_empty_surface), cmocka_unit_test(test_same_after_others),
+        cmocka_unit_test(test_picture),       cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_solids),        cmocka_unit_test(test_hot_ball),
+        cmocka_unit_test(test_shadow),        cmocka_unit_test(test_bad_vertices),
+        cmocka_unit_test(test_bad_surface),   cmocka_unit_test(test_bad_defs),
+        cmocka_unit_test(test_odd_sizes),     cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_set_shapes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -36,15 +36,14 @@ static void test_rotation(void **state) {
 
 static void test_sim(void **state) {
     (void)state;
-    Scene *scene =
-        good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
-                   "    translate: [0, 0, 1]\n    scale: 2\n"
-                   "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
-                   "  - grid: {size: [1, 1], cells: [3, 3]}\n"
-                   "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
-                   "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
-                   "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
-                   NULL, 0);
+    Scene *scene = good_scene("sheets:\n  - grid: {size: [0.2, 0.1], cells: [4, 2]}\n    rotate: [90, 0, 0]\n"
+                              "    translate: [0, 0, 1]\n    scale: 2\n"
+                              "    material: {mass_rate: {from: 1e-3, to: 2e-3, noise: {seed: 1}}}\n"
+                              "  - grid: {size: [1, 1], cells: [3, 3]}\n"
+                              "sources: [{kind: spot, position: [0, 0, 1]}, {kind: ball, position: [0, 0, 0]}]\n"
+                              "colliders: [{kind: plane, position: [0, 0, -1]}]\n"
+                              "pins: [{points: [[-0.2, 0, 1.1]], radius: 0}, {sheet: 1, vertices: [0, 1]}]\n",
+                              NULL, 0);
     SceneAssets assets;
     SceneMessages messages = {0};
     SingeSim *sim;
@@ -60,8 +59,7 @@ static void test_sim(void **state) {
     assert_true(fabsf(view.position[0][0] + 0.2f) < 1e-6f && fabsf(view.position[0][1]) < 1e-6f &&
                 fabsf(view.position[0][2] - 0.9f) < 1e-6f);
     int pinned = 0;
-    for (uint32_t i = 0; i < view.particle_count; i++)
-        pinned += (view.particle_flags[i] & SINGE_PINNED) != 0;
+    for (uint32_t i = 0; i < view.particle_count; i++) pinned += (view.particle_flags[i] & SINGE_PINNED) != 0;
     assert_int_equal(pinned, 3);
     assert_int_equal(singe_sim_step(sim), SINGE_OK);
     singe_sim_destroy(sim);
@@ -153,31 +151,31 @@ static void test_bad_meshes(void **state) {
         const char *name, *text, *origin, *fault;
     } meshes[] = {
         {"line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "t.yaml:2:11", "line.obj: no face has an area"},
-        {"flat.ply", "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
-                     "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n4 0 1 2 3\n4 1 4 5 2\n", "t.yaml:3:11",
-         "flat.ply: no face has an area"},
+        {"flat.ply",
+         "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 0\n5 0 0\n4 0 1 2 3\n4 1 4 5 2\n",
+         "t.yaml:3:11", "flat.ply: no face has an area"},
         {"far.obj", "v 20000 0 0\nv 20001 0 0\nv 20001 1 0\nv 20000 1 0\nf 1 2 3 4\n", "t.yaml:4:11",
          "the sheet reaches beyond 10 km from the origin"},
     };
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
-    for (int i = 0; i < 3; i++)
-        write_text(folder, meshes[i].name, meshes[i].text);
+    for (int i = 0; i < 3; i++) write_text(folder, meshes[i].name, meshes[i].text);
     write_text(folder, "words.obj", "v 0 0 x\n");
     for (int reader = 0; reader < 2; reader++) { // without, and with, a mesh that cannot even be read
         char text[400];
         snprintf(text, sizeof text,
                  "sheets:\n  - mesh: line.obj\n  - mesh: flat.ply\n  - mesh: far.obj\n"
-                 "  - grid: {size: [1, 1], cells: [2, 2]}\n%s", reader ? "  - mesh: words.obj\n" : "");
+                 "  - grid: {size: [1, 1], cells: [2, 2]}\n%s",
+                 reader ? "  - mesh: words.obj\n" : "");
         SceneMessages messages = refused(text, folder);
         assert_int_equal(messages.count, 3 + reader);
         for (int i = 0; i < 3; i++) {
             assert_string_equal(messages.items[i].origin, meshes[i].origin);
             assert_non_null(strstr(messages.items[i].text, meshes[i].fault));
         }
-        if (reader)
-            assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
+        if (reader) assert_string_equal(messages.items[3].origin, "t.yaml:6:11");
         scene_messages_free(&messages);
     }
     SceneMessages messages =
@@ -201,14 +199,15 @@ static void test_bad_meshes(void **state) {
 
 static void keep_line(void *context, SingeLogLevel level, const char *line) {
     char *lines = context;
-    if (level == SINGE_LOG_WARNING)
-        strcat(strcat(lines, line), "\n");
+    if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
 /// What can be simulated and has no effect is warned of, with its place.
 static void test_warnings(void **state) {
     (void)state;
-    static const struct { const char *more, *warning; } cases[] = {
+    static const struct {
+        const char *more, *warning;
+    } cases[] = {
         {"pins: [{points: [[0, 0, 0]], radius: 1 mm}]", NULL},
         {"pins: [{points: [[0, 0, 0]]}]", NULL},
         {"pins: [{points: [[0, 0, 0], [0, 0, 5 cm]], radius: 1 cm}]",
@@ -222,7 +221,8 @@ static void test_warnings(void **state) {
          "t.yaml:3:11: the source heats nothing: its conductance is 0\n"},
         {"sources: [{kind: spot, position: [0, 0, 0], radius: 0, falloff: 0}]", "its radius and its falloff are 0\n"},
         {"sources: [{kind: spot, position: [0, 0, 0], start: 1, end: 1}]", "it ends as it starts\n"},
-        {"frames: 25\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", "t.yaml:4:11: the source heats nothing: it starts"},
+        {"frames: 25\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]",
+         "t.yaml:4:11: the source heats nothing: it starts"},
         {"frames: 26\nsources: [{kind: ball, position: [0, 0, 0], start: 1}]", NULL},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -237,8 +237,7 @@ static void test_warnings(void **state) {
         assert_int_equal(scene_parse("t.yaml", text, strlen(text), NULL, NULL, 0, &scene, &messages), SINGE_OK);
         assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
         assert_int_equal(scene_build(scene, &assets, &hooks, &sim, &messages), SINGE_OK);
-        if (cases[i].warning ? !strstr(lines, cases[i].warning) : lines[0])
-            fail_msg("%s: %s", cases[i].more, lines);
+        if (cases[i].warning ? !strstr(lines, cases[i].warning) : lines[0]) fail_msg("%s: %s", cases[i].more, lines);
         singe_sim_destroy(sim);
         scene_assets_free(&assets);
         scene_free(scene);
@@ -356,8 +355,7 @@ static void test_examples(void **state) {
         SingeSim *sim;
         SingeSimDef hooks = singe_default_sim();
         SingeResult result = scene_read(paths[i], NULL, 0, &scene, &messages);
-        if (!result)
-            result = scene_load(scene, &assets, &messages);
+        if (!result) result = scene_load(scene, &assets, &messages);
         if (!result) {
             result = scene_build(scene, &assets, &hooks, &sim, &messages);
             scene_assets_free(&assets);
@@ -366,8 +364,7 @@ static void test_examples(void **state) {
         assert_int_equal(result, SINGE_OK);
         SingeView view = singe_sim_view(sim);
         uint32_t pinned = 0;
-        for (uint32_t p = 0; p < view.particle_count; p++)
-            pinned += (view.particle_flags[p] & SINGE_PINNED) != 0;
+        for (uint32_t p = 0; p < view.particle_count; p++) pinned += (view.particle_flags[p] & SINGE_PINNED) != 0;
         assert_true(scene->pin_count ? pinned >= 4 * scene->pins[0].point_count : pinned == 0);
         singe_sim_destroy(sim);
         scene_free(scene);
@@ -405,8 +402,9 @@ static void test_mesh_files(void **state) {
     (void)state;
     char folder[] = "/tmp/singe-scene-XXXXXX", path[100];
     assert_non_null(mkdtemp(folder));
-    write_text(folder, "a.obj", "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
-                                "f 2 3 4\nf 5 6 7\n");
+    write_text(folder, "a.obj",
+               "v 5 5 5\nv 0 0 0\nv 100 0 0\nv 100 200 -300\nv 0 0 0\nv 100 200 -300\nv 0 200 -300\n"
+               "f 2 3 4\nf 5 6 7\n");
     static const char text[] = "sheets: [{mesh: a.obj, units: mm, up: y, scale: 2, translate: [0, 0, 1]}]\n"
                                "pins: [{vertices: [4, 6]}]\ntearing: no\n"; // no vertices in reserve
     Scene *scene;
@@ -457,7 +455,9 @@ static void test_camera_finds_the_sheets(void **state) {
     for (size_t i = 0; i <= sizeof scenes / sizeof *scenes; i++) {
         bool given = i == sizeof scenes / sizeof *scenes;
         Scene *scene = good_scene(given ? "{sheets: [{grid: {size: [1, 1], cells: [2, 2]}}], "
-                                          "preview: {camera: {eye: [5, 5, 5]}}}" : scenes[i], NULL, 0);
+                                          "preview: {camera: {eye: [5, 5, 5]}}}"
+                                        : scenes[i],
+                                  NULL, 0);
         SceneAssets assets;
         SceneMessages messages = {0};
         assert_int_equal(scene_load(scene, &assets, &messages), SINGE_OK);
@@ -484,11 +484,17 @@ static void test_camera_finds_the_sheets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_sim),
-        cmocka_unit_test(test_refused),    cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_warnings), cmocka_unit_test(test_solids), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_sim),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_bad_meshes),
+        cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_solids),
+        cmocka_unit_test(test_preview),
         cmocka_unit_test(test_mesh_files),
-        cmocka_unit_test(test_examples),   cmocka_unit_test(test_camera_finds_the_sheets),
+        cmocka_unit_test(test_examples),
+        cmocka_unit_test(test_camera_finds_the_sheets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

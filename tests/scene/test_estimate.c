@@ -23,8 +23,7 @@ static bool fail_once;
 static bool refused(void) {
     calls++;
     bool now = fail_at && (fail_once ? calls == fail_at : calls >= fail_at);
-    if (now)
-        errno = ENOMEM;
+    if (now) errno = ENOMEM;
     return now;
 }
 
@@ -67,11 +66,9 @@ static SingeResult attempt(const char *scene_text, long at, bool once, uint32_t 
     assert_int_equal(result == SINGE_OK, scene != NULL);
     if (scene) { // nothing of it was lost on the way
         char *dump = whole(scene);
-        if (!undisturbed)
-            undisturbed = dump;
+        if (!undisturbed) undisturbed = dump;
         assert_string_equal(dump, undisturbed);
-        if (dump != undisturbed)
-            free(dump);
+        if (dump != undisturbed) free(dump);
     }
     scene_free(scene);
     scene_messages_free(&messages);

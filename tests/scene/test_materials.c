@@ -78,8 +78,7 @@ static void test_built_in(void **state) {
         assert_true(material->def.reference_grammage == 0.080f);
         assert_true(material->measured.given && material->measured.speed[1] > material->measured.speed[0]);
         assert_true(material->measured.calibrated == (i == 2));
-        if (i == 2)
-            expect_same_def(&material->def, &standard);
+        if (i == 2) expect_same_def(&material->def, &standard);
         scene_free(scene);
     }
     assert_null(scene_material_name(5));
@@ -139,8 +138,9 @@ static void test_files(void **state) {
     char below[100];
     snprintf(below, sizeof below, "%s/below", folder.path);
     assert_int_equal(mkdir(below, 0700), 0);
-    folder_file(&folder, "below/deep.yaml", "base: newsprint\nmass_rate: {from: 1e-3, to: 2e-3, texture: rate.png}\n"
-                                            "thickness: {from: 1 mm, to: 2 mm, texture: t.png}\n");
+    folder_file(&folder, "below/deep.yaml",
+                "base: newsprint\nmass_rate: {from: 1e-3, to: 2e-3, texture: rate.png}\n"
+                "thickness: {from: 1 mm, to: 2 mm, texture: t.png}\n");
     folder_file(&folder, "below/mine.yml", "base: deep.yaml\nname: my paper\ndrag: 2\nthickness: 3 mm\n");
     folder_file(&folder, "below/rate.png", "");
     folder_file(&folder, "below/t.png", "");
@@ -172,19 +172,32 @@ static void test_files(void **state) {
 static void test_secrets(void **state) {
     (void)state;
     static const char *const secrets[] = {
-        "SECRET:$6$SECRET:19000:0:99999:7:::\n",        "SECRET\nSECRET\n",
-        "SECRET: SECRET\n",                             "- SECRET\n",
-        "grammage: SECRET\n",                           "grammage: 3 SECRET\n",
-        "grammage: {SECRET: 1}\n",                      "grammage: {from: SECRET, to: 1, SECRET: 2}\n",
-        "heat_operator: SECRET\n",                      "base: SECRET\n",
-        "base: ./SECRET\n",                             "base: SECRET.yaml\n",
-        "grammage: [SECRET\n",                          "%SECRET\n",
-        "SECRET\x01\n",                                 "? [SECRET]\n",
-        "&SECRET a\n",                                  "!SECRET a\n",
-        "\"SECRET\n",                                   "grammage: 1\nSECRET\n",
-        "weight: SECRET\n",                             "measured: {speed: [SECRET, 1]}\n",
-        "thickness: {from: 1, to: 2, texture: SECRET}\n", "ablate: SECRET\n",
-        "'SECRET': *SECRET\n",                          "SECRET: |0\n  SECRET\n",
+        "SECRET:$6$SECRET:19000:0:99999:7:::\n",
+        "SECRET\nSECRET\n",
+        "SECRET: SECRET\n",
+        "- SECRET\n",
+        "grammage: SECRET\n",
+        "grammage: 3 SECRET\n",
+        "grammage: {SECRET: 1}\n",
+        "grammage: {from: SECRET, to: 1, SECRET: 2}\n",
+        "heat_operator: SECRET\n",
+        "base: SECRET\n",
+        "base: ./SECRET\n",
+        "base: SECRET.yaml\n",
+        "grammage: [SECRET\n",
+        "%SECRET\n",
+        "SECRET\x01\n",
+        "? [SECRET]\n",
+        "&SECRET a\n",
+        "!SECRET a\n",
+        "\"SECRET\n",
+        "grammage: 1\nSECRET\n",
+        "weight: SECRET\n",
+        "measured: {speed: [SECRET, 1]}\n",
+        "thickness: {from: 1, to: 2, texture: SECRET}\n",
+        "ablate: SECRET\n",
+        "'SECRET': *SECRET\n",
+        "SECRET: |0\n  SECRET\n",
     };
     Folder folder = folder_make();
     for (size_t i = 0; i < sizeof secrets / sizeof *secrets; i++) {
@@ -196,8 +209,7 @@ static void test_secrets(void **state) {
         assert_true(messages.count > 0);
         for (uint32_t m = 0; m < messages.count; m++) {
             const SceneMessage *message = &messages.items[m];
-            if (strstr(message->text, "SECRET") || message->source)
-                fail_msg("%s: %s", secrets[i], message->text);
+            if (strstr(message->text, "SECRET") || message->source) fail_msg("%s: %s", secrets[i], message->text);
             assert_null(strstr(message->origin, "SECRET"));
             if (message->location.line <= 0 || message->location.column <= 0)
                 fail_msg("%s: %s: %s\n", secrets[i], message->origin, message->text);
@@ -259,8 +271,8 @@ static void test_mistakes(void **state) {
     expect_mistake(in, "    material: silk\n", "scene.yaml:3:15",
                    "built in are cotton, newsprint, office-paper, one-reaction, tissue", 1);
     expect_mistake(in, "    material: {base: [1]}\n", "scene.yaml:3:22", "base must be a material (cotton", 1);
-    expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15",
-                   "material must be a map (key: value) or a material (", 1);
+    expect_mistake(in, "    material: [1]\n", "scene.yaml:3:15", "material must be a map (key: value) or a material (",
+                   1);
     expect_mistake(in, "    material: {base: newsprint, base: tissue}\n", "scene.yaml:3:16", "is given twice", 1);
     expect_mistake(in, "    material: gone.yaml\n", "scene.yaml:3:15", "there is no such file", 1);
     expect_mistake(in, "    material: ./\n", "scene.yaml:3:15", "this is a folder", 1);
@@ -296,7 +308,7 @@ static void test_mistakes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_built_in), cmocka_unit_test(test_changed), cmocka_unit_test(test_set),
+        cmocka_unit_test(test_built_in), cmocka_unit_test(test_changed),  cmocka_unit_test(test_set),
         cmocka_unit_test(test_files),    cmocka_unit_test(test_mistakes), cmocka_unit_test(test_secrets),
     };
     return cmocka_run_group_tests_name("scene_materials", tests, NULL, NULL);

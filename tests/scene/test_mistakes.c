@@ -6,8 +6,7 @@ static SceneMessages failing(const char *text, size_t size, const char *base_dir
     Scene *scene = (Scene *)&expected;
     SceneMessages messages = {0};
     SingeResult result = scene_parse("bad.yaml", text, size, base_dir, sets, set_count, &scene, &messages);
-    if (result != expected)
-        print_error("in:\n%s\n", text);
+    if (result != expected) print_error("in:\n%s\n", text);
     assert_int_equal(result, expected);
     assert_null(scene);
     assert_true(messages.count > 0);
@@ -29,8 +28,7 @@ static void one(const char *line, const char *origin, const char *part) {
     snprintf(text, sizeof text, "%s%s\n", SHEET, line);
     SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
     expect_message(&messages, 0, origin, part);
-    if (messages.count != 1)
-        scene_messages_print(&messages, stderr);
+    if (messages.count != 1) scene_messages_print(&messages, stderr);
     assert_int_equal(messages.count, 1);
     scene_messages_free(&messages);
 }
@@ -117,9 +115,9 @@ static void test_ranges_at_once(void **state) {
     static const char text[] = SHEET "pace: 1e9\ngravity: [0, 0, -1e5]\nambient_temperature: 1e9\nair_density: 1e9\n"
                                      "heat_tolerance: 1e-30\nsolver: {substeps: 10001, regularisation: {red: 1e9}}\n"
                                      "wind: {velocity: [1e5, 0, 0]}\nfps: 0.001\n";
-    static const char *const origins[] = {"bad.yaml:3:7",  "bad.yaml:4:17", "bad.yaml:5:22", "bad.yaml:6:14",
-                                          "bad.yaml:7:17", "bad.yaml:8:20", "bad.yaml:8:49", "bad.yaml:9:19",
-                                          "bad.yaml:10:6"};
+    static const char *const origins[] = {"bad.yaml:3:7",  "bad.yaml:4:17", "bad.yaml:5:22",
+                                          "bad.yaml:6:14", "bad.yaml:7:17", "bad.yaml:8:20",
+                                          "bad.yaml:8:49", "bad.yaml:9:19", "bad.yaml:10:6"};
     SceneMessages messages = failing(text, sizeof text - 1, NULL, NULL, 0, SINGE_ERROR_FORMAT);
     assert_int_equal(messages.count, 9);
     for (uint32_t i = 0; i < 9; i++)
@@ -259,11 +257,13 @@ static char *printed(const SceneMessages *messages) {
 /// What a terminal would act on, and what nobody sees, is escaped, wherever a scene says it.
 static void test_unprintable(void **state) {
     (void)state;
-    static const struct { const char *bytes, *escaped; } characters[] = {
-        {"\xc2\x9b", "\\u009b"},         {"\xc2\x85", "\\u0085"},     {"\x7f", "\\x7f"},
-        {"\xe2\x80\xae", "\\u202e"},     {"\xe2\x81\xa6", "\\u2066"}, {"\xe2\x80\x8d", "\\u200d"},
-        {"\xef\xbb\xbf", "\\ufeff"},     {"\xe2\x80\xa8", "\\u2028"}, {"\xe2\x80\xa9", "\\u2029"},
-        {"\xe2\x80\x8f", "\\u200f"},     {"\xc2\xad", "\\u00ad"},     {"\xf3\xa0\x81\x81", "\\U000e0041"},
+    static const struct {
+        const char *bytes, *escaped;
+    } characters[] = {
+        {"\xc2\x9b", "\\u009b"},     {"\xc2\x85", "\\u0085"},     {"\x7f", "\\x7f"},
+        {"\xe2\x80\xae", "\\u202e"}, {"\xe2\x81\xa6", "\\u2066"}, {"\xe2\x80\x8d", "\\u200d"},
+        {"\xef\xbb\xbf", "\\ufeff"}, {"\xe2\x80\xa8", "\\u2028"}, {"\xe2\x80\xa9", "\\u2029"},
+        {"\xe2\x80\x8f", "\\u200f"}, {"\xc2\xad", "\\u00ad"},     {"\xf3\xa0\x81\x81", "\\U000e0041"},
     };
     static const char *const lines[] = {"k%s: 1",
                                         "fps: a%sb",
@@ -283,8 +283,7 @@ static void test_unprintable(void **state) {
             SceneMessages messages = failing(text, strlen(text), NULL, NULL, 0, SINGE_ERROR_FORMAT);
             char *all = printed(&messages);
             assert_null(strstr(all, characters[c].bytes));
-            if (i < 8)
-                assert_non_null(strstr(all, characters[c].escaped));
+            if (i < 8) assert_non_null(strstr(all, characters[c].escaped));
             free(all);
             scene_messages_free(&messages);
             const char *set[] = {line + strspn(line, " -{")}; // "fps: a" is no PATH=VALUE, and told as it is
@@ -299,8 +298,12 @@ static void test_unprintable(void **state) {
 /// Texts without end are cut, between characters.
 static void test_cut(void **state) {
     (void)state;
-    static const char *const lines[] = {"%s: 1",          "fps: %s",     "name: %s",
-                                        "steps: %s",      "gas: {%s: 1}", "pins: [{sheet: %s, vertices: [1]}]",
+    static const char *const lines[] = {"%s: 1",
+                                        "fps: %s",
+                                        "name: %s",
+                                        "steps: %s",
+                                        "gas: {%s: 1}",
+                                        "pins: [{sheet: %s, vertices: [1]}]",
                                         "sources: [{kind: %s}]"};
     static const char *const pieces[] = {"k", "\u00e9", "\u20ac", "\U0001f525", "\xc2\x9b"};
     size_t room = 500000;
@@ -331,9 +334,13 @@ static void test_cut(void **state) {
 /// A name has characters, and bytes enough for them in the names of files.
 static void test_names(void **state) {
     (void)state;
-    static const struct { const char *piece; int count; bool good; } names[] = {
-        {"n", 100, true}, {"n", 101, false}, {"\u00e9", 100, true}, {"\u00e9", 101, false}, {"\u20ac", 66, true},
-        {"\u20ac", 67, false}, {"\u200b", 1, false}, {"\u202e", 1, false}, {"\xc2\x85", 2, false}};
+    static const struct {
+        const char *piece;
+        int count;
+        bool good;
+    } names[] = {{"n", 100, true},       {"n", 101, false},    {"\u00e9", 100, true},
+                 {"\u00e9", 101, false}, {"\u20ac", 66, true}, {"\u20ac", 67, false},
+                 {"\u200b", 1, false},   {"\u202e", 1, false}, {"\xc2\x85", 2, false}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char text[1000] = SHEET "name: ";
         for (int n = 0; n < names[i].count; n++) strcat(text, names[i].piece);
@@ -341,8 +348,7 @@ static void test_names(void **state) {
         SceneMessages messages = {0};
         SingeResult result = scene_parse("t", text, strlen(text), NULL, NULL, 0, &scene, &messages);
         assert_int_equal(result, names[i].good ? SINGE_OK : SINGE_ERROR_FORMAT);
-        if (!names[i].good)
-            assert_non_null(strstr(messages.items[0].text, "at most 100 characters and 200 bytes"));
+        if (!names[i].good) assert_non_null(strstr(messages.items[0].text, "at most 100 characters and 200 bytes"));
         scene_messages_free(&messages);
         scene_free(scene);
     }

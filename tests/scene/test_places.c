@@ -17,14 +17,13 @@ enum { STRIDE = 1 };
 typedef struct Sweep {
     const char *name;
     char folder[200];
-    int lines;           ///< of the text as it is now
+    int lines; ///< of the text as it is now
     int refused, parsed;
 } Sweep;
 
 static int count_lines(const char *text, size_t size) {
     int lines = 1;
-    for (size_t i = 0; i < size; i++)
-        lines += text[i] == '\n';
+    for (size_t i = 0; i < size; i++) lines += text[i] == '\n';
     return lines;
 }
 
@@ -48,8 +47,7 @@ static void parse(Sweep *sweep, const char *bytes, size_t size) {
     assert_true(result == SINGE_OK || result == SINGE_ERROR_FORMAT);
     assert_int_equal(result == SINGE_OK, messages.count == 0);
     for (uint32_t i = 0; i < messages.count; i++)
-        if (!messages.items[i].location.file)
-            expect_location(sweep, &messages.items[i], text);
+        if (!messages.items[i].location.file) expect_location(sweep, &messages.items[i], text);
     sweep->parsed++;
     sweep->refused += result != SINGE_OK;
     scene_messages_free(&messages);
@@ -63,8 +61,7 @@ static void parse_changed(Sweep *sweep, const char *text, size_t from, size_t to
     char *changed = malloc(size + (size_t)times * length + strlen(before) + 1);
     memcpy(changed, text, from);
     used += (size_t)sprintf(changed + used, "%s", before);
-    for (int i = 0; i < times; i++, used += length)
-        memcpy(changed + used, text + from, length);
+    for (int i = 0; i < times; i++, used += length) memcpy(changed + used, text + from, length);
     memcpy(changed + used, text + to, size - to);
     parse(sweep, changed, used + size - to);
     free(changed);
@@ -78,16 +75,11 @@ static void sweep_lines(Sweep *sweep, const char *text) {
         size_t blanks = strspn(text + from, " ");
         if (!all && line / 5 % STRIDE) continue;
         parse(sweep, text, from);
-        if (all || line % 5 == 0)
-            parse_changed(sweep, text, from, to, 0, "");
-        if (all || line % 5 == 1)
-            parse_changed(sweep, text, from, to, 2, "");
-        if (all || line % 5 == 2)
-            parse_changed(sweep, text, from, to, 1, "   ");
-        if (all || line % 5 == 3)
-            parse_changed(sweep, text, from, to, 1, "\t");
-        if (blanks && (all || line % 5 == 4))
-            parse_changed(sweep, text, from, from + blanks, 0, "");
+        if (all || line % 5 == 0) parse_changed(sweep, text, from, to, 0, "");
+        if (all || line % 5 == 1) parse_changed(sweep, text, from, to, 2, "");
+        if (all || line % 5 == 2) parse_changed(sweep, text, from, to, 1, "   ");
+        if (all || line % 5 == 3) parse_changed(sweep, text, from, to, 1, "\t");
+        if (blanks && (all || line % 5 == 4)) parse_changed(sweep, text, from, from + blanks, 0, "");
     }
 }
 
@@ -100,8 +92,7 @@ static void sweep_words(Sweep *sweep, const char *text) {
         to = from + (mark || !word ? 1 : word);
         if (text[from] == '#') // a comment
             to = from + strcspn(text + from, "\n");
-        if (text[from] == ' ' || text[from] == '\n' || text[from] == '#')
-            continue;
+        if (text[from] == ' ' || text[from] == '\n' || text[from] == '#') continue;
         if (!all && words++ % STRIDE) continue;
         parse_changed(sweep, text, from, to, 0, "");
         parse_changed(sweep, text, from, to, 2, "");
@@ -123,8 +114,7 @@ static void test_examples(void **state) {
         assert_int_equal(file_read(sweep.name, (SingeAllocator){0}, &bytes, &error), SINGE_OK);
         if (strstr((char *)bytes.data, "sheets:")) {
             sweep_lines(&sweep, (char *)bytes.data);
-            if (words++ < 1 || all)
-                sweep_words(&sweep, (char *)bytes.data);
+            if (words++ < 1 || all) sweep_words(&sweep, (char *)bytes.data);
             assert_true(sweep.refused > sweep.parsed / 4);
         }
         bytes_free(&bytes);
@@ -136,6 +126,7 @@ static void test_examples(void **state) {
 /// Texts that libfyaml refuses without a word of where.
 static void test_odd(void **state) {
     (void)state;
+    // clang-format off
     static const char *const texts[] = {
         "",      "\n",      "#",         "a: |0\n  x\n", "a: |00\n", "|0",       "a: >0",  "a: |-0",   "a: 1\n...\nb\n",
         "...\n", "---\n",   "---\n...\n---\n", "a: !",  "!",       "a: &",     "*",      ": x",      "? ",
@@ -145,9 +136,9 @@ static void test_odd(void **state) {
         "sheets:\n  - ", "sheets: [{}, {}]\n", "sheets: [[]]", "sheets: [~]", "sheets:\n  -\n  -\n", "~", "null", "{}",
         "[]",    "a: 'b\n\nc", "k: \"\\q\"", "k: \"\\u12\"", "- - - -", "{? a: b}", "[a: b, c: d]", "{a: b, a: c}",
     };
+    // clang-format on
     Sweep sweep = {.name = "odd.yaml", .folder = "."};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        parse(&sweep, texts[i], strlen(texts[i]));
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) parse(&sweep, texts[i], strlen(texts[i]));
     assert_int_equal(sweep.refused, sizeof texts / sizeof *texts);
 }
 

@@ -10,28 +10,27 @@
 
 // An object of every kind, so that every row has a path. Steps: such that all fps are allowed. The front's thickening
 // is given: what it would be for the extremes of one row alone is refused.
-static const char base[] =
-    "steps: 1000\n"
-    "sheets:\n"
-    "  - grid: {size: [0.2, 0.2], cells: [2, 2]}\n"
-    "    material: {thickening: 2, diffusivity: {from: 1e-6, to: 2e-6, noise: {scale: 0.1}}}\n"
-    "sources:\n"
-    "  - {kind: ball, path: [{time: 0, position: [0, 0, 0]}]}\n"
-    "  - {kind: texture, texture: flux.png, strength: [{time: 0, value: 1}]}\n"
-    "  - {kind: spot, position: [0, 0, 0]}\n"
-    "colliders:\n"
-    "  - {kind: plane, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: sphere, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: box, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: capsule, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: heightfield, picture: heights.png, conductance: 10, path: [{time: 0}]}\n"
-    "  - {kind: mesh, motion: {mesh: cube.#.obj}, conductance: 10, path: [{time: 0}]}\n"
-    "pins:\n"
-    "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n"
-    "  - {points: [[0, 0, 0]], vertices: [0], motion: {mesh: cube.#.obj}}\n"
-    "probes:\n"
-    "  - {kind: uv, at: [0, 0]}\n"
-    "  - {kind: point, at: [0, 0, 0]}\n";
+static const char base[] = "steps: 1000\n"
+                           "sheets:\n"
+                           "  - grid: {size: [0.2, 0.2], cells: [2, 2]}\n"
+                           "    material: {thickening: 2, diffusivity: {from: 1e-6, to: 2e-6, noise: {scale: 0.1}}}\n"
+                           "sources:\n"
+                           "  - {kind: ball, path: [{time: 0, position: [0, 0, 0]}]}\n"
+                           "  - {kind: texture, texture: flux.png, strength: [{time: 0, value: 1}]}\n"
+                           "  - {kind: spot, position: [0, 0, 0]}\n"
+                           "colliders:\n"
+                           "  - {kind: plane, conductance: 10, path: [{time: 0}]}\n"
+                           "  - {kind: sphere, conductance: 10, path: [{time: 0}]}\n"
+                           "  - {kind: box, conductance: 10, path: [{time: 0}]}\n"
+                           "  - {kind: capsule, conductance: 10, path: [{time: 0}]}\n"
+                           "  - {kind: heightfield, picture: heights.png, conductance: 10, path: [{time: 0}]}\n"
+                           "  - {kind: mesh, motion: {mesh: cube.#.obj}, conductance: 10, path: [{time: 0}]}\n"
+                           "pins:\n"
+                           "  - {points: [[0, 0, 0]], vertices: [0], path: [{time: 0}]}\n"
+                           "  - {points: [[0, 0, 0]], vertices: [0], motion: {mesh: cube.#.obj}}\n"
+                           "probes:\n"
+                           "  - {kind: uv, at: [0, 0]}\n"
+                           "  - {kind: point, at: [0, 0, 0]}\n";
 
 /// A cube of half a unit about its middle.
 static const char cube_file[] = "v -.5 -.5 -.5\nv .5 -.5 -.5\nv .5 .5 -.5\nv -.5 .5 -.5\n"
@@ -68,8 +67,7 @@ static SingeResult try_first_frame(const Scene *scene, const SceneAssets *assets
     PreviewShape shapes[16];
     scene_preview(scene, assets, &def);
     def.width = def.height = 16; // the largest picture is not what this is about
-    if (!result)
-        result = preview_create(&def, (SingeAllocator){0}, &preview, &error);
+    if (!result) result = preview_create(&def, (SingeAllocator){0}, &preview, &error);
     static const double times[] = {0, 1e-3, 1, 1e6};
     for (int i = 0; i < 4 && !result; i++) {
         uint32_t count = scene_shapes(scene, assets, times[i], shapes, 16);
@@ -78,8 +76,7 @@ static SingeResult try_first_frame(const Scene *scene, const SceneAssets *assets
     }
     preview_destroy(preview);
 #endif
-    if (error.code)
-        print_error("first frame: %s\n", error.message);
+    if (error.code) print_error("first frame: %s\n", error.message);
     return result;
 }
 
@@ -90,12 +87,9 @@ static void expect_built(const Scene *scene, const char *set) {
     SingeSim *sim = NULL;
     SingeSimDef hooks = singe_default_sim();
     SingeResult result = scene_load(scene, &assets, &messages);
-    if (!result)
-        result = scene_build(scene, &assets, &hooks, &sim, &messages);
-    if (!result)
-        result = try_first_frame(scene, &assets, sim);
-    if (result)
-        print_error("--set %s is allowed, but:\n", set), scene_messages_print(&messages, stderr);
+    if (!result) result = scene_build(scene, &assets, &hooks, &sim, &messages);
+    if (!result) result = try_first_frame(scene, &assets, sim);
+    if (result) print_error("--set %s is allowed, but:\n", set), scene_messages_print(&messages, stderr);
     assert_int_equal(result, SINGE_OK);
     singe_sim_destroy(sim);
     scene_assets_free(&assets);
@@ -118,8 +112,7 @@ static void try_value(const Walk *walk, const char *path, const char *value, boo
         assert_non_null(strstr(messages.items[i].text, " to "));
         assert_int_not_equal(messages.items[i].text[strlen(messages.items[i].text) - 1], ' ');
     }
-    if (good)
-        expect_built(scene, set);
+    if (good) expect_built(scene, set);
     scene_messages_free(&messages);
     scene_free(scene);
 }
@@ -129,16 +122,13 @@ static void try_number(const Walk *walk, const SchemaRow *row, const char *path,
     char value[200] = "";
     bool list = row->type == ROW_POINTS;
     if (walk->rows % ONE_OF) return;
-    if (row->type == ROW_INDICES)
-        snprintf(value, sizeof value, "[%s]", number);
+    if (row->type == ROW_INDICES) snprintf(value, sizeof value, "[%s]", number);
     else if (row->type == ROW_INTS) // the maximum of both is more than all cells may be
         snprintf(value, sizeof value, "[%s, %.0f]", number, row->min > 2 ? row->min : 2);
-    else if (row->length == 2)
-        snprintf(value, sizeof value, "[%s, %s]", number, number);
+    else if (row->length == 2) snprintf(value, sizeof value, "[%s, %s]", number, number);
     else if (row->length == 3)
         snprintf(value, sizeof value, "%s[%s, %s, %s]%s", list ? "[" : "", number, number, number, list ? "]" : "");
-    else
-        snprintf(value, sizeof value, "%s", number);
+    else snprintf(value, sizeof value, "%s", number);
     try_value(walk, path, value, good);
 }
 
@@ -160,12 +150,10 @@ static void walk_float(const Walk *walk, const SchemaRow *row, const char *path)
     assert_true(isfinite(row->min) && isfinite(row->max) && row->min < row->max);
     for (int i = 0; i < 2; i++) {
         float outwards = i ? INFINITY : -INFINITY, value = (float)(i ? row->max : row->min);
-        while (!allows(row, value))
-            value = nextafterf(value, -outwards);
+        while (!allows(row, value)) value = nextafterf(value, -outwards);
         quantity_print(value, row->dimension, number, sizeof number);
         try_number(walk, row, path, number, true);
-        while (allows(row, value))
-            value = nextafterf(value, outwards);
+        while (allows(row, value)) value = nextafterf(value, outwards);
         quantity_print(value, row->dimension, number, sizeof number);
         try_number(walk, row, path, number, false);
     }
@@ -187,8 +175,7 @@ static void walk_row(Walk *walk, const SchemaRow *row, const char *path) {
     case ROW_PARAM:
         walk->rows++, walk_float(walk, row, path);
         snprintf(inner, sizeof inner, "%s.noise.", path);
-        if (strcmp(row->key, "diffusivity") == 0)
-            walk_schema(walk, &schema_noise, inner, ~0u);
+        if (strcmp(row->key, "diffusivity") == 0) walk_schema(walk, &schema_noise, inner, ~0u);
         return;
     case ROW_STRENGTH: walk->rows++, walk_float(walk, row, path); // falls through
     case ROW_LIST: {
@@ -213,8 +200,7 @@ static void walk_schema(Walk *walk, const Schema *schema, const char *prefix, un
         const SchemaRow *row = &schema->rows[i];
         char path[200];
         // the short forms stand for an entry of a path, which is walked
-        if (!row_allowed(row, kind) || (row->flags & ROW_SHORT))
-            continue;
+        if (!row_allowed(row, kind) || (row->flags & ROW_SHORT)) continue;
         snprintf(path, sizeof path, "%s%s", prefix, row->key);
         if (strcmp(path, "pins.0.motion") == 0) // which excludes a path: the second pin has it
             strcpy(path, "pins.1.motion");

@@ -94,7 +94,8 @@ static void check_objects(const Scene *scene) {
     assert_true(probe[1].kind == SCENE_PROBE_POINT && probe[1].sheet_index == 0 && probe[1].point[0] == 0.01f);
     assert_string_equal(probe[0].name, "a, b");
     assert_string_equal(probe[1].name, "probe2");
-    assert_true(scene->output.events && scene->output.texture_size == 64 && output_has(scene->output.formats, OUTPUT_vtp));
+    assert_true(scene->output.events && scene->output.texture_size == 64 &&
+                output_has(scene->output.formats, OUTPUT_vtp));
     assert_int_equal(scene->sim.solver.order[0], SINGE_YELLOW);
     assert_true(scene->sim.solver.regularisation[SINGE_RED] == 0.5f);
     assert_true(scene->preview.ground_height == -0.5f && scene->preview.light_colour[0] == 3);
@@ -124,9 +125,9 @@ static void test_all_vary(void **state) {
             char set[128];
             const char *sets[] = {set};
             float from = strcmp(location.key, "temperature") ? 0.5f : 500, to = 1.5f * from; // allowed by every row
-            const char *unit = strcmp(location.key, "fibre_angle") ? "" : " rad"; // a bare angle is degrees
-            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", location.key, (double)from, unit,
-                     (double)to, unit, fields[f]);
+            const char *unit = strcmp(location.key, "fibre_angle") ? "" : " rad";            // a bare angle is degrees
+            snprintf(set, sizeof set, "sheets.0.material.%s={from: %g%s, to: %g%s, %s}", location.key, (double)from,
+                     unit, (double)to, unit, fields[f]);
             Scene *scene = good_scene(SHEET, sets, 1);
             const SceneMaterial *material = &scene->sheets[0].material;
             SingeMaterialDef def = material->def;
@@ -339,8 +340,7 @@ static void test_solver_method(void **state) {
 
 static void keep_line(void *context, SingeLogLevel level, const char *line) {
     char *lines = context;
-    if (level == SINGE_LOG_WARNING)
-        strcat(strcat(lines, line), "\n");
+    if (level == SINGE_LOG_WARNING) strcat(strcat(lines, line), "\n");
 }
 
 /// Names of the release before are read as their new ones, and each is reported with its line.
@@ -373,9 +373,7 @@ static void test_renamed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_renamed),
-        cmocka_unit_test(test_gas),
-        cmocka_unit_test(test_solver_method),
+        cmocka_unit_test(test_renamed),   cmocka_unit_test(test_gas),      cmocka_unit_test(test_solver_method),
         cmocka_unit_test(test_values),    cmocka_unit_test(test_defaults), cmocka_unit_test(test_dump_yaml),
         cmocka_unit_test(test_dump_json), cmocka_unit_test(test_json),     cmocka_unit_test(test_texts),
         cmocka_unit_test(test_set),       cmocka_unit_test(test_all_vary),

@@ -51,27 +51,44 @@ static void test_units(void **state) {
 
 static void test_strict(void **state) {
     (void)state;
-    static const char *const not_numbers[] = {"",    " ",   "x",    "nan",  "inf",  "-inf", "0x10 ", "--1", ".",
-                                              "+",   "e5",  "1,5",  "C 12", "- 1",  "1.2.3", "1 2",
-                                              "+-3", "++3", "- 3",  "\u22123", "infinity m", "nan m", "NaN", ".e3", "_1",
-                                              "1..2", "\u00a03"};
-    static const char *const bad_units[] = {"1 kg",    "1 mmm",   "1 m m2",   "1 e",    "1 s",   "1 M",        "3 m m",
-                                            "3mm mm",  "3 c m",   "1e3 e3",   "1_000",  "1 m\n",      "1\tm",
-                                            "1 \u00b0", "1 *",     "1 ^",      "1 \u00b7", "1 m^", "1 *m",       "1 m*",
-                                            "1 \u00b0m", "1 m\u00b2", "1 \u00b5 m", "1 m/1",  "1m1",   "1 m\xc2\x85"};
+    static const char *const not_numbers[] = {"",      " ",   "x",   "nan", "inf",  "-inf",    "0x10 ",
+                                              "--1",   ".",   "+",   "e5",  "1,5",  "C 12",    "- 1",
+                                              "1.2.3", "1 2", "+-3", "++3", "- 3",  "\u22123", "infinity m",
+                                              "nan m", "NaN", ".e3", "_1",  "1..2", "\u00a03"};
+    static const char *const bad_units[] = {
+        "1 kg",   "1 mmm", "1 m m2",    "1 e",       "1 s",        "1 M",   "3 m m", "3mm mm",     "3 c m",
+        "1e3 e3", "1_000", "1 m\n",     "1\tm",      "1 \u00b0",   "1 *",   "1 ^",   "1 \u00b7",   "1 m^",
+        "1 *m",   "1 m*",  "1 \u00b0m", "1 m\u00b2", "1 \u00b5 m", "1 m/1", "1m1",   "1 m\xc2\x85"};
     double value;
     for (size_t i = 0; i < sizeof not_numbers / sizeof *not_numbers; i++)
         assert_int_not_equal(quantity_read(not_numbers[i], DIM_LENGTH, &value), NUMBER_GOOD);
     for (size_t i = 0; i < sizeof bad_units / sizeof *bad_units; i++)
         assert_int_equal(quantity_read(bad_units[i], DIM_LENGTH, &value), NUMBER_BAD_UNIT);
-    static const struct { const char *text; Dimension dimension; } of_others[] = {
-        {"1 m", DIM_NONE},           {"1 %", DIM_NONE},          {"1 \u00b0", DIM_NONE},
-        {"3 m/ s", DIM_SPEED},       {"3 m /s", DIM_SPEED},      {"3 m s", DIM_SPEED},
-        {"3 m//s", DIM_SPEED},       {"3 ms", DIM_SPEED},        {"5 % %", DIM_FRACTION},
-        {"5 %%", DIM_FRACTION},      {"20 \u00b0 C", DIM_TEMPERATURE}, {"20 \u00b0K", DIM_TEMPERATURE},
-        {"20 C C", DIM_TEMPERATURE}, {"1 W/( m2 K)", DIM_CONDUCTANCE}, {"1 W/(m2 K", DIM_CONDUCTANCE},
-        {"1 W/m2 K", DIM_CONDUCTANCE}, {"1 W/(m 2 K)", DIM_CONDUCTANCE}, {"1 m2", DIM_LENGTH},
-        {"1 m i n", DIM_TIME},       {"1 r a d", DIM_ANGLE},     {"1 1/ s", DIM_RATE},
+    static const struct {
+        const char *text;
+        Dimension dimension;
+    } of_others[] = {
+        {"1 m", DIM_NONE},
+        {"1 %", DIM_NONE},
+        {"1 \u00b0", DIM_NONE},
+        {"3 m/ s", DIM_SPEED},
+        {"3 m /s", DIM_SPEED},
+        {"3 m s", DIM_SPEED},
+        {"3 m//s", DIM_SPEED},
+        {"3 ms", DIM_SPEED},
+        {"5 % %", DIM_FRACTION},
+        {"5 %%", DIM_FRACTION},
+        {"20 \u00b0 C", DIM_TEMPERATURE},
+        {"20 \u00b0K", DIM_TEMPERATURE},
+        {"20 C C", DIM_TEMPERATURE},
+        {"1 W/( m2 K)", DIM_CONDUCTANCE},
+        {"1 W/(m2 K", DIM_CONDUCTANCE},
+        {"1 W/m2 K", DIM_CONDUCTANCE},
+        {"1 W/(m 2 K)", DIM_CONDUCTANCE},
+        {"1 m2", DIM_LENGTH},
+        {"1 m i n", DIM_TIME},
+        {"1 r a d", DIM_ANGLE},
+        {"1 1/ s", DIM_RATE},
     };
     for (size_t i = 0; i < sizeof of_others / sizeof *of_others; i++)
         assert_int_equal(quantity_read(of_others[i].text, of_others[i].dimension, &value), NUMBER_BAD_UNIT);
@@ -80,8 +97,7 @@ static void test_strict(void **state) {
 static void back(float value, Dimension dimension, const char *expected) {
     char text[40];
     quantity_print(value, dimension, text, sizeof text);
-    if (expected)
-        assert_string_equal(text, expected);
+    if (expected) assert_string_equal(text, expected);
     double again;
     assert_int_equal(quantity_read(text, dimension, &again), NUMBER_GOOD);
     float narrow = (float)again;
@@ -105,8 +121,7 @@ static void test_print(void **state) {
         memcpy(&value, &bits, sizeof value);
         if (isfinite(value)) {
             back(value, DIM_NONE, NULL);
-            if (fabsf(value) < 1e6f && fabsf(value) > 1e-30f)
-                back(value, DIM_ANGLE, NULL);
+            if (fabsf(value) < 1e6f && fabsf(value) > 1e-30f) back(value, DIM_ANGLE, NULL);
         }
     }
 }
@@ -116,13 +131,11 @@ static void test_locale(void **state) {
     (void)state;
     static const char *const locales[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
     bool found = false;
-    for (int i = 0; i < 4 && !found; i++)
-        found = setlocale(LC_ALL, locales[i]) != NULL;
+    for (int i = 0; i < 4 && !found; i++) found = setlocale(LC_ALL, locales[i]) != NULL;
     back(0.25f, DIM_NONE, "0.25");
     near(read_good("1.5 mm", DIM_LENGTH), 1.5e-3);
     setlocale(LC_ALL, "C");
-    if (!found)
-        skip();
+    if (!found) skip();
 }
 
 int main(void) {

@@ -205,7 +205,7 @@ QuadMesh mesh_random(uint32_t n, uint32_t seed) {
 
 void mesh_shuffle(QuadMesh *mesh, uint32_t seed) {
     uint32_t *to = malloc(mesh->vertex_count * sizeof *to);
-    float (*moved)[3] = malloc(mesh->vertex_count * sizeof *moved);
+    float(*moved)[3] = malloc(mesh->vertex_count * sizeof *moved);
     assert_true(to && moved);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t k = random_hash(v, 1, 0, seed) % (v + 1);

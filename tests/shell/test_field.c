@@ -14,8 +14,18 @@ static void test_sample(void **state) {
     static const float values[] = {0, 1, 2, 3, 4, 5};
     SingeTexture picture = {3, 2, values};
     static const float expected[][3] = {
-        {1.0f / 6, 0.75f, 0}, {0.5f, 0.75f, 1}, {5.0f / 6, 0.25f, 5}, {0.5f, 0.5f, 2.5f}, {0, 1, 0}, {1, 1, 2},
-        {0, 0, 3}, {1, 0, 5}, {-7, 9, 0}, {9, -7, 5}, {1.0f / 3, 0.75f, 0.5f}, {1e38f, -1e38f, 5},
+        {1.0f / 6, 0.75f, 0},
+        {0.5f, 0.75f, 1},
+        {5.0f / 6, 0.25f, 5},
+        {0.5f, 0.5f, 2.5f},
+        {0, 1, 0},
+        {1, 1, 2},
+        {0, 0, 3},
+        {1, 0, 5},
+        {-7, 9, 0},
+        {9, -7, 5},
+        {1.0f / 3, 0.75f, 0.5f},
+        {1e38f, -1e38f, 5},
     };
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
         assert_float_equal(shell_sample_texture(&picture, expected[i][0], expected[i][1]), expected[i][2], 1e-5f);

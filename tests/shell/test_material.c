@@ -82,17 +82,26 @@ static void test_numbers(void **state) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(2);
     SingeMaterialDef *m = &square.def.material;
-    SingeParam *params[] = {&m->thickness, &m->diffusivity, &m->temperature, &m->ignition_temperature,
-                            &m->heat_of_combustion, &m->heat_share, &m->mass_rate, &m->ash_exponent, &m->mass_min,
-                            &m->mass_loss, &m->ash_density};
+    SingeParam *params[] = {&m->thickness,          &m->diffusivity, &m->temperature, &m->ignition_temperature,
+                            &m->heat_of_combustion, &m->heat_share,  &m->mass_rate,   &m->ash_exponent,
+                            &m->mass_min,           &m->mass_loss,   &m->ash_density};
     enum { FIRST = sizeof params / sizeof *params };
     m->reference_grammage = 0;
     for (int k = 0; k < FIRST; k++) *params[k] = singe_param(0.01f * (float)(k + 1));
     m->shrink_front = singe_param(1.25f), m->shrink_back = singe_param(0.75f);
     for (int k = 0; k < 4; k++) m->weight[k] = singe_param(0.5f + 0.1f * (float)k);
-    SingeParam *more[] = {&m->layer_exchange, &m->convection, &m->emissivity, &m->loss_mass_floor, &m->rate_ceiling,
-                          &m->char_weight, &m->drag, &m->damping, &m->strength, &m->char_strength,
-                          &m->pre_exponential, &m->activation_energy};
+    SingeParam *more[] = {&m->layer_exchange,
+                          &m->convection,
+                          &m->emissivity,
+                          &m->loss_mass_floor,
+                          &m->rate_ceiling,
+                          &m->char_weight,
+                          &m->drag,
+                          &m->damping,
+                          &m->strength,
+                          &m->char_strength,
+                          &m->pre_exponential,
+                          &m->activation_energy};
     enum { MORE = sizeof more / sizeof *more };
     for (int k = 0; k < MORE; k++) *more[k] = singe_param(0.2f + 0.01f * (float)k);
     for (int k = 0; k < 4; k++) m->compliance[k] = singe_param(0.3f + 0.1f * (float)k);
@@ -100,12 +109,21 @@ static void test_numbers(void **state) {
     Shell shell;
     assert_int_equal(shell_create(&memory, &source, 1, &shell, NULL), SINGE_OK);
     const Matter *matter = &shell.matter;
-    const Field others[] = {matter->layer_exchange, matter->convection, matter->emissivity, matter->loss_mass_floor,
-                             matter->rate_ceiling, matter->char_weight, matter->drag, matter->damping, matter->strength,
-                             matter->char_strength, matter->pre_exponential, matter->activation_energy};
+    const Field others[] = {matter->layer_exchange,
+                            matter->convection,
+                            matter->emissivity,
+                            matter->loss_mass_floor,
+                            matter->rate_ceiling,
+                            matter->char_weight,
+                            matter->drag,
+                            matter->damping,
+                            matter->strength,
+                            matter->char_strength,
+                            matter->pre_exponential,
+                            matter->activation_energy};
     const Field fields[] = {matter->thickness, matter->diffusivity, matter->temperature, matter->ignition_temperature,
-                             matter->gas_heat, matter->heating, matter->mass_rate, matter->ash_exponent,
-                             matter->mass_min, matter->mass_loss, matter->ash_density};
+                            matter->gas_heat,  matter->heating,     matter->mass_rate,   matter->ash_exponent,
+                            matter->mass_min,  matter->mass_loss,   matter->ash_density};
     const float heat = m->heat_of_combustion.value, share = m->heat_share.value;
     for (uint32_t p = 0; p < shell.particle_count; p++) {
         for (int k = 0; k < FIRST; k++)
@@ -138,8 +156,12 @@ static void test_all_vary(void **state) {
     SheetSource plain = evaluate(&memory, &square.def);
     const uint32_t total = 49 + 36;
     for (int kind = SINGE_FIELD_TEXTURE; kind <= SINGE_FIELD_NOISE; kind++) {
-        SingeParam param = {.value = 0.5f, .to = 0.9f, .field = (SingeFieldKind)kind, .texture = {2, 2, pixels},
-                            .attribute = "field", .noise = {0.3f, 2, 3}};
+        SingeParam param = {.value = 0.5f,
+                            .to = 0.9f,
+                            .field = (SingeFieldKind)kind,
+                            .texture = {2, 2, pixels},
+                            .attribute = "field",
+                            .noise = {0.3f, 2, 3}};
         SingeSheetDef def = square.def;
         def.material.thickness = param;
         SheetSource known = evaluate(&memory, &def);
@@ -256,14 +278,24 @@ static void test_stated_for_a_grammage(void **state) {
 // The ends of every range: the last number that is allowed and the first that is not.
 static void test_ranges(void **state) {
     (void)state;
-    static const float good[][2] = {[ABOVE_0] = {1e-6f, 1e6f}, [FROM_0] = {0, 1e6f}, [TO_1] = {0, 1},
-                                    [BELOW_1] = {0, 0.999f}, [TO_2] = {0, 2}, [OVER_0_TO_1] = {1e-6f, 1},
+    static const float good[][2] = {[ABOVE_0] = {1e-6f, 1e6f},
+                                    [FROM_0] = {0, 1e6f},
+                                    [TO_1] = {0, 1},
+                                    [BELOW_1] = {0, 0.999f},
+                                    [TO_2] = {0, 2},
+                                    [OVER_0_TO_1] = {1e-6f, 1},
                                     [ABOVE_0_OR_INFINITE] = {1e-6f, INFINITY},
-                                    [ANY_FINITE] = {-1e6f, 1e6f}, [TENTH_TO_10] = {0.1f, 10}};
-    static const float bad[][2] = {[ABOVE_0] = {0, -1}, [FROM_0] = {-1e-6f, -INFINITY}, [TO_1] = {-1e-6f, 1.0001f},
-                                   [BELOW_1] = {-1e-6f, 1}, [TO_2] = {-1e-6f, 2.0001f}, [OVER_0_TO_1] = {0, 1.01f},
+                                    [ANY_FINITE] = {-1e6f, 1e6f},
+                                    [TENTH_TO_10] = {0.1f, 10}};
+    static const float bad[][2] = {[ABOVE_0] = {0, -1},
+                                   [FROM_0] = {-1e-6f, -INFINITY},
+                                   [TO_1] = {-1e-6f, 1.0001f},
+                                   [BELOW_1] = {-1e-6f, 1},
+                                   [TO_2] = {-1e-6f, 2.0001f},
+                                   [OVER_0_TO_1] = {0, 1.01f},
                                    [ABOVE_0_OR_INFINITE] = {0, -INFINITY},
-                                   [ANY_FINITE] = {-INFINITY, INFINITY}, [TENTH_TO_10] = {0.09f, 10.1f}};
+                                   [ANY_FINITE] = {-INFINITY, INFINITY},
+                                   [TENTH_TO_10] = {0.09f, 10.1f}};
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(1);
     for (int i = 0; i < VARYING; i++) {

@@ -226,8 +226,7 @@ static void test_hub_limit(void **state) {
         double a = 3.14159265358979 * k / sides;
         mesh_add_vertex(&mesh, (float)cos(a), (float)sin(a), 0);
     }
-    for (uint32_t s = 0; s < sides; s++)
-        mesh_add_cell(&mesh, 0, 1 + 2 * s, 2 + 2 * s, 1 + (2 * s + 2) % (2 * sides));
+    for (uint32_t s = 0; s < sides; s++) mesh_add_cell(&mesh, 0, 1 + 2 * s, 2 + 2 * s, 1 + (2 * s + 2) % (2 * sides));
     refuse(&mesh, SINGE_ERROR_LIMIT, 0, "21845 cells");
 }
 
@@ -285,18 +284,12 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moebius),
-        cmocka_unit_test(test_turned_cell),
-        cmocka_unit_test(test_three_cells),
-        cmocka_unit_test(test_bow_tie),
-        cmocka_unit_test(test_touching_spheres),
-        cmocka_unit_test(test_second_sheet),
-        cmocka_unit_test(test_bad_numbers),
-        cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_too_thick),
-        cmocka_unit_test(test_bad_defs),
-        cmocka_unit_test(test_hub_limit),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_moebius),          cmocka_unit_test(test_turned_cell),
+        cmocka_unit_test(test_three_cells),      cmocka_unit_test(test_bow_tie),
+        cmocka_unit_test(test_touching_spheres), cmocka_unit_test(test_second_sheet),
+        cmocka_unit_test(test_bad_numbers),      cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_too_thick),        cmocka_unit_test(test_bad_defs),
+        cmocka_unit_test(test_hub_limit),        cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

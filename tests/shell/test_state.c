@@ -125,13 +125,25 @@ static void test_apart(void **context) {
     State s;
     assert_int_equal(state_create(&memory, &shell, &s), SINGE_OK);
     size_t n = shell.particle_count;
-    struct { void *at; size_t size; } slices[15 + 2 * SINGE_COLOUR_COUNT] = {
-        {s.dynamics.position, 16 * n}, {s.dynamics.velocity, 16 * n},
-        {s.dynamics.pinned, n}, {s.heat.temperature, 4 * n}, {s.heat.temperature_peak, 4 * n},
-        {s.burn.fuel, 4 * n}, {s.burn.release, 4 * n},
-        {s.burn.mass, 4 * n}, {s.burn.burn_rate, 4 * n}, {s.burn.time_ignited, 4 * n}, {s.burn.time_burnt, 4 * n},
-        {s.ablate.particle_flags, n}, {s.ablate.cell_flags, shell.cell_count},
-        {s.ablate.degree, 2 * n}, {s.ablate.piece, 4 * n},
+    struct {
+        void *at;
+        size_t size;
+    } slices[15 + 2 * SINGE_COLOUR_COUNT] = {
+        {s.dynamics.position, 16 * n},
+        {s.dynamics.velocity, 16 * n},
+        {s.dynamics.pinned, n},
+        {s.heat.temperature, 4 * n},
+        {s.heat.temperature_peak, 4 * n},
+        {s.burn.fuel, 4 * n},
+        {s.burn.release, 4 * n},
+        {s.burn.mass, 4 * n},
+        {s.burn.burn_rate, 4 * n},
+        {s.burn.time_ignited, 4 * n},
+        {s.burn.time_burnt, 4 * n},
+        {s.ablate.particle_flags, n},
+        {s.ablate.cell_flags, shell.cell_count},
+        {s.ablate.degree, 2 * n},
+        {s.ablate.piece, 4 * n},
     };
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         slices[15 + c].at = s.burn.spring_length[c], slices[15 + c].size = 4 * (size_t)shell.springs[c].count;

@@ -39,7 +39,9 @@ static Expected grid_expected(uint32_t n, uint32_t m) {
     return (Expected){.springs = {4 * n * m, n * (m - 1) + m * (n - 1), n * (m + 1) + m * (n + 1), 2 * n * m},
                       .strands = {diagonals, green, n + m + 2, diagonals},
                       .families = {2, green == n + m ? 2 : green > 0, 2, n * m > 1 ? 2 : 1},
-                      .cell_families = n > 1 && m > 1 ? 4 : n * m > 1 ? 2 : 1};
+                      .cell_families = n > 1 && m > 1 ? 4
+                                       : n * m > 1    ? 2
+                                                      : 1};
 }
 
 static void test_grid(void **state) {
@@ -73,10 +75,11 @@ static void test_torus(void **state) {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         uint32_t n = sizes[i][0], m = sizes[i][1], d = 2 * gcd(n, m), cells = n * m;
         QuadMesh mesh = mesh_torus(n, m);
-        expect(&mesh, "torus", (Expected){.springs = {4 * cells, 2 * cells, 2 * cells, 2 * cells},
-                                          .strands = {d, n + m, n + m, d},
-                                          .rings = {d, n + m, n + m, d},
-                                          .families = {2, 2, 2, 2}});
+        expect(&mesh, "torus",
+               (Expected){.springs = {4 * cells, 2 * cells, 2 * cells, 2 * cells},
+                          .strands = {d, n + m, n + m, d},
+                          .rings = {d, n + m, n + m, d},
+                          .families = {2, 2, 2, 2}});
     }
 }
 
@@ -105,15 +108,17 @@ static void test_cylinder(void **state) {
     (void)state;
     QuadMesh mesh = mesh_cylinder(12, 5, 0.1f, 0.2f);
     // a diagonal climbs one row a cell, so each starts at one of 12 places and goes once up
-    expect(&mesh, "cylinder", (Expected){.springs = {240, 12 * 4 + 12 * 5, 12 * 6 + 12 * 5, 120},
-                                         .strands = {24, 12 + 5, 12 + 6, 24},
-                                         .rings = {0, 5, 6, 0},
-                                         .families = {2, 2, 2, 2}});
+    expect(&mesh, "cylinder",
+           (Expected){.springs = {240, 12 * 4 + 12 * 5, 12 * 6 + 12 * 5, 120},
+                      .strands = {24, 12 + 5, 12 + 6, 24},
+                      .rings = {0, 5, 6, 0},
+                      .families = {2, 2, 2, 2}});
     mesh = mesh_cylinder(9, 1, 0.1f, 0.02f);
-    expect(&mesh, "ring strip", (Expected){.springs = {36, 9, 27, 18},
-                                           .strands = {18, 1, 9 + 2, 18},
-                                           .rings = {0, 1, 2, 0},
-                                           .families = {0, 1, 2, 0}});
+    expect(&mesh, "ring strip",
+           (Expected){.springs = {36, 9, 27, 18},
+                      .strands = {18, 1, 9 + 2, 18},
+                      .rings = {0, 1, 2, 0},
+                      .families = {0, 1, 2, 0}});
 }
 
 // Eight vertices of valence three: the cube's 12 edges are chains, the other lines go round.

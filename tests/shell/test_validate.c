@@ -16,13 +16,13 @@ static void good_ones_pass(void **unused) {
     burning_sheet_free(b);
 }
 
-#define BREAKS(validate, target, value)       \
-    do {                                      \
-        __typeof__(target) kept_ = (target);  \
-        (target) = (value);                   \
-        assert_non_null(validate);            \
-        (target) = kept_;                     \
-        assert_null(validate);                \
+#define BREAKS(validate, target, value)      \
+    do {                                     \
+        __typeof__(target) kept_ = (target); \
+        (target) = (value);                  \
+        assert_non_null(validate);           \
+        (target) = kept_;                    \
+        assert_null(validate);               \
     } while (0)
 
 static void broken_ones_are_named(void **unused) {

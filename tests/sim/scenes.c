@@ -61,8 +61,8 @@ static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
     return result;
 }
 
-#define SCENE_TRY(call)            \
-    do {                           \
+#define SCENE_TRY(call)               \
+    do {                              \
         SingeResult result_ = (call); \
         if (result_) return result_;  \
     } while (0)

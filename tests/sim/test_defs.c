@@ -5,16 +5,16 @@
 #include <string.h>
 
 /// The simulation's Def with one field changed is refused and the message names the field.
-#define SIM_BAD(field, value, word) \
-    do { \
-        SingeSimDef def_ = singe_default_sim(); \
-        def_.field = (value); \
-        SingeSim *sim_ = (SingeSim *)1; \
-        SingeError error_ = {0}; \
-        if (singe_sim_create(&def_, &sim_, &error_) != SINGE_ERROR_ARGUMENT) \
-            fail_msg(#field " = " #value " was taken"); \
-        assert_null(sim_); \
-        assert_int_equal(error_.code, SINGE_ERROR_ARGUMENT); \
+#define SIM_BAD(field, value, word)                                                   \
+    do {                                                                              \
+        SingeSimDef def_ = singe_default_sim();                                       \
+        def_.field = (value);                                                         \
+        SingeSim *sim_ = (SingeSim *)1;                                               \
+        SingeError error_ = {0};                                                      \
+        if (singe_sim_create(&def_, &sim_, &error_) != SINGE_ERROR_ARGUMENT)          \
+            fail_msg(#field " = " #value " was taken");                               \
+        assert_null(sim_);                                                            \
+        assert_int_equal(error_.code, SINGE_ERROR_ARGUMENT);                          \
         if (!strstr(error_.message, (word))) fail_msg(#field ": %s", error_.message); \
         assert_int_equal(singe_sim_create(&def_, &sim_, NULL), SINGE_ERROR_ARGUMENT); \
     } while (0)
@@ -88,17 +88,17 @@ static void limits_are_inclusive(void **state) {
 
 static SingeSim *small_sim(void) { return test_sim(NULL, test_grid(4, 4, 0.01f, 0.01f), NULL); }
 
-#define SOURCE_BAD(kind_, change)                                             \
-    do {                                                                      \
-        SingeSourceDef def = singe_default_source();                          \
-        def.kind = (kind_);                                                   \
-        def.path_count = 1, def.path = &key;                                  \
-        def.texture = (SingeTexture){1, 1, &grey};                            \
-        SingeSourceId id = {1, 1};                                            \
-        change;                                                               \
+#define SOURCE_BAD(kind_, change)                                                      \
+    do {                                                                               \
+        SingeSourceDef def = singe_default_source();                                   \
+        def.kind = (kind_);                                                            \
+        def.path_count = 1, def.path = &key;                                           \
+        def.texture = (SingeTexture){1, 1, &grey};                                     \
+        SingeSourceId id = {1, 1};                                                     \
+        change;                                                                        \
         test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_add_source(sim, &def, &id)); \
-        assert_string_equal(singe_sim_error(sim)->stage, "source");           \
-        assert_int_equal(id.generation, 0);                                   \
+        assert_string_equal(singe_sim_error(sim)->stage, "source");                    \
+        assert_int_equal(id.generation, 0);                                            \
     } while (0)
 
 static void bad_sources(void **state) {
@@ -132,16 +132,16 @@ static void bad_sources(void **state) {
     singe_sim_destroy(sim);
 }
 
-#define PIN_BAD(result, change)                                          \
-    do {                                                                 \
-        SingePinDef def = singe_default_pin();                           \
-        def.sheet = (SingeSheetId){0, 1};                                \
-        def.point_count = 1, def.points = point;                         \
-        SingePinId id = {1, 1};                                          \
-        change;                                                          \
-        test_refused(sim, (result), singe_sim_add_pin(sim, &def, &id));  \
-        assert_string_equal(singe_sim_error(sim)->stage, "pin");         \
-        assert_int_equal(id.generation, 0);                              \
+#define PIN_BAD(result, change)                                         \
+    do {                                                                \
+        SingePinDef def = singe_default_pin();                          \
+        def.sheet = (SingeSheetId){0, 1};                               \
+        def.point_count = 1, def.points = point;                        \
+        SingePinId id = {1, 1};                                         \
+        change;                                                         \
+        test_refused(sim, (result), singe_sim_add_pin(sim, &def, &id)); \
+        assert_string_equal(singe_sim_error(sim)->stage, "pin");        \
+        assert_int_equal(id.generation, 0);                             \
     } while (0)
 
 static void bad_pins(void **state) {
@@ -343,9 +343,9 @@ static void defs_are_copied(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_simulations), cmocka_unit_test(half_a_task_hook), cmocka_unit_test(limits_are_inclusive),
-        cmocka_unit_test(bad_sources), cmocka_unit_test(bad_pins), cmocka_unit_test(bad_colliders_and_wind),
-        cmocka_unit_test(older_defs), cmocka_unit_test(older_inner_defs), cmocka_unit_test(older_material),
-        cmocka_unit_test(newer_defs), cmocka_unit_test(defs_are_copied),
+        cmocka_unit_test(bad_sources),     cmocka_unit_test(bad_pins),         cmocka_unit_test(bad_colliders_and_wind),
+        cmocka_unit_test(older_defs),      cmocka_unit_test(older_inner_defs), cmocka_unit_test(older_material),
+        cmocka_unit_test(newer_defs),      cmocka_unit_test(defs_are_copied),
     };
     return cmocka_run_group_tests_name("sim_defs", tests, NULL, NULL);
 }

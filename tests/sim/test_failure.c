@@ -102,10 +102,10 @@ static void steps_allocate_nothing(void **state) {
 }
 
 static SingeResult whole_life(const SingeSimDef *def, Scene *scene, SingeSurface *surface) {
-#define LIFE(call)                 \
-    do {                           \
-        SingeResult result_ = (call);  \
-        if (result_) return result_;   \
+#define LIFE(call)                    \
+    do {                              \
+        SingeResult result_ = (call); \
+        if (result_) return result_;  \
     } while (0)
     LIFE(scene_build(def, 3, scene));
     for (int i = 0; i < 5; i++) LIFE(singe_sim_step(scene->sim));
@@ -236,7 +236,7 @@ static void failed_calls_can_be_repeated(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failed_step_changes_nothing), cmocka_unit_test(a_failure_late_in_the_step),
-        cmocka_unit_test(steps_allocate_nothing), cmocka_unit_test(every_allocation_fails_once),
+        cmocka_unit_test(steps_allocate_nothing),        cmocka_unit_test(every_allocation_fails_once),
         cmocka_unit_test(failed_calls_can_be_repeated),
     };
     return cmocka_run_group_tests_name("sim_failure", tests, NULL, NULL);

@@ -100,8 +100,7 @@ static void moved_as_a_whole_it_is_a_mesh_on_a_path(void **state) {
         for (int k = 0; k < 2; k++) test_steps(sims[k], 10);
         SingeView a = singe_sim_view(sims[0]), b = singe_sim_view(sims[1]);
         for (uint32_t v = 0; v < a.vertex_count; v++)
-            for (int i = 0; i < 3; i++)
-                worst = fmax(worst, fabs((double)(a.position[v][i] - b.position[v][i])));
+            for (int i = 0; i < 3; i++) worst = fmax(worst, fabs((double)(a.position[v][i] - b.position[v][i])));
     }
     print_message("carried to x %.4f, z %.4f; at most %.2g m from the rigid one\n", mean_of(sims[1], 0),
                   mean_of(sims[1], 2), worst);

@@ -49,18 +49,18 @@ static void assert_filled(const Bytes *filled, size_t size, const void *standard
 }
 
 /// Every size from the smallest to one of a newer header.
-#define EVERY_SIZE(member, Def, known)                                           \
-    do {                                                                         \
-        Def standard_ = singe_default_##member();                                \
-        assert_int_equal(standard_.struct_size, sizeof standard_);               \
+#define EVERY_SIZE(member, Def, known)                                               \
+    do {                                                                             \
+        Def standard_ = singe_default_##member();                                    \
+        assert_int_equal(standard_.struct_size, sizeof standard_);                   \
         for (size_t size = sizeof size; size <= sizeof standard_ + LONGER; size++) { \
-            Bytes bytes_ = untouched();                                          \
-            singe_init_##member(&bytes_.member, size);                           \
-            assert_filled(&bytes_, size, &standard_, sizeof standard_, known);   \
-        }                                                                        \
-        Bytes none_ = untouched();                                               \
-        singe_init_##member(&none_.member, sizeof(size_t) - 1);                  \
-        assert_bytes(&none_, 0, MAX, UNTOUCHED);                                 \
+            Bytes bytes_ = untouched();                                              \
+            singe_init_##member(&bytes_.member, size);                               \
+            assert_filled(&bytes_, size, &standard_, sizeof standard_, known);       \
+        }                                                                            \
+        Bytes none_ = untouched();                                                   \
+        singe_init_##member(&none_.member, sizeof(size_t) - 1);                      \
+        assert_bytes(&none_, 0, MAX, UNTOUCHED);                                     \
     } while (0)
 
 static void no_byte_beyond_the_size(void **state) {
@@ -170,19 +170,19 @@ static void results_of_any_size(void **state) {
         SingeCounts counts;
         SingeGas gas;
     } given;
-#define READ(Type, name)                                                                            \
-    do {                                                                                            \
-        const Type whole = singe_sim_##name(sim);                                                   \
-        const size_t sizes[] = {sizeof whole / 2, sizeof whole, sizeof whole + LONGER};             \
-        for (int k = 0; k < 3; k++) {                                                               \
-            memset(&given, UNTOUCHED, sizeof given);                                                \
-            singe_sim_read_##name(sim, &given.name, sizes[k]);                                      \
-            const size_t known = sizes[k] < sizeof whole ? sizes[k] : sizeof whole;                 \
-            const size_t first = sizeof(void *); /* a view's struct_size differs */                 \
+#define READ(Type, name)                                                                                 \
+    do {                                                                                                 \
+        const Type whole = singe_sim_##name(sim);                                                        \
+        const size_t sizes[] = {sizeof whole / 2, sizeof whole, sizeof whole + LONGER};                  \
+        for (int k = 0; k < 3; k++) {                                                                    \
+            memset(&given, UNTOUCHED, sizeof given);                                                     \
+            singe_sim_read_##name(sim, &given.name, sizes[k]);                                           \
+            const size_t known = sizes[k] < sizeof whole ? sizes[k] : sizeof whole;                      \
+            const size_t first = sizeof(void *); /* a view's struct_size differs */                      \
             assert_memory_equal(given.at + first, (const unsigned char *)&whole + first, known - first); \
-            for (size_t i = known; i < sizes[k]; i++) assert_int_equal(given.at[i], 0);             \
-            for (size_t i = sizes[k]; i < sizeof given; i++) assert_int_equal(given.at[i], UNTOUCHED); \
-        }                                                                                           \
+            for (size_t i = known; i < sizes[k]; i++) assert_int_equal(given.at[i], 0);                  \
+            for (size_t i = sizes[k]; i < sizeof given; i++) assert_int_equal(given.at[i], UNTOUCHED);   \
+        }                                                                                                \
     } while (0)
     READ(SingeView, view);
     READ(SingeStats, stats);
@@ -208,10 +208,8 @@ static void results_of_any_size(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(results_of_any_size),
-        cmocka_unit_test(no_byte_beyond_the_size),
-        cmocka_unit_test(sheet_of_any_size),
-        cmocka_unit_test(sim_of_any_size),
+        cmocka_unit_test(results_of_any_size), cmocka_unit_test(no_byte_beyond_the_size),
+        cmocka_unit_test(sheet_of_any_size),   cmocka_unit_test(sim_of_any_size),
         cmocka_unit_test(older_inner_defs),
     };
     return cmocka_run_group_tests_name("sim_init", tests, NULL, NULL);

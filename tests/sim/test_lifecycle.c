@@ -307,12 +307,16 @@ static void every_byte_is_counted_and_freed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(before_the_commit), cmocka_unit_test(after_the_commit), cmocka_unit_test(refused_sheets),
-        cmocka_unit_test(particles_are_numbered_as_documented), cmocka_unit_test(timers_and_time_grow),
+        cmocka_unit_test(before_the_commit),
+        cmocka_unit_test(after_the_commit),
+        cmocka_unit_test(refused_sheets),
+        cmocka_unit_test(particles_are_numbered_as_documented),
+        cmocka_unit_test(timers_and_time_grow),
         cmocka_unit_test(the_log_hears_of_the_commit),
         cmocka_unit_test(the_log_has_no_locale),
         cmocka_unit_test(the_log_hears_of_what_begins_inside),
-        cmocka_unit_test(warns_once_of_conduction_cut_short), cmocka_unit_test(every_byte_is_counted_and_freed),
+        cmocka_unit_test(warns_once_of_conduction_cut_short),
+        cmocka_unit_test(every_byte_is_counted_and_freed),
     };
     return cmocka_run_group_tests_name("sim_lifecycle", tests, NULL, NULL);
 }

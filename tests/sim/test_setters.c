@@ -217,9 +217,11 @@ static void any_material_at_any_time(void **state) {
     SingeStats before = singe_sim_stats(scene.sim);
     assert_true(before.burnt_fraction > 0.02);
     SingeMaterialDef material = scene_quick_material();
-    material.mass_min = singe_param(0.6f), material.mass_loss = singe_param(0.3f), material.char_yield = singe_param(0.7f);
+    material.mass_min = singe_param(0.6f), material.mass_loss = singe_param(0.3f),
+    material.char_yield = singe_param(0.7f);
     material.ash_density = singe_param(0.5f), material.strength = singe_param(1);
-    material.compliance[SINGE_GREEN] = singe_param(3), material.grammage = singe_param(5), material.thickness = singe_param(1);
+    material.compliance[SINGE_GREEN] = singe_param(3), material.grammage = singe_param(5),
+    material.thickness = singe_param(1);
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));
     SingeStats after = singe_sim_stats(scene.sim);
     assert_true(after.mass == before.mass && after.mass_initial == before.mass_initial);

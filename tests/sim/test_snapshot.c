@@ -336,6 +336,7 @@ POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 /// A simulation whose numbers are not what steps leave can be saved, but not loaded.
 static void impossible_numbers(void **state) {
     (void)state;
+// clang-format off
 #define ROW(name) {#name, poke_##name}
     static const struct { const char *what; void (*poke)(SingeSim *sim); } rows[] = {
         ROW(time_step), ROW(projections), ROW(method), ROW(order), ROW(wind), ROW(gas_cell), ROW(contact),
@@ -349,8 +350,9 @@ static void impossible_numbers(void **state) {
         ROW(inverse_mass), ROW(bend), ROW(crease), ROW(pinned), ROW(pinned_flag), ROW(flag), ROW(cell_flag),
         ROW(spring_gone), ROW(spring_spare), ROW(degree), ROW(piece_none), ROW(piece_far), ROW(piece_other),
         ROW(pieces_to_come), ROW(piece_count), ROW(line_force), ROW(split_count), ROW(split), ROW(attach_source),
-        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_place), ROW(collision_speed), ROW(collision_alive),
-        ROW(initial_crossing), ROW(gas_field), ROW(gas_air)};
+        ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_place), ROW(collision_speed),
+        ROW(collision_alive), ROW(initial_crossing), ROW(gas_field), ROW(gas_air)};
+    // clang-format on
 #undef ROW
     SingeSimDef def = scene_def();
     def.contact.enabled = def.solver.tearing = def.solver.creases = true;
@@ -438,11 +440,16 @@ static void every_field_is_saved(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(resumed_runs_are_the_same),
-        cmocka_unit_test(every_field_is_saved), cmocka_unit_test(bytes_are_the_same),
-        cmocka_unit_test(handles_keep_their_values), cmocka_unit_test(clones_are_independent),
-        cmocka_unit_test(truncated_snapshots),       cmocka_unit_test(flipped_bits),
-        cmocka_unit_test(forged_snapshots),          cmocka_unit_test(other_versions),
-        cmocka_unit_test(hooks_are_only_hooks),      cmocka_unit_test(impossible_numbers),
+        cmocka_unit_test(every_field_is_saved),
+        cmocka_unit_test(bytes_are_the_same),
+        cmocka_unit_test(handles_keep_their_values),
+        cmocka_unit_test(clones_are_independent),
+        cmocka_unit_test(truncated_snapshots),
+        cmocka_unit_test(flipped_bits),
+        cmocka_unit_test(forged_snapshots),
+        cmocka_unit_test(other_versions),
+        cmocka_unit_test(hooks_are_only_hooks),
+        cmocka_unit_test(impossible_numbers),
     };
     return cmocka_run_group_tests_name("sim_snapshot", tests, NULL, NULL);
 }

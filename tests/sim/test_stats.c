@@ -106,7 +106,7 @@ static void statistics_match_the_view(void **state) {
             const uint32_t *ends = view.springs[SINGE_BLUE][k];
             if (!(view.spring_flags[SINGE_BLUE][k] & SINGE_ALIVE)) continue;
             if (view.particle_flags[ends[0]] & view.particle_flags[ends[1]] & SINGE_PINNED) continue; // held
-            if (view.mass[ends[0]] < mass_loss && view.mass[ends[1]] < mass_loss) continue; // not drawn
+            if (view.mass[ends[0]] < mass_loss && view.mass[ends[1]] < mass_loss) continue;           // not drawn
             const float *a = view.position[ends[0]], *b = view.position[ends[1]];
             float d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
             strain[n] = fabsf(sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / view.spring_length[SINGE_BLUE][k] - 1);

@@ -35,12 +35,24 @@ typedef struct Limit {
 } Limit;
 
 static const Limit limits[] = {
-    {"the scene", "frames", 2, 3},      {"the scene", "steps", 1, 4},        {"the scene", "detail", 2e-3, 1},
-    {"the solver", "substeps", 0, 8},   {"the solver", "projections", 1, 4}, {"the gas", "cell_size", 0.01, 1},
-    {"the gas", "height", 0.05, 0.3},   {"a grid", "size", 0.02, 0.3},       {"a grid", "cells", 1, 9},
-    {"the preview", "size", 16, 32},    {"the preview", "samples", 1, 2},    {"a sheet", "translate", -0.02, 0.02},
-    {"a sheet", "scale", 0.5, 2},       {"a source", "position", -0.1, 0.1}, {"a key", "position", -0.1, 0.1},
-    {"a collider", "position", -0.1, 0.05}, {"a material", "thickening", 1, 20}, {"the scene", "fps", 1, 1000},
+    {"the scene", "frames", 2, 3},
+    {"the scene", "steps", 1, 4},
+    {"the scene", "detail", 2e-3, 1},
+    {"the solver", "substeps", 0, 8},
+    {"the solver", "projections", 1, 4},
+    {"the gas", "cell_size", 0.01, 1},
+    {"the gas", "height", 0.05, 0.3},
+    {"a grid", "size", 0.02, 0.3},
+    {"a grid", "cells", 1, 9},
+    {"the preview", "size", 16, 32},
+    {"the preview", "samples", 1, 2},
+    {"a sheet", "translate", -0.02, 0.02},
+    {"a sheet", "scale", 0.5, 2},
+    {"a source", "position", -0.1, 0.1},
+    {"a key", "position", -0.1, 0.1},
+    {"a collider", "position", -0.1, 0.05},
+    {"a material", "thickening", 1, 20},
+    {"the scene", "fps", 1, 1000},
     {"the output", "texture_size", 16, 256},
 };
 
@@ -158,8 +170,7 @@ static void put_value(Draw *draw, const Schema *schema, const SchemaRow *row, vo
     case ROW_UINT64: put_whole(draw, schema, row, 1); break;
     case ROW_INTS: put_whole(draw, schema, row, row->length); break;
     case ROW_FLOAT:
-        if (strcmp(row->key, "time") == 0)
-            printf("%g", draw->moment += 0.001 + 0.1 * share(draw));
+        if (strcmp(row->key, "time") == 0) printf("%g", draw->moment += 0.001 + 0.1 * share(draw));
         else put_number(draw, schema, row, (double)*at);
         break;
     case ROW_VECTOR: put_numbers(draw, schema, row, at); break;
@@ -181,8 +192,8 @@ static bool is_drawn(Draw *draw, const Schema *schema, const SchemaRow *row) {
     static const RowType left_out[] = {ROW_TEXT, ROW_NAME, ROW_FILE, ROW_STRENGTH};
     for (size_t k = 0; k < sizeof left_out / sizeof *left_out; k++)
         if (row->type == left_out[k]) return false;
-    static const char *const always[] = {"frames", "steps", "sheets", "substeps", "grid", "size", "samples", "cell_size",
-                                         "points", "translate", "position", "path"};
+    static const char *const always[] = {"frames",  "steps",     "sheets", "substeps",  "grid",     "size",
+                                         "samples", "cell_size", "points", "translate", "position", "path"};
     if (row->type == ROW_BASE) return pick(draw, 2);
     if (strcmp(row->key, "measured") == 0) return false; // nothing is computed from it
     if (row->flags & ROW_SHORT) return false;

@@ -85,8 +85,8 @@ void test_assert_same(SingeSim *a, SingeSim *b) {
     size_t n = v.particle_count;
 #define SAME(array, count) assert_memory_equal(v.array, w.array, (count) * sizeof *v.array)
     SAME(position, n), SAME(velocity, n), SAME(rest_position, n), SAME(uv, n), SAME(area, n), SAME(mass, n);
-    SAME(temperature, n), SAME(temperature_peak, n), SAME(burn_rate, n), SAME(fuel, n), SAME(time_ignited, n), SAME(time_burnt, n),
-        SAME(piece, n);
+    SAME(temperature, n), SAME(temperature_peak, n), SAME(burn_rate, n), SAME(fuel, n), SAME(time_ignited, n),
+        SAME(time_burnt, n), SAME(piece, n);
     SAME(particle_flags, n), SAME(cell_flags, v.cell_count), SAME(cells, v.cell_count);
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++) {
         assert_int_equal(v.spring_count[c], w.spring_count[c]);

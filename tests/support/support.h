@@ -85,14 +85,14 @@ bool test_comma_locale(void);
 /// Counts everything, and fails from the fail_at-th call for memory on (1 is the first; 0 never), or at that
 /// one only.
 typedef struct TestAllocator {
-    long calls;      ///< for memory, frees not counted
+    long calls; ///< for memory, frees not counted
     long frees;
     long fail_at;
-    bool once;       ///< fail at that call only
-    long blocks;     ///< now held
+    bool once;   ///< fail at that call only
+    long blocks; ///< now held
     size_t bytes, peak;
-    size_t largest;  ///< block asked for so far
-    long faults;     ///< wrong old sizes, and frees of what is not a block
+    size_t largest; ///< block asked for so far
+    long faults;    ///< wrong old sizes, and frees of what is not a block
 } TestAllocator;
 
 SingeAllocator test_allocator(TestAllocator *allocator);

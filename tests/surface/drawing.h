@@ -46,24 +46,26 @@ static inline void draw_coarse(Drawing *d) {
 static inline void draw_fine(Drawing *d) {
     const BurningSheet *b = d->sheet;
     assert_int_equal(ablate_surface_fine(d->plan, &b->shell, &b->state, &d->detail, &d->sheet->memory, d->pool,
-                                         &d->surface, &d->sheet->error), SINGE_OK);
+                                         &d->surface, &d->sheet->error),
+                     SINGE_OK);
 }
 
 /// Removes what has burnt.
-static inline void ablate(Drawing *d) {
-    sheet_ablate(d->sheet, d->plan);
-}
+static inline void ablate(Drawing *d) { sheet_ablate(d->sheet, d->plan); }
 
 static inline void set_level(Drawing *d, uint32_t particle, float level) {
     d->sheet->state.burn.mass[particle] = field_at(d->sheet->shell.matter.mass_loss, particle) + level;
 }
 
 /// A field a x + b y + c of the rest position.
-typedef struct Linear { double a, b, c; } Linear;
+typedef struct Linear {
+    double a, b, c;
+} Linear;
 static inline double value_at(Linear f, const float *p) { return f.a * (double)p[0] + f.b * (double)p[1] + f.c; }
 
-static const struct { Linear temperature, peak, rate, ignited, velocity[3]; } linear_fields = {
-    {100, 200, 300}, {-50, 100, 900}, {0.1, -0.1, 1}, {2, 1, 5}, {{1, 2, 3}, {0, 0, 0}, {-3, 1, 0}}};
+static const struct {
+    Linear temperature, peak, rate, ignited, velocity[3];
+} linear_fields = {{100, 200, 300}, {-50, 100, 900}, {0.1, -0.1, 1}, {2, 1, 5}, {{1, 2, 3}, {0, 0, 0}, {-3, 1, 0}}};
 
 /// The sheet is tilted: z = x/2.
 static inline void set_linear_fields(Drawing *d, Linear level) {
@@ -75,8 +77,7 @@ static inline void set_linear_fields(Drawing *d, Linear level) {
         b->state.heat.temperature_peak[i] = (float)value_at(linear_fields.peak, p);
         b->state.burn.burn_rate[i] = (float)value_at(linear_fields.rate, p);
         b->state.burn.time_ignited[i] = (float)value_at(linear_fields.ignited, p);
-        for (int k = 0; k < 3; k++)
-            b->state.dynamics.velocity[i][k] = (float)value_at(linear_fields.velocity[k], p);
+        for (int k = 0; k < 3; k++) b->state.dynamics.velocity[i][k] = (float)value_at(linear_fields.velocity[k], p);
         b->state.dynamics.position[i][2] = i < b->shell.vertex_count ? 0.5f * p[0] : 77; // centres do not count
     }
 }

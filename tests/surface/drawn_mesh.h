@@ -23,7 +23,9 @@ static inline double area_of(const SingeSurface *s) {
     return area;
 }
 
-typedef struct Edge { uint32_t a, b; } Edge;
+typedef struct Edge {
+    uint32_t a, b;
+} Edge;
 
 static inline int compare_edges(const void *x, const void *y) {
     const Edge *p = x, *q = y;

@@ -184,7 +184,8 @@ static void crumpled_sheets_are_not_turned_over(void **unused) {
         }
         float farthest = 0;
         for (uint32_t v = 0; v < s->vertex_count; v++)
-            farthest = fmaxf(farthest, float3_length(float3_sub(float3_load(s->position[v]), float3_load(plain->position[v]))));
+            farthest = fmaxf(farthest,
+                             float3_length(float3_sub(float3_load(s->position[v]), float3_load(plain->position[v]))));
         assert_true(farthest > 0.01f && (!(seed & 1) || farthest < 0.0601f));
         drawing_free(round), drawing_free(straight);
     }
@@ -257,7 +258,8 @@ static void what_a_lost_corner_pulls_apart_is_left_out(void **unused) {
         for (int i = 0; i < 3; i++) {
             uint32_t a = d->surface.triangles[t][i], b = d->surface.triangles[t][(i + 1) % 3];
             Float3 now = float3_sub(float3_load(d->surface.position[b]), float3_load(d->surface.position[a]));
-            Float3 rest = float3_sub(float3_load(d->surface.rest_position[b]), float3_load(d->surface.rest_position[a]));
+            Float3 rest =
+                float3_sub(float3_load(d->surface.rest_position[b]), float3_load(d->surface.rest_position[a]));
             assert_true(float3_length(now) < 2 * float3_length(rest));
         }
     drawing_free(d);

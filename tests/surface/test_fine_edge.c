@@ -179,10 +179,8 @@ static void finer_details_converge(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_direction_is_preferred),
-        cmocka_unit_test(what_is_gone_stays_gone),
-        cmocka_unit_test(edges_are_eaten_by_a_length),
-        cmocka_unit_test(edges_stay_within_a_cell),
+        cmocka_unit_test(no_direction_is_preferred),   cmocka_unit_test(what_is_gone_stays_gone),
+        cmocka_unit_test(edges_are_eaten_by_a_length), cmocka_unit_test(edges_stay_within_a_cell),
         cmocka_unit_test(finer_details_converge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

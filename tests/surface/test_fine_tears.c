@@ -53,7 +53,8 @@ static void tear_edges_do_not_cross(void **unused) {
             otherwise += float3_length(displacement) > 1e-5f;
             torn++;
             assert_false(any_cross(b));
-            assert_true(float3_length(float3_sub(after, float3_load(b->state.dynamics.position[result.spare]))) > 1e-4f);
+            assert_true(float3_length(float3_sub(after, float3_load(b->state.dynamics.position[result.spare]))) >
+                        1e-4f);
         }
         burning_sheet_free(b);
     }

@@ -27,8 +27,8 @@ static void bend(Bent *b, float size) {
 static void location(Bent *b) {
     Fine *fine = &b->fine;
     const size_t corners = b->shell.vertex_count, cells = b->shell.cell_count;
-    *fine = (Fine){.plan = b->plan, .shell = &b->shell, .state = &b->state, .memory = &b->memory,
-                   .bulge_max = INFINITY};
+    *fine =
+        (Fine){.plan = b->plan, .shell = &b->shell, .state = &b->state, .memory = &b->memory, .bulge_max = INFINITY};
     assert_non_null(NEW(&b->memory, fine->sheets, b->shell.sheet_count));
     assert_non_null(NEW(&b->memory, fine->normal, b->shell.particle_count));
     assert_non_null(NEW(&b->memory, fine->share, corners)), assert_non_null(NEW(&b->memory, fine->max, corners));
@@ -94,10 +94,12 @@ static Float3 flat_normal(const Fine *fine, uint32_t cell, int side) {
     Float3 sum = {0, 0, 0};
     for (int i = 0; i < 4; i++) sum = float3_mad(sum, float3_load(fine->corner[at[i]]), 0.25f);
     return float3_unit(float3_cross(float3_sub(float3_load(fine->corner[at[side]]), sum),
-                              float3_sub(float3_load(fine->corner[at[(side + 1) & 3]]), sum)));
+                                    float3_sub(float3_load(fine->corner[at[(side + 1) & 3]]), sum)));
 }
 
-static float between(Float3 a, Float3 b) { return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)) * 180 / pi; }
+static float between(Float3 a, Float3 b) {
+    return atan2f(float3_length(float3_cross(a, b)), float3_dot(a, b)) * 180 / pi;
+}
 
 /// The largest differences across sides: of places, and of normals in degrees, root mean square, drawn and of flat
 /// cells.
@@ -131,9 +133,16 @@ static Steps steps_of(const Bent *b) {
 /// degree (0.09 to 0.24); those of flat cells are 5 to 18 degrees apart.
 static void cells_agree_on_their_sides(void **unused) {
     (void)unused;
-    const struct { const char *name; QuadMesh mesh; float size; double max; } meshes[] = {
-        {"grid", mesh_grid(14, 11, 1, 1), 1, 0.5}, {"three cells", mesh_polygon(3, 6), 1 / 6.0f, 0.5},
-        {"five cells", mesh_polygon(5, 6), 1 / 6.0f, 0.5}, {"ell", mesh_ell(6), 1, 0.5},
+    const struct {
+        const char *name;
+        QuadMesh mesh;
+        float size;
+        double max;
+    } meshes[] = {
+        {"grid", mesh_grid(14, 11, 1, 1), 1, 0.5},
+        {"three cells", mesh_polygon(3, 6), 1 / 6.0f, 0.5},
+        {"five cells", mesh_polygon(5, 6), 1 / 6.0f, 0.5},
+        {"ell", mesh_ell(6), 1, 0.5},
     };
     for (size_t k = 0; k < sizeof meshes / sizeof *meshes; k++) {
         Bent *b = bent(meshes[k].mesh, meshes[k].size);
@@ -152,8 +161,7 @@ static void bent_cells_are_split_alike(void **unused) {
     SingeSurface first = {0};
     for (int threads = 1; threads <= 4; threads++) {
         Drawing *d = fine_drawing(25, 25, 0.004f, 4e-4f, 2e-3f);
-        if (threads > 1)
-            assert_int_equal(pool_create(&d->sheet->memory, (SingeTasks){0}, threads, &d->pool), SINGE_OK);
+        if (threads > 1) assert_int_equal(pool_create(&d->sheet->memory, (SingeTasks){0}, threads, &d->pool), SINGE_OK);
         burn_rings(d, 0.01f);
         for (uint32_t v = 0; v < d->sheet->shell.vertex_count; v++) {
             float *p = d->sheet->state.dynamics.position[v];

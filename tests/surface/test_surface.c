@@ -16,18 +16,22 @@ static Drawing *plain_drawing(uint32_t nx, uint32_t ny, float cell) {
 static void cases_of_one_cell(void **unused) {
     (void)unused;
     // levels of the corners and the virtual centre in quarters; the areas follow from t of eq 7
-    const struct { int level[5]; double area; uint32_t triangles, vertices; } cases[] = {
+    const struct {
+        int level[5];
+        double area;
+        uint32_t triangles, vertices;
+    } cases[] = {
         {{1, 1, 1, 1, 1}, 1, 4, 5},
-        {{1, -1, -1, -1, -1}, 2.0 / 16, 2, 4},           // twice the small triangle, cut in the middle
-        {{2, -1, -1, -1, -1}, 2 * 4.0 / 9 / 4, 2, 4},    // t = 2/3
+        {{1, -1, -1, -1, -1}, 2.0 / 16, 2, 4},        // twice the small triangle, cut in the middle
+        {{2, -1, -1, -1, -1}, 2 * 4.0 / 9 / 4, 2, 4}, // t = 2/3
         {{-1, -1, -1, -1, 1}, 4.0 / 16, 4, 5},
-        {{-1, 1, 1, 1, 1}, 1 - 2.0 / 16, 6, 7},          // two whole ones, two quadrilaterals
+        {{-1, 1, 1, 1, 1}, 1 - 2.0 / 16, 6, 7}, // two whole ones, two quadrilaterals
         {{1, 1, 1, 1, -1}, 1 - 4.0 / 16, 8, 8},
         {{1, 1, -1, -1, -1}, 3.0 / 16 + 2.0 / 16, 4, 6},
         {{1, -1, 1, -1, 1}, 4 * 3.0 / 16, 8, 9},
         {{1, -1, 1, -1, -1}, 4.0 / 16, 4, 8},
         {{-1, -1, -1, -1, -1}, 0, 0, 0},
-        {{0, -1, -1, -1, -1}, 0, 0, 0},                  // on the level set: inside, but nothing to draw
+        {{0, -1, -1, -1, -1}, 0, 0, 0}, // on the level set: inside, but nothing to draw
         {{0, 0, -1, -1, -1}, 0, 0, 0},
         {{-1, -1, -1, -1, 0}, 0, 0, 0},
         {{0, 0, -1, -1, 0}, 1.0 / 4, 1, 3},
@@ -133,8 +137,8 @@ static double part_inside(const float level[3], double whole) {
 static bool on_boundary(const SingeSurface *s, uint32_t a, uint32_t b, float width, float height) {
     bool cut = fabsf(s->mass[a] - 0.25f) < 1e-6f && fabsf(s->mass[b] - 0.25f) < 1e-6f;
     const float *p = s->position[a], *q = s->position[b];
-    return cut || (p[0] == 0 && q[0] == 0) || (p[1] == 0 && q[1] == 0) || (p[0] == width && q[0] == width)
-        || (p[1] == height && q[1] == height);
+    return cut || (p[0] == 0 && q[0] == 0) || (p[1] == 0 && q[1] == 0) || (p[0] == width && q[0] == width) ||
+           (p[1] == height && q[1] == height);
 }
 
 /// Every edge is walked once in each direction, or once in all where the surface ends.
@@ -204,7 +208,7 @@ static void levels_near_zero_leave_no_cracks(void **unused) {
 static void crumpled_normals_are_unit(void **unused) {
     (void)unused;
     Drawing *d = plain_drawing(6, 6, 0.01f);
-    float (*position)[4] = d->sheet->state.dynamics.position;
+    float(*position)[4] = d->sheet->state.dynamics.position;
     const uint32_t *corners = d->sheet->shell.cells[0];
     for (uint32_t i = 0; i < 49; i++)
         for (uint32_t k = 0; k < 3; k++) position[i][k] += 0.02f * random_unit(random_hash(i, k, 5, 0));

@@ -50,8 +50,8 @@ static SingeSim *pulled(const SingeSimDef *def, float strength, float line, cons
     jitter(&mesh);
     if (from) sheet.material = *from;
     sheet.attribute_count = 1, sheet.attributes = &attribute;
-    sheet.material.strength = (SingeParam){
-        .value = strength, .to = strength * line, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
+    sheet.material.strength =
+        (SingeParam){.value = strength, .to = strength * line, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
     assert_int_equal(singe_sim_create(def, &sim, NULL), SINGE_OK);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
     test_ok(sim, singe_sim_commit(sim));
@@ -211,8 +211,8 @@ static TearEdges drawn_tear_edges(float raggedness) {
     for (uint32_t t = 0; t < surface.triangle_count; t++) {
         const float *p[3];
         for (int i = 0; i < 3; i++) p[i] = surface.rest_position[surface.triangles[t][i]];
-        tear_edges.area += 0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                                    (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
+        tear_edges.area +=
+            0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
         for (int i = 0; i < 3; i++) {
             int row = (int)(p[i][1] / side * 6);
             if (row < 0 || row >= ROWS) continue;

@@ -7,9 +7,7 @@ enum { BLOCKS = 14, BLOCK = 6, CELLS = BLOCKS * BLOCK };
 static const float side = 5e-3f, degree = 0.0174532925f;
 
 /// The middle of a block of cells, where it is the weakest.
-static bool is_weak(uint32_t v) {
-    return v % (CELLS + 1) % BLOCK == BLOCK / 2 && v / (CELLS + 1) % BLOCK == BLOCK / 2;
-}
+static bool is_weak(uint32_t v) { return v % (CELLS + 1) % BLOCK == BLOCK / 2 && v / (CELLS + 1) % BLOCK == BLOCK / 2; }
 
 /// A sheet with vertices in reserve. Every block counts as a piece of its own, so that a tear may begin in each.
 static BurningSheet *blocks_of_a_sheet(void) {

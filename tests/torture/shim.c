@@ -31,12 +31,28 @@
 #include <unistd.h>
 
 enum Kind {
-    MEMORY, OPEN, READ, WRITE, SYNC, CLOSE, RENAME, REMOVE, FOLDER, LIST, CUT, STAT, PROCESS, THREAD, LOCK, MAP,
+    MEMORY,
+    OPEN,
+    READ,
+    WRITE,
+    SYNC,
+    CLOSE,
+    RENAME,
+    REMOVE,
+    FOLDER,
+    LIST,
+    CUT,
+    STAT,
+    PROCESS,
+    THREAD,
+    LOCK,
+    MAP,
     KIND_COUNT
 };
 
-static const char *const kinds[KIND_COUNT] = {"memory", "open", "read", "write", "sync", "close", "rename", "remove",
-                                              "folder", "list", "cut", "stat", "process", "thread", "lock", "map"};
+static const char *const kinds[KIND_COUNT] = {"memory",  "open",   "read",   "write", "sync", "close",
+                                              "rename",  "remove", "folder", "list",  "cut",  "stat",
+                                              "process", "thread", "lock",   "map"};
 
 /// What the driver reads.
 typedef struct State {
@@ -63,17 +79,19 @@ static bool fails(enum Kind kind) {
 
 /// A call that is counted as `kind` and gives `bad` when it is to fail.
 #define FAILING(type, name, parameters, arguments, kind, bad) \
-    type name parameters { \
-        NEXT(name); \
-        return fails(kind) ? (bad) : next arguments; \
+    type name parameters {                                    \
+        NEXT(name);                                           \
+        return fails(kind) ? (bad) : next arguments;          \
     }
 
 /// The next library's function of this name, as `next`.
-#define NEXT(name) \
+#define NEXT(name)                 \
     static __typeof__(name) *next; \
     if (!next) *(void **)&next = dlsym(RTLD_NEXT, #name)
 
 // ---- memory
+
+// clang-format off: parameters are not formatted as what they are
 
 FAILING(void *, malloc, (size_t size), (size), MEMORY, NULL)
 
@@ -182,7 +200,7 @@ FAILING(int, unlinkat, (int folder, const char *path, int flags), (folder, path,
 
 FAILING(DIR *, fdopendir, (int file), (file), LIST, NULL)
 
-FAILING(struct dirent *, readdir, (DIR *folder), (folder), LIST, NULL)
+FAILING(struct dirent *, readdir, (DIR * folder), (folder), LIST, NULL)
 
 FAILING(int, mkdir, (const char *path, mode_t mode), (path, mode), FOLDER, -1)
 
@@ -196,8 +214,8 @@ FAILING(int, lstat, (const char *path, struct stat *about), (path, about), STAT,
 
 FAILING(int, fstat, (int file, struct stat *about), (file, about), STAT, -1)
 
-FAILING(int, fstatat, (int folder, const char *path, struct stat *about, int flags),
-        (folder, path, about, flags), STAT, -1)
+FAILING(int, fstatat, (int folder, const char *path, struct stat *about, int flags), (folder, path, about, flags), STAT,
+        -1)
 
 FAILING(int, access, (const char *path, int mode), (path, mode), STAT, -1)
 
@@ -223,16 +241,18 @@ FAILING(int, pipe, (int ends[2]), (ends), PROCESS, -1)
 
 FAILING(int, socketpair, (int domain, int type, int protocol, int ends[2]), (domain, type, protocol, ends), PROCESS, -1)
 
-FAILING(int, posix_spawnp, (pid_t *child, const char *program, const posix_spawn_file_actions_t *actions,
-                            const posix_spawnattr_t *attributes, char *const *arguments, char *const *environment),
+FAILING(int, posix_spawnp,
+        (pid_t * child, const char *program, const posix_spawn_file_actions_t *actions,
+         const posix_spawnattr_t *attributes, char *const *arguments, char *const *environment),
         (child, program, actions, attributes, arguments, environment), PROCESS, failure)
 
-FAILING(int, posix_spawn, (pid_t *child, const char *program, const posix_spawn_file_actions_t *actions,
-                           const posix_spawnattr_t *attributes, char *const *arguments, char *const *environment),
+FAILING(int, posix_spawn,
+        (pid_t * child, const char *program, const posix_spawn_file_actions_t *actions,
+         const posix_spawnattr_t *attributes, char *const *arguments, char *const *environment),
         (child, program, actions, attributes, arguments, environment), PROCESS, failure)
 
 FAILING(int, pthread_create,
-        (pthread_t *thread, const pthread_attr_t *attributes, void *(*work)(void *), void *context),
+        (pthread_t * thread, const pthread_attr_t *attributes, void *(*work)(void *), void *context),
         (thread, attributes, work, context), THREAD, EAGAIN)
 
 // ---- from main on
@@ -280,11 +300,11 @@ static void read_environment(void) {
     unsetenv("LD_PRELOAD");
 }
 
-int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void),
-                      void (*fini)(void), void (*rtld_fini)(void), void *stack_end);
+int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void), void (*fini)(void),
+                      void (*rtld_fini)(void), void *stack_end);
 
-int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void),
-                      void (*fini)(void), void (*rtld_fini)(void), void *stack_end) {
+int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void), void (*fini)(void),
+                      void (*rtld_fini)(void), void *stack_end) {
     int (*next)(int (*)(int, char **, char **), int, char **, void (*)(void), void (*)(void), void (*)(void), void *);
     *(void **)&next = dlsym(RTLD_NEXT, "__libc_start_main");
     real_main = main;

@@ -145,8 +145,7 @@ double triangles_distance(const Triangles *mesh, const float at[3]) {
         for (int c = 0; c < 3; c++) {
             const double *a = p[c], *b = p[(c + 1) % 3];
             double cross[3];
-            for (int i = 0; i < 3; i++)
-                cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+            for (int i = 0; i < 3; i++) cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
             over = over && dot(cross, n) >= 0;
             min = fmin(min, segment(a, b));
             length[c] = sqrt(dot(a, a));

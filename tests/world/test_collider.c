@@ -41,9 +41,12 @@ static void normals_are_gradients(void **state) {
             double d = (double)distance_at(&def, p, &normal);
             assert_true(isfinite(d) && fabsf(float3_length(normal) - 1) < 1e-5f);
             double gradient[3] = {
-                (distance(&def, float3(p.x + e, p.y, p.z)) - distance(&def, float3(p.x - e, p.y, p.z))) / (2 * (double)e),
-                (distance(&def, float3(p.x, p.y + e, p.z)) - distance(&def, float3(p.x, p.y - e, p.z))) / (2 * (double)e),
-                (distance(&def, float3(p.x, p.y, p.z + e)) - distance(&def, float3(p.x, p.y, p.z - e))) / (2 * (double)e),
+                (distance(&def, float3(p.x + e, p.y, p.z)) - distance(&def, float3(p.x - e, p.y, p.z))) /
+                    (2 * (double)e),
+                (distance(&def, float3(p.x, p.y + e, p.z)) - distance(&def, float3(p.x, p.y - e, p.z))) /
+                    (2 * (double)e),
+                (distance(&def, float3(p.x, p.y, p.z + e)) - distance(&def, float3(p.x, p.y, p.z - e))) /
+                    (2 * (double)e),
             };
             double length = sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
             if (length < 0.99) continue; // on the medial axis

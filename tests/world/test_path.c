@@ -30,7 +30,9 @@ static void set(Fixture *f, uint32_t count, const SingePoseKey *keys) {
     assert_int_equal(path_set(&f->path, &f->memory, count, keys, "owner", &f->error), SINGE_OK);
 }
 
-static void near_float3(Float3 a, float x, float y, float z) { assert_true(float3_length(float3_sub(a, float3(x, y, z))) < 1e-5f); }
+static void near_float3(Float3 a, float x, float y, float z) {
+    assert_true(float3_length(float3_sub(a, float3(x, y, z))) < 1e-5f);
+}
 
 static void positions_are_linear_and_held(void **state) {
     Fixture *f = *state;
@@ -69,8 +71,8 @@ static void rotations_stay_unit_and_go_the_short_way(void **state) {
         assert_true(fabsf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-5f);
         Float3 x = quat_rotate(q, float3(1, 0, 0));
         float angle = atan2f(x.y, x.x);
-        assert_true(angle > angle_before - 1e-6f);                          // never turns back
-        assert_true(fabsf(angle - 1.57079633f * (float)i / 100) < 0.03f);   // near the even turn
+        assert_true(angle > angle_before - 1e-6f);                        // never turns back
+        assert_true(fabsf(angle - 1.57079633f * (float)i / 100) < 0.03f); // near the even turn
         angle_before = angle;
     }
     Float3 x = quat_rotate(path_pose(&f->path, 0.5).rotation, float3(1, 0, 0));
@@ -111,9 +113,9 @@ static void bad_keys_are_refused(void **state) {
     SingePoseKey good[] = {test_key(0, 0, 0, 0), test_key(1, 1, 0, 0), test_key(2, 2, 0, 0)}, bad[3];
     set(f, 3, good);
     refused(f, 3, NULL, -1);
-#define BAD(change, element)              \
-    memcpy(bad, good, sizeof bad);        \
-    change;                               \
+#define BAD(change, element)       \
+    memcpy(bad, good, sizeof bad); \
+    change;                        \
     refused(f, 3, bad, element)
     BAD(bad[2].time = 1, 2);
     BAD(bad[1].time = -1, 1);

@@ -149,7 +149,8 @@ static void spoil_twice(Triangles *mesh) { memcpy(mesh->triangles + 3 * 9, mesh-
 static void spoil_flat(Triangles *mesh) { // three corners in a line
     const uint32_t *corner = mesh->triangles + 3 * 4;
     for (int i = 0; i < 3; i++)
-        mesh->vertices[3 * (size_t)corner[0] + (size_t)i] = mesh->vertices[3 * (size_t)corner[1] + (size_t)i] +
+        mesh->vertices[3 * (size_t)corner[0] + (size_t)i] =
+            mesh->vertices[3 * (size_t)corner[1] + (size_t)i] +
             2 * (mesh->vertices[3 * (size_t)corner[2] + (size_t)i] - mesh->vertices[3 * (size_t)corner[1] + (size_t)i]);
 }
 static void spoil_few(Triangles *mesh) { mesh->triangle_count = 3; }
@@ -161,7 +162,7 @@ static void bad_meshes_are_refused_by_number(void **unused) {
         Spoil *spoil;
         int64_t element; ///< -1: none; -2: any
         const char *word;
-    } cases[] = {{spoil_hole, -2, "open"},      {spoil_turned, -2, "wrong way"}, {spoil_index, 5, "names vertex"},
+    } cases[] = {{spoil_hole, -2, "open"},      {spoil_turned, -2, "wrong way"},       {spoil_index, 5, "names vertex"},
                  {spoil_number, 3, "finite"},   {spoil_twice, 9, "triangles 8 and 9"}, {spoil_flat, 4, "no area"},
                  {spoil_few, -1, "at least 4"}, {spoil_none, -1, "at least 4"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -204,8 +205,8 @@ static Triangles column(uint32_t columns, uint32_t rows, const float *heights, c
     for (uint32_t j = 0; j + 1 < rows; j++)
         for (uint32_t i = 0; i + 1 < columns; i++) {
             uint32_t a = j * columns + i, b = a + 1, c = b + columns, d = a + columns;
-            const uint32_t new[12] = {a, b, c, a, c, d, a + nodes, c + nodes, b + nodes,
-                                      a + nodes, d + nodes, c + nodes};
+            const uint32_t new[12] = {a,         b,         c,         a,         c,         d,
+                                      a + nodes, c + nodes, b + nodes, a + nodes, d + nodes, c + nodes};
             memcpy(t, new, sizeof new), t += 12;
         }
     for (uint32_t side = 0; side < 4; side++) {
@@ -229,7 +230,8 @@ static void heights_are_those_of_their_triangles(void **unused) {
     const float size[2] = {0.2f, 0.14f};
     for (int k = 0; k < COLUMNS * ROWS; k++)
         heights[k] = hill(size[0] * ((float)(k % COLUMNS) / (COLUMNS - 1) - 0.5f),
-                          size[1] * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) + any(0, 0.002f);
+                          size[1] * ((float)(k / COLUMNS) / (ROWS - 1) - 0.5f)) +
+                     any(0, 0.002f);
     Triangles mesh = column(COLUMNS, ROWS, heights, size, -1);
     SingeColliderDef def = singe_default_collider();
     def.kind = SINGE_COLLIDER_HEIGHTFIELD;
@@ -309,7 +311,8 @@ static double cost(const Collider *collider, const Triangles *mesh, float off) {
     for (int k = 0; k < COUNT; k++) {
         const uint32_t *t = mesh->triangles + 3 * (size_t)(any(0, 0.9999f) * (float)mesh->triangle_count);
         Float3 a = float3_load(mesh->vertices + 3 * (size_t)t[0]), b = float3_load(mesh->vertices + 3 * (size_t)t[1]);
-        points[k] = float3_add(float3_mad(a, float3_sub(b, a), any(0, 1)), float3(any(-off, off), any(-off, off), any(-off, off)));
+        points[k] = float3_add(float3_mad(a, float3_sub(b, a), any(0, 1)),
+                               float3(any(-off, off), any(-off, off), any(-off, off)));
     }
     float sum = 0;
     double best = INFINITY;
@@ -342,10 +345,14 @@ static void ten_thousand_triangles_are_quick(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(distances_are_those_of_all_triangles), cmocka_unit_test(four_triangles_are_enough),
-        cmocka_unit_test(inside_out_is_turned),                 cmocka_unit_test(bad_meshes_are_refused_by_number),
-        cmocka_unit_test(heights_are_those_of_their_triangles), cmocka_unit_test(bad_heights_are_refused),
-        cmocka_unit_test(ten_thousand_triangles_are_quick),     cmocka_unit_test(places_that_are_none_are_far),
+        cmocka_unit_test(distances_are_those_of_all_triangles),
+        cmocka_unit_test(four_triangles_are_enough),
+        cmocka_unit_test(inside_out_is_turned),
+        cmocka_unit_test(bad_meshes_are_refused_by_number),
+        cmocka_unit_test(heights_are_those_of_their_triangles),
+        cmocka_unit_test(bad_heights_are_refused),
+        cmocka_unit_test(ten_thousand_triangles_are_quick),
+        cmocka_unit_test(places_that_are_none_are_far),
     };
     return cmocka_run_group_tests_name("world_solid", tests, NULL, NULL);
 }

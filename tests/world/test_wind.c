@@ -6,7 +6,8 @@
 #include <string.h>
 
 static Float3 at(const SingeWindDef *def, int i) {
-    return wind_velocity(def, float3((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f), i * 0.037);
+    return wind_velocity(def, float3((float)(i % 13) * 0.11f, (float)(i % 7) * 0.23f, (float)(i % 5) * 0.31f),
+                         i * 0.037);
 }
 
 static void no_gust_is_uniform(void **state) {
@@ -59,7 +60,8 @@ static void smooth_in_time_and_space(void **state) {
         double time = i * 0.013;
         Float3 p = float3((float)i * 0.01f, 0.2f, 0.3f), v = wind_velocity(&def, p, time);
         // slopes: the noise's is 2 * 15/8 per lattice cell and direction
-        Float3 later = wind_velocity(&def, p, time + 1e-3), there = wind_velocity(&def, float3(p.x + 1e-3f, p.y, p.z), time);
+        Float3 later = wind_velocity(&def, p, time + 1e-3),
+               there = wind_velocity(&def, float3(p.x + 1e-3f, p.y, p.z), time);
         assert_true(float3_length(float3_sub(later, v)) < 1.75f * 3.75f * 1.8f * 1e-3f / def.gust_time + 1e-4f);
         assert_true(float3_length(float3_sub(there, v)) < 1.75f * 3.75f * 1e-3f / def.gust_size + 1e-4f);
     }
@@ -70,10 +72,10 @@ static void bad_fields(void **state) {
     SingeError error;
     SingeWindDef good = singe_default_wind(), bad;
     assert_int_equal(wind_check(&good, &error), SINGE_OK);
-#define BAD(field, value)                                                 \
-    bad = good;                                                           \
-    bad.field = (value);                                                  \
-    assert_int_equal(wind_check(&bad, &error), SINGE_ERROR_ARGUMENT);     \
+#define BAD(field, value)                                             \
+    bad = good;                                                       \
+    bad.field = (value);                                              \
+    assert_int_equal(wind_check(&bad, &error), SINGE_ERROR_ARGUMENT); \
     assert_string_equal(error.stage, "wind")
     BAD(velocity[1], NAN);
     BAD(velocity[0], 1e6f);
@@ -88,7 +90,7 @@ static void bad_fields(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_gust_is_uniform), cmocka_unit_test(mean_and_bound), cmocka_unit_test(seeded),
+        cmocka_unit_test(no_gust_is_uniform),       cmocka_unit_test(mean_and_bound), cmocka_unit_test(seeded),
         cmocka_unit_test(smooth_in_time_and_space), cmocka_unit_test(bad_fields),
     };
     return cmocka_run_group_tests_name("world_wind", tests, NULL, NULL);

@@ -65,10 +65,8 @@ static inline Quads group_quads(const Group *group, uint32_t k) {
 
 static inline void group_put(const Group *group, uint32_t k, const Quads *quads) {
     uint32_t first = group->beside[k];
-    if (first != STRAND_GATHERED)
-        quads_put_beside(group->first_beside + first, group->stride, quads);
-    else
-        quads_put_apart(group->position, group->node + (size_t)k * STRAND_LANES, quads);
+    if (first != STRAND_GATHERED) quads_put_beside(group->first_beside + first, group->stride, quads);
+    else quads_put_apart(group->position, group->node + (size_t)k * STRAND_LANES, quads);
 }
 
 static inline Node group_node(const Group *group, uint32_t k) {

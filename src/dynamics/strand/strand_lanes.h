@@ -36,7 +36,7 @@ typedef struct StrandGroup {
 /// The strands of one colour. Family f is the groups [family_first[f], family_first[f + 1]).
 typedef struct StrandSet {
     uint32_t group_count, row_count, family_count, strand_count;
-    uint32_t longest;      ///< rows of the longest group
+    uint32_t longest; ///< rows of the longest group
     uint32_t group_capacity;
     StrandGroup *groups;
     uint32_t *family_first;

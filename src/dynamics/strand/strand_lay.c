@@ -151,8 +151,7 @@ static uint32_t lay_right(Lay *lay, uint32_t column) {
         lay->tried[s] = lay->lane_serial;
         lay_put_right(lay, s, column, k - lay->index[p]);
     }
-    for (uint32_t k = 0; k < lay->frame; k++)
-        beside += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
+    for (uint32_t k = 0; k < lay->frame; k++) beside += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
     return beside;
 }
 
@@ -194,10 +193,8 @@ static bool lay_run(Lay *lay, uint32_t s) {
         beside = lay_right(lay, group->columns);
     }
     lay_take_back(lay, lanes < LAY_RUN_MIN ? start : before);
-    if (first < lay->laid_count)
-        lay_close_group(lay, first);
-    else
-        lay->set->group_count = lanes < LAY_RUN_MIN ? groups : lay->set->group_count - 1;
+    if (first < lay->laid_count) lay_close_group(lay, first);
+    else lay->set->group_count = lanes < LAY_RUN_MIN ? groups : lay->set->group_count - 1;
     return lanes >= LAY_RUN_MIN;
 }
 

@@ -1,5 +1,5 @@
-// Strands and attachments four at a time, for 64-bit Arm (NEON), by the vector arithmetic of gcc and clang. Any processor
-// with registers of four floats can run this.
+// Strands and attachments four at a time, for 64-bit Arm (NEON), by the vector arithmetic of gcc and clang. Any
+// processor with registers of four floats can run this.
 #ifdef __aarch64__
 #include "common/float4.h"
 
@@ -59,8 +59,7 @@ static inline Float4 quad_add(Float4 x, Float4 displacement) {
 }
 
 static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
-    for (int e = 0; e < 4; e++)
-        x->at[e] = quad_add(x->at[e], float4_all(x->at[e][3]) * (forth->at[e] - back->at[e]));
+    for (int e = 0; e < 4; e++) x->at[e] = quad_add(x->at[e], float4_all(x->at[e][3]) * (forth->at[e] - back->at[e]));
 }
 
 /// x += (x - anchor) factor.

@@ -88,8 +88,8 @@ void strand_project(DynamicsPlan *plan, SingeColour colour, Pool *pool, float h,
     SINGE_ASSERT(h > 0);
     Strands *strands = &plan->strands;
     const StrandSet *set = &strands->sets[colour];
-    Project project = {{set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)},
-                       strands, 0};
+    Project project = {
+        {set, dynamics->position[0], plan->settings.solver.regularisation[colour], 1 / (h * h)}, strands, 0};
     for (uint32_t f = 0; f < set->family_count; f++) {
         project.first_group = set->family_first[f];
         pool_for(pool, (int)(set->family_first[f + 1] - project.first_group), 1, strands_range, &project);

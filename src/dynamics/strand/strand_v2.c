@@ -20,16 +20,14 @@ static inline Lanes lanes_load(const float *p) { return (Lanes)_mm_loadu_ps(p); 
 static inline void lanes_store(float *p, Lanes a) { _mm_storeu_ps(p, (__m128)a); }
 static inline Lanes lanes_sqrt(Lanes a) { return (Lanes)_mm_sqrt_ps((__m128)a); }
 static inline Lanes lanes_max(Lanes a, Lanes b) { return (Lanes)_mm_max_ps((__m128)a, (__m128)b); }
-static inline bool lanes_any_less(Lanes a, Lanes b) {
-    return _mm_movemask_ps(_mm_cmplt_ps((__m128)a, (__m128)b)) != 0;
-}
+static inline bool lanes_any_less(Lanes a, Lanes b) { return _mm_movemask_ps(_mm_cmplt_ps((__m128)a, (__m128)b)) != 0; }
 static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
     return (Lanes)_mm_blendv_ps((__m128)no, (__m128)yes, _mm_cmplt_ps((__m128)a, (__m128)b));
 }
 
 static inline Quads quads_beside(const float *x, size_t stride) {
-    return (Quads){{_mm_loadu_ps(x), _mm_loadu_ps(x + stride), _mm_loadu_ps(x + 2 * stride),
-                    _mm_loadu_ps(x + 3 * stride)}};
+    return (Quads){
+        {_mm_loadu_ps(x), _mm_loadu_ps(x + stride), _mm_loadu_ps(x + 2 * stride), _mm_loadu_ps(x + 3 * stride)}};
 }
 
 static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
@@ -53,8 +51,8 @@ static inline Node quads_node(const Quads *quads) {
                   (Lanes)_mm_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
-#define QUAD_PUSH(e)                                                                                                   \
-    _mm_mul_ps(_mm_sub_ps(b->at[e], a->at[e]), _mm_shuffle_ps((__m128)factor, (__m128)factor, (e) * 0x55))
+#define QUAD_PUSH(e) \
+    _mm_mul_ps(_mm_sub_ps(b->at[e], a->at[e]), _mm_shuffle_ps((__m128)factor, (__m128)factor, (e)*0x55))
 static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
     return (Quads){{QUAD_PUSH(0), QUAD_PUSH(1), QUAD_PUSH(2), QUAD_PUSH(3)}};
 }

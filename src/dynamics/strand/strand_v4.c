@@ -65,8 +65,7 @@ static inline Node quads_node(const Quads *quads) {
                   (Lanes)_mm512_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm512_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
-#define QUAD_PUSH(e)                                                                                                   \
-    _mm512_mul_ps(_mm512_sub_ps(b->at[e], a->at[e]), _mm512_permute_ps((__m512)factor, (e) * 0x55))
+#define QUAD_PUSH(e) _mm512_mul_ps(_mm512_sub_ps(b->at[e], a->at[e]), _mm512_permute_ps((__m512)factor, (e)*0x55))
 static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
     return (Quads){{QUAD_PUSH(0), QUAD_PUSH(1), QUAD_PUSH(2), QUAD_PUSH(3)}};
 }
