@@ -28,11 +28,10 @@ static void sim_log_sheet(const SingeSim *sim, uint32_t index) {
                 index, (double)tear_carried(&sim->shell, index, h), 1e3 * (double)h);
     float gravity = float3_length(float3_load(def->gravity));
     if (gravity * h * h > fall_max * sheet->cell_size)
-        sim_log(
-            sim, SINGE_LOG_WARNING,
-            "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "
-            "use more substeps or a smaller time step",
-            index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
+        sim_log(sim, SINGE_LOG_WARNING,
+                "sheet %u: a substep of %.3g ms is long for cells of %.3g mm: the sheet will stretch; "
+                "use more substeps or a smaller time step",
+                index, 1e3 * (double)h, 1e3 * (double)sheet->cell_size);
 }
 
 /// The stopping rules of the methods that iterate (docs/equations.md).
