@@ -22,9 +22,9 @@ static SingeResult add_colliders(SingeSim *sim) {
 static SingeResult burning_fill(SingeSim *sim, const BenchOptions *options, double springs) {
     SingeSheetDef sheet = singe_default_sheet();
     SingeSheetId sheet_id;
-    sheet.material.mass_rate.field = SINGE_FIELD_NOISE;
-    sheet.material.mass_rate.to = 2 * sheet.material.mass_rate.value;
-    sheet.material.mass_rate.noise = (SingeNoise){0.05f, 4, 1};
+    const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.05f, 4, 1}};
+    const float rate = sheet.material.mass_rate.value;
+    sheet.material.mass_rate = singe_param_field(rate, 2 * rate, &noise);
     if (options->curvature.count) sheet.material.curvature_max = singe_param((float)options->curvature.values[0]);
     TRY(sheet_add(sim, &sheet, options_cells(springs), 0.3f, true, &sheet_id));
     TRY(singe_sim_commit(sim));

@@ -27,9 +27,9 @@ static SingeResult add_sheet(SingeSim *sim, SingeSheetId *id) {
     SingeSheetDef def = singe_default_sheet();
     def.vertex_count = ROW * ROW, def.positions = positions[0];
     def.cell_count = CELLS * CELLS, def.cells = cells[0];
-    def.material.mass_rate.field = SINGE_FIELD_NOISE;
-    def.material.mass_rate.to = 2 * def.material.mass_rate.value;
-    def.material.mass_rate.noise = (SingeNoise){0.02f, 4, 1};
+    const SingeField noise = {.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 4, 1}};
+    const float rate = def.material.mass_rate.value;
+    def.material.mass_rate = singe_param_field(rate, 2 * rate, &noise);
     return singe_sim_add_sheet(sim, &def, id);
 }
 

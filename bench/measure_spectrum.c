@@ -115,9 +115,11 @@ static SingeResult strip_build(const BenchOptions *options, const Strip *strip, 
     def.solver.substeps = options->substeps; // 0: as many as stiffness needs
     def.time_step *= (float)step;
     sheet.material.temperature =
-        (SingeParam){.value = 293, .to = 1100, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "hot"};
+        singe_param_field(293, 1100, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "hot"});
     sheet.material.thickening = 2.07f; // that of cells of 2 mm
-    sheet.material.shrink_front.noise.seed += 16 * seed, sheet.material.shrink_back.noise.seed += 16 * seed;
+    SingeField front = *sheet.material.shrink_front.field;
+    front.noise.seed += 16 * seed;
+    sheet.material.shrink_front.field = &front;
     sheet.material.damping = singe_param(3);
     if (thickness > 0) sheet.material.thickness = singe_param((float)thickness);
     SingeResult result = singe_sim_create(&def, sim, error);

@@ -55,10 +55,9 @@ static SingeResult add_strip(SingeSim *sim, uint32_t nx, uint32_t ny, SingeSheet
         def.vertex_count = vertices, def.positions = positions, def.uv = uv;
         def.cell_count = cells, def.cells = corners;
         def.material.compliance[SINGE_BLUE] = singe_param(1 / stiffness);
-        def.material.strength = (SingeParam){.value = strength,
-                                             .to = line_strength,
-                                             .field = SINGE_FIELD_TEXTURE,
-                                             .texture = {PICTURE_WIDTH, 1, picture}};
+        def.material.strength =
+            singe_param_field(strength, line_strength,
+                              &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {PICTURE_WIDTH, 1, picture}});
         result = singe_sim_add_sheet(sim, &def, id);
     }
     free(positions);

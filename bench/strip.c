@@ -85,20 +85,18 @@ static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
                             &material.activation_energy,
                             &material.curvature_max};
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
-        if (params[i]->field != SINGE_FIELD_NONE) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
+        if (params[i]->field) *params[i] = singe_param(0.5f * (params[i]->value + params[i]->to));
     // char glows in patches, and the hottest of them counts
     SingeParam *chars[] = {&material.char_yield, &material.char_density, &material.char_heat, &material.char_rate,
                            &material.char_air};
     for (size_t i = 0; i < sizeof chars / sizeof *chars; i++)
-        if (chars[i]->field != SINGE_FIELD_NONE && chars[i]->field != SINGE_FIELD_NOISE)
+        if (chars[i]->field && chars[i]->field->kind != SINGE_FIELD_NOISE)
             *chars[i] = singe_param(0.5f * (chars[i]->value + chars[i]->to));
     for (int c = 0; c < SINGE_COLOUR_COUNT; c++)
         material.weight[c] = singe_param(1), material.compliance[c] = singe_param(0);
+    static const SingeField lit = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "lit"};
     const SingeParam cold = material.temperature;
-    material.temperature = (SingeParam){.value = cold.field ? 0.5f * (cold.value + cold.to) : cold.value,
-                                        .to = 1100,
-                                        .field = SINGE_FIELD_ATTRIBUTE,
-                                        .attribute = "lit"};
+    material.temperature = singe_param_field(cold.field ? 0.5f * (cold.value + cold.to) : cold.value, 1100, &lit);
     return material;
 }
 

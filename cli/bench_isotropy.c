@@ -43,20 +43,21 @@ typedef struct Burn {
     uint32_t seed;
 } Burn;
 
-static SingeParam noise(float from, float to, float scale, int octaves, uint32_t seed) {
-    return (SingeParam){.value = from, .to = to, .field = SINGE_FIELD_NOISE, .noise = {scale, octaves, seed}};
-}
+enum { NOISES = 4 };
 
-/// Office paper that shrinks strongly.
-static SingeMaterialDef material(const Burn *burn) {
+/// Office paper that shrinks strongly. It points to `noises`.
+static SingeMaterialDef isotropy_material(const Burn *burn, SingeField noises[NOISES]) {
     SingeMaterialDef def = singe_default_material();
     const uint32_t seed = 16 * burn->seed;
+    const SingeNoise noise[NOISES] = {
+        {0.03f, 5, seed + 1}, {0.025f, 5, seed + 7}, {0.015f, 4, seed + 3}, {0.05f, 2, seed + 2}};
+    for (int k = 0; k < NOISES; k++) noises[k] = (SingeField){.kind = SINGE_FIELD_NOISE, .noise = noise[k]};
     def.thickness = singe_param((float)burn->thickness);
     def.curvature_max = singe_param((float)burn->limit);
-    def.mass_rate = noise(4e-3f, 10e-3f, 0.03f, 5, seed + 1);
-    def.mass_loss = noise(0, 0.3f, 0.025f, 5, seed + 7);
-    def.char_strength = noise(1, 10, 0.015f, 4, seed + 3);
-    def.shrink_front = noise(0.5f, 1.3f, 0.05f, 2, seed + 2);
+    def.mass_rate = singe_param_field(4e-3f, 10e-3f, &noises[0]);
+    def.mass_loss = singe_param_field(0, 0.3f, &noises[1]);
+    def.char_strength = singe_param_field(1, 10, &noises[2]);
+    def.shrink_front = singe_param_field(0.5f, 1.3f, &noises[3]);
     def.shrink_back = singe_param(0.65f);
     def.char_yield = singe_param(0), def.heat_share = singe_param(0.2f), def.ash_density = singe_param(0.3f); // eq 4
     return def;
@@ -65,6 +66,7 @@ static SingeMaterialDef material(const Burn *burn) {
 static SingeResult add_sheet(SingeSim *sim, const Burn *burn, double angle, SingeError *error) {
     SingeSheetDef def = singe_default_sheet();
     SingeSheetId id;
+    SingeField noises[NOISES];
     Mesh mesh;
     const TurnedGrid cut = {size, burn->cells, burn->disc, angle, {.jitter = 0.15f, .seed = 1}};
     SingeResult result = turned_grid(&cut, &mesh, error);
@@ -72,7 +74,7 @@ static SingeResult add_sheet(SingeSim *sim, const Burn *burn, double angle, Sing
     for (uint32_t v = 0; v < mesh.vertex_count; v++) mesh.positions[3 * (size_t)v + 2] = 0.5e-3f;
     def.vertex_count = mesh.vertex_count, def.positions = mesh.positions, def.uv = mesh.uv;
     def.cell_count = mesh.cell_count, def.cells = mesh.cells;
-    def.material = material(burn), def.drop_pieces_below = 4e-6f;
+    def.material = isotropy_material(burn, noises), def.drop_pieces_below = 4e-6f;
     result = singe_sim_add_sheet(sim, &def, &id);
     if (!result) result = singe_sim_commit(sim);
     if (result) *error = *singe_sim_error(sim);

@@ -159,7 +159,7 @@ static SingeResult report_materials(const Scene *scene, float thickening, SingeE
         const SceneMaterial *material = &scene->sheets[i].material;
         const float grammage = material->def.grammage.value;
         uint32_t j = 0;
-        while (memcmp(&scene->sheets[j].material, material, sizeof *material) != 0) j++;
+        while (!scene_material_same(&scene->sheets[j].material, material)) j++;
         if (j < i) continue;
         BenchMaterial bench = bench_material(material);
         printf("material      %s, %.4g g/m2", material->name ? shown(material->name).text : "its own",

@@ -84,7 +84,7 @@ static uint64_t hash_files(uint64_t hash, const SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         hash = hash_mesh(hash, &assets->meshes[i]);
         hash = hash_image(hash, &assets->images[i]);
-        for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->params[i][k]);
+        for (int k = 0; k < SCENE_PARAM_SLOTS; k++) hash = hash_picture(hash, &assets->fields[i][k].texture);
     }
     for (uint32_t i = 0; i < assets->source_count; i++) hash = hash_picture(hash, &assets->source_textures[i]);
     for (uint32_t i = 0; i < assets->collider_count; i++) hash = hash_solid(hash, &assets->solids[i]);

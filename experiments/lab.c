@@ -188,7 +188,8 @@ void lab_sets_mass(SingeMaterialDef *material) {
     material->rate_ceiling = singe_param(1e6f), material->mass_rate = singe_param(0.1f);
     material->ash_exponent = singe_param(0), material->ash_density = singe_param(1);
     material->shrink_front = material->shrink_back = material->fibre_shrink = singe_param(1);
-    material->mass_min = (SingeParam){.value = 0, .to = 1, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
+    static const SingeField mass = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "mass"};
+    material->mass_min = singe_param_field(0, 1, &mass);
     material->mass_loss = material->char_yield = singe_param(0);
 }
 

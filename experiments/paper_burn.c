@@ -39,7 +39,7 @@ static SingeResult fig1_run(Lab *lab, bool plain, Fig1 *fig, SingeError *error) 
     const char *sets[] = {plain ? "sheets.0.material.shrink_front=0" : "",
                           plain ? "sheets.0.material.shrink_back=0" : "", lab->quick ? small_grid : "", NULL};
     SingeResult result = play_open(&play, lab, "fig1.yaml", sets, error);
-    const SingeTexture *picture = &play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)];
+    const SingeTexture *picture = &play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture;
     if (!result && !plain) report_pictures(lab->report, 4), texture_show(lab, picture);
     for (int i = 0; i < FIG1_SHOTS && !result; i++) {
         result = plain ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
@@ -110,7 +110,7 @@ static SingeResult fig4_column(Lab *lab, int i, Look *look, double *rate, uint8_
                           NULL};
     SingeResult result = play_open(&play, lab, "fig4.yaml", sets, error);
     if (!result && i == FIG4_MEAN - 1)
-        *rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.params[0][SCENE_PARAM_SLOT(mass_rate)]);
+        *rate = 1e-3 + 19e-3 * texture_mean(&play.job.assets.fields[0][SCENE_PARAM_SLOT(mass_rate)].texture);
     for (int k = 0; k < ROWS && !result; k++) {
         result = play_until(&play, times[k], error);
         if (!result && i < COLUMNS) result = play_draw(&play, &rgb[k], size, error);

@@ -67,7 +67,7 @@ SingeResult paper_alpha(Lab *lab, SingeError *error) {
         const char *sets[] = {lab->quick ? "sheets.0.grid.cells=[48, 36]" : "",
                               even ? "sheets.0.material.diffusivity=3.4e-6" : "", NULL};
         result = play_open(&play, lab, "alpha.yaml", sets, error);
-        if (!result && !even) texture_show(lab, &play.job.assets.params[0][SCENE_PARAM_SLOT(diffusivity)]);
+        if (!result && !even) texture_show(lab, &play.job.assets.fields[0][SCENE_PARAM_SLOT(diffusivity)].texture);
         for (int i = 0; i < 3 && !result; i++)
             result = even ? play_until(&play, times[i], error) : play_shoot_at(&play, times[i], error);
         const SingeView view = play.sim ? singe_sim_view(play.sim) : (SingeView){0};

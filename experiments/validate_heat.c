@@ -13,10 +13,8 @@ static LabGrid heat_grid(int across, int along, float cell, SingeHeatOperator op
     grid.material.heat_operator = operator;
     grid.material.diffusivity = singe_param((float)alpha);
     grid.material.ignition_temperature = singe_param(5000);
-    grid.material.temperature = (SingeParam){.value = (float)warm_mean,
-                                             .to = (float)(warm_mean + amplitude),
-                                             .field = SINGE_FIELD_ATTRIBUTE,
-                                             .attribute = "field"};
+    static const SingeField field = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "field"};
+    grid.material.temperature = singe_param_field((float)warm_mean, (float)(warm_mean + amplitude), &field);
     grid.solver.substeps = 1; // nothing moves
     return grid;
 }

@@ -39,12 +39,3 @@ SingeResult singe_material_preset(const char *name, SingeMaterialDef *def, Singe
     def->struct_size = size;
     return SINGE_OK;
 }
-
-void preset_even(SingeParam *param, float value) { *param = singe_param(value); }
-
-void preset_noise(SingeParam *param, float from, float to, float scale, int octaves, uint32_t seed) {
-    *param = singe_param(from);
-    param->to = to;
-    param->field = SINGE_FIELD_NOISE;
-    param->noise = (SingeNoise){scale, octaves, seed};
-}

@@ -12,7 +12,4 @@ typedef struct MaterialPreset {
 /// In the order of their names; a row of zeros behind the last.
 extern const MaterialPreset material_presets[];
 
-void preset_even(SingeParam *param, float value);
-void preset_noise(SingeParam *param, float from, float to, float scale, int octaves, uint32_t seed);
-
 #endif

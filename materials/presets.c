@@ -3,68 +3,81 @@
 #include "materials/preset.h"
 
 static void cotton(SingeMaterialDef *def) {
-    (void)def;
-    preset_even(&def->grammage, 0.12f);
-    preset_even(&def->thickness, 0.0015f);
-    preset_even(&def->emissivity, 0.85f);
-    preset_even(&def->ignition_temperature, 578.15f);
-    preset_even(&def->mass_min, 0.05f);
-    preset_noise(&def->mass_loss, 0, 0.36f, 0.025f, 5, 7);
-    preset_even(&def->ash_density, 0.08f);
-    preset_even(&def->char_yield, 0.25f);
-    preset_even(&def->char_density, 0.32f);
-    preset_noise(&def->char_rate, 0.8f, 2.4f, 0.012f, 4, 5);
-    preset_noise(&def->shrink_front, 0.5f, 1.1f, 0.05f, 2, 2);
-    preset_even(&def->shrink_back, 0.7f);
-    preset_even(&def->fibre_shrink, 1);
-    preset_even(&def->compliance[1], 0.5f);
-    preset_even(&def->compliance[3], 0.5f);
-    preset_even(&def->crease_radius, 0);
-    preset_even(&def->strength, 300);
-    preset_noise(&def->char_strength, 2, 20, 0.015f, 4, 3);
-    preset_even(&def->curvature_max, 270);
+    (void)def; // holds the defaults
+    def->grammage = singe_param(0.12f);
+    def->thickness = singe_param(0.0015f);
+    def->emissivity = singe_param(0.85f);
+    def->ignition_temperature = singe_param(578.15f);
+    def->mass_min = singe_param(0.05f);
+    static const SingeField mass_loss_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.025f, 5, 7}};
+    def->mass_loss = singe_param_field(0, 0.36f, &mass_loss_0);
+    def->ash_density = singe_param(0.08f);
+    def->char_yield = singe_param(0.25f);
+    def->char_density = singe_param(0.32f);
+    static const SingeField char_rate_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}};
+    def->char_rate = singe_param_field(0.8f, 2.4f, &char_rate_0);
+    static const SingeField shrink_front_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.05f, 2, 2}};
+    def->shrink_front = singe_param_field(0.5f, 1.1f, &shrink_front_0);
+    def->shrink_back = singe_param(0.7f);
+    def->fibre_shrink = singe_param(1);
+    def->compliance[1] = singe_param(0.5f);
+    def->compliance[3] = singe_param(0.5f);
+    def->crease_radius = singe_param(0);
+    def->strength = singe_param(300);
+    static const SingeField char_strength_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.015f, 4, 3}};
+    def->char_strength = singe_param_field(2, 20, &char_strength_0);
+    def->curvature_max = singe_param(270);
 }
 
 static void newsprint(SingeMaterialDef *def) {
-    (void)def;
-    preset_even(&def->grammage, 0.045f);
-    preset_even(&def->mass_min, 0.05f);
-    preset_noise(&def->mass_loss, 0, 0.36f, 0.025f, 5, 9);
-    preset_even(&def->ash_density, 0.08f);
-    preset_even(&def->char_yield, 0.27f);
-    preset_even(&def->char_density, 0.34f);
-    preset_noise(&def->char_rate, 0.8f, 2.4f, 0.012f, 4, 5);
-    preset_even(&def->strength, 50);
-    preset_noise(&def->char_strength, 0.6f, 6, 0.015f, 4, 3);
+    (void)def; // holds the defaults
+    def->grammage = singe_param(0.045f);
+    def->mass_min = singe_param(0.05f);
+    static const SingeField mass_loss_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.025f, 5, 9}};
+    def->mass_loss = singe_param_field(0, 0.36f, &mass_loss_0);
+    def->ash_density = singe_param(0.08f);
+    def->char_yield = singe_param(0.27f);
+    def->char_density = singe_param(0.34f);
+    static const SingeField char_rate_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}};
+    def->char_rate = singe_param_field(0.8f, 2.4f, &char_rate_0);
+    def->strength = singe_param(50);
+    static const SingeField char_strength_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.015f, 4, 3}};
+    def->char_strength = singe_param_field(0.6f, 6, &char_strength_0);
 }
 
-static void office_paper(SingeMaterialDef *def) { (void)def; }
+static void office_paper(SingeMaterialDef *def) {
+    (void)def; // holds the defaults
+}
 
 static void one_reaction(SingeMaterialDef *def) {
-    (void)def;
-    preset_even(&def->heat_share, 0.2f);
-    preset_even(&def->mass_loss, 0.25f);
-    preset_even(&def->ash_density, 0.3f);
-    preset_even(&def->char_yield, 0);
-    preset_noise(&def->shrink_front, 0.1f, 0.9f, 0.008f, 2, 2);
-    preset_even(&def->shrink_back, 0.3f);
-    preset_even(&def->char_strength, 0.3f);
-    preset_even(&def->curvature_max, 0);
+    (void)def; // holds the defaults
+    def->heat_share = singe_param(0.2f);
+    def->mass_loss = singe_param(0.25f);
+    def->ash_density = singe_param(0.3f);
+    def->char_yield = singe_param(0);
+    static const SingeField shrink_front_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.008f, 2, 2}};
+    def->shrink_front = singe_param_field(0.1f, 0.9f, &shrink_front_0);
+    def->shrink_back = singe_param(0.3f);
+    def->char_strength = singe_param(0.3f);
+    def->curvature_max = singe_param(0);
 }
 
 static void tissue(SingeMaterialDef *def) {
-    (void)def;
-    preset_even(&def->grammage, 0.02f);
-    preset_even(&def->thickness, 0.0007f);
-    preset_even(&def->mass_min, 0.03f);
-    preset_noise(&def->mass_loss, 0, 0.36f, 0.02f, 5, 7);
-    preset_even(&def->ash_density, 0.05f);
-    preset_even(&def->char_yield, 0.25f);
-    preset_even(&def->char_density, 0.32f);
-    preset_noise(&def->char_rate, 0.8f, 2.4f, 0.012f, 4, 5);
-    preset_even(&def->strength, 10);
-    preset_noise(&def->char_strength, 0.3f, 3, 0.015f, 4, 3);
-    preset_even(&def->curvature_max, 570);
+    (void)def; // holds the defaults
+    def->grammage = singe_param(0.02f);
+    def->thickness = singe_param(0.0007f);
+    def->mass_min = singe_param(0.03f);
+    static const SingeField mass_loss_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.02f, 5, 7}};
+    def->mass_loss = singe_param_field(0, 0.36f, &mass_loss_0);
+    def->ash_density = singe_param(0.05f);
+    def->char_yield = singe_param(0.25f);
+    def->char_density = singe_param(0.32f);
+    static const SingeField char_rate_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.012f, 4, 5}};
+    def->char_rate = singe_param_field(0.8f, 2.4f, &char_rate_0);
+    def->strength = singe_param(10);
+    static const SingeField char_strength_0 = {.kind = SINGE_FIELD_NOISE, .noise = {0.015f, 4, 3}};
+    def->char_strength = singe_param_field(0.3f, 3, &char_strength_0);
+    def->curvature_max = singe_param(570);
 }
 
 const MaterialPreset material_presets[] = {

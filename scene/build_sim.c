@@ -56,8 +56,10 @@ void scene_sheet_def(const Scene *scene, const SceneAssets *assets, uint32_t ind
     def->attributes = mesh->attributes;
     def->material = sheet->material.def;
     SceneParam param;
-    for (int i = 0; scene_param(i, &param); i++)
-        scene_param_at(&def->material, &param)->texture = assets->params[index][param.slot];
+    for (int i = 0; scene_param(i, &param); i++) {
+        SingeParam *given = scene_param_at(&def->material, &param);
+        if (given->field) given->field = &assets->fields[index][param.slot];
+    }
     for (int c = 0; c < 3; c++) def->velocity[c] = sheet->velocity[c];
     def->drop_pieces_below = sheet->drop_pieces_below;
 }

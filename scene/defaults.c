@@ -117,6 +117,6 @@ bool default_measured(SceneArena *arena, void *object) {
 
 bool default_noise(SceneArena *arena, void *object) {
     (void)arena;
-    *(SingeNoise *)object = singe_param(0).noise;
+    *(SingeNoise *)object = (SingeNoise){.scale = 0.01f, .octaves = 4};
     return true;
 }

@@ -51,7 +51,8 @@ static void put_numbers(FILE *file, const float *values, int count, Dimension di
 }
 
 static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param, const SceneFile *texture) {
-    if (param->field == SINGE_FIELD_NONE) {
+    const SingeField *field = param->field;
+    if (!field) {
         put_number(file, param->value, row->dimension);
         return;
     }
@@ -59,13 +60,13 @@ static void put_param(FILE *file, const SchemaRow *row, const SingeParam *param,
     put_number(file, param->value, row->dimension);
     fputs(", \"to\": ", file);
     put_number(file, param->to, row->dimension);
-    if (param->field == SINGE_FIELD_NOISE) {
+    if (field->kind == SINGE_FIELD_NOISE) {
         fputs(", \"noise\": {\"scale\": ", file);
-        put_number(file, param->noise.scale, DIM_LENGTH);
-        fprintf(file, ", \"octaves\": %d, \"seed\": %" PRIu32 "}", param->noise.octaves, param->noise.seed);
+        put_number(file, field->noise.scale, DIM_LENGTH);
+        fprintf(file, ", \"octaves\": %d, \"seed\": %" PRIu32 "}", field->noise.octaves, field->noise.seed);
     } else {
-        bool is_texture = param->field == SINGE_FIELD_TEXTURE;
-        const char *name = is_texture ? texture->name : param->attribute;
+        bool is_texture = field->kind == SINGE_FIELD_TEXTURE;
+        const char *name = is_texture ? texture->name : field->attribute;
         fprintf(file, ", \"%s\": ", is_texture ? "texture" : "attribute");
         put_text(file, name ? name : "");
     }

@@ -117,11 +117,11 @@ static void load_mesh(Loader *loader, const SceneSheet *sheet, Mesh *mesh, MeshR
     else if (!near) message_add(loader->messages, loader->scene->text, file.location, "%s", too_far);
 }
 
-static void check_attribute(Loader *loader, const char *key, const SingeParam *param, const SceneFile *file,
+static void check_attribute(Loader *loader, const char *key, const char *attribute, const SceneFile *file,
                             const Mesh *mesh) {
-    Nearest nearest = {.word = param->attribute};
+    Nearest nearest = {.word = attribute};
     for (uint32_t i = 0; i < mesh->attribute_count; i++) {
-        if (strcmp(mesh->attributes[i].name, param->attribute) == 0) return;
+        if (strcmp(mesh->attributes[i].name, attribute) == 0) return;
         nearest_offer(&nearest, mesh->attributes[i].name);
     }
     char hint[80];
@@ -129,7 +129,7 @@ static void check_attribute(Loader *loader, const char *key, const SingeParam *p
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no such attribute", key);
     else
         message_add(loader->messages, loader->scene->text, file->location, "%s: the mesh has no attribute '%s'%s", key,
-                    shown(param->attribute).text, nearest_hint(&nearest, hint, sizeof hint));
+                    shown(attribute).text, nearest_hint(&nearest, hint, sizeof hint));
 }
 
 static void load_sheet(Loader *loader, uint32_t index) {
@@ -144,15 +144,16 @@ static void load_sheet(Loader *loader, uint32_t index) {
     SingeMaterialDef material = sheet->material.def;
     SceneParam location;
     for (int i = 0; scene_param(i, &location); i++) {
-        const SingeParam *param = scene_param_at(&material, &location);
+        const SingeField *field = scene_param_at(&material, &location)->field;
         const SceneFile *file = &sheet->material.textures[location.slot];
-        if (param->field == SINGE_FIELD_TEXTURE) {
-            load_luminance(loader, file, &assets->params[index][location.slot]);
+        if (field) assets->fields[index][location.slot] = *field;
+        if (field && field->kind == SINGE_FIELD_TEXTURE) {
+            load_luminance(loader, file, &assets->fields[index][location.slot].texture);
             if (mesh->positions && !mesh->uv)
                 message_add(loader->messages, loader->scene->text, file->location,
                             "%s follows a texture, but the mesh has no uv", location.key);
-        } else if (param->field == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
-            check_attribute(loader, location.key, param, file, mesh);
+        } else if (field && field->kind == SINGE_FIELD_ATTRIBUTE && mesh->positions) {
+            check_attribute(loader, location.key, field->attribute, file, mesh);
         }
     }
 }
@@ -209,7 +210,7 @@ SingeResult scene_load(const Scene *scene, SceneAssets *assets, SceneMessages *m
     assets->pictures = many(&loader, scene->sheet_count, sizeof *assets->pictures);
     assets->colours = many(&loader, scene->sheet_count, sizeof *assets->colours);
     assets->transmittances = many(&loader, scene->sheet_count, sizeof *assets->transmittances);
-    assets->params = many(&loader, scene->sheet_count, sizeof *assets->params);
+    assets->fields = many(&loader, scene->sheet_count, sizeof *assets->fields);
     assets->source_textures = many(&loader, scene->source_count, sizeof *assets->source_textures);
     assets->solids = many(&loader, scene->collider_count, sizeof *assets->solids);
     assets->probes = many(&loader, scene->probe_count, sizeof *assets->probes);
@@ -242,7 +243,7 @@ void scene_assets_free(SceneAssets *assets) {
     for (uint32_t i = 0; i < assets->sheet_count; i++) {
         if (assets->meshes) mesh_free(&assets->meshes[i]);
         if (assets->images) image_free(&assets->images[i]);
-        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->params; p++) picture_free(&assets->params[i][p]);
+        for (int p = 0; p < SCENE_PARAM_SLOTS && assets->fields; p++) picture_free(&assets->fields[i][p].texture);
     }
     for (uint32_t i = 0; i < assets->source_count && assets->source_textures; i++)
         picture_free(&assets->source_textures[i]);
@@ -261,7 +262,7 @@ void scene_assets_free(SceneAssets *assets) {
     free(assets->pictures);
     free(assets->colours);
     free(assets->transmittances);
-    free(assets->params);
+    free(assets->fields);
     free(assets->source_textures);
     *assets = (SceneAssets){0};
 }

@@ -37,23 +37,29 @@ static void write_float(FILE *out, float value) {
 }
 
 static bool same(const SingeParam *a, const SingeParam *b) {
-    if (a->field != b->field || a->value != b->value) return false;
-    return a->field == SINGE_FIELD_NONE || (a->to == b->to && a->noise.scale == b->noise.scale &&
-                                            a->noise.octaves == b->noise.octaves && a->noise.seed == b->noise.seed);
+    if (!a->field != !b->field || a->value != b->value) return false;
+    if (!a->field) return true;
+    const SingeNoise *p = &a->field->noise, *q = &b->field->noise;
+    return a->to == b->to && a->field->kind == b->field->kind && p->scale == q->scale && p->octaves == q->octaves &&
+           p->seed == q->seed;
 }
 
 static void write_param(FILE *out, const PresetRow *row, int colour, const SingeParam *param) {
-    char name[80];
+    char name[80], noise[80];
     if (row->colours) snprintf(name, sizeof name, "%s[%d]", row->name, colour);
     else snprintf(name, sizeof name, "%s", row->name);
-    fprintf(out, "    preset_%s(&def->%s, ", param->field == SINGE_FIELD_NOISE ? "noise" : "even", name);
+    snprintf(noise, sizeof noise, "%s_%d", row->name, colour);
+    if (param->field) {
+        fprintf(out, "    static const SingeField %s = {.kind = SINGE_FIELD_NOISE, .noise = {", noise);
+        write_float(out, param->field->noise.scale);
+        fprintf(out, ", %d, %u}};\n", param->field->noise.octaves, (unsigned)param->field->noise.seed);
+    }
+    fprintf(out, "    def->%s = singe_param%s(", name, param->field ? "_field" : "");
     write_float(out, param->value);
-    if (param->field == SINGE_FIELD_NOISE) {
+    if (param->field) {
         fprintf(out, ", ");
         write_float(out, param->to);
-        fprintf(out, ", ");
-        write_float(out, param->noise.scale);
-        fprintf(out, ", %d, %u", param->noise.octaves, (unsigned)param->noise.seed);
+        fprintf(out, ", &%s", noise);
     }
     fprintf(out, ");\n");
 }
@@ -62,7 +68,7 @@ static void write_material(FILE *out, const char *name, const SingeMaterialDef *
     const SingeMaterialDef standard = singe_default_material();
     fprintf(out, "static void ");
     for (const char *c = name; *c; c++) fputc(*c == '-' ? '_' : *c, out);
-    fprintf(out, "(SingeMaterialDef *def) {\n    (void)def;\n");
+    fprintf(out, "(SingeMaterialDef *def) {\n    (void)def; // holds the defaults\n");
     for (size_t i = 0; i < sizeof params / sizeof *params; i++)
         for (int colour = 0; colour < (params[i].colours ? params[i].colours : 1); colour++) {
             const SingeParam *param = (const SingeParam *)((const char *)def + params[i].offset) + colour;

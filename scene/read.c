@@ -7,36 +7,36 @@ static void *read_at(void *object, size_t offset) { return (char *)object + offs
 
 // ---- parameters that may vary
 
-static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeParam *param) {
+static void read_noise(Reader *reader, const SchemaRow *row, const Node *node, SingeNoise *noise) {
     if (node->kind != NODE_MAP) {
         message_add(reader->messages, reader->text, node->location,
                     "%s.noise must be a map {scale: , octaves: , seed: }", row->key);
         return;
     }
-    if (default_noise(reader->arena, &param->noise)) schema_read(reader, &schema_noise, node, &param->noise);
+    if (default_noise(reader->arena, noise)) schema_read(reader, &schema_noise, node, noise);
 }
 
 // What the parameter follows; returns how many such keys there are.
-static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeParam *param, SceneFile *file) {
+static int read_field(Reader *reader, const SchemaRow *row, const Node *map, SingeField *field, SceneFile *file) {
     const Node *texture = node_find(map, "texture"), *attribute = node_find(map, "attribute"),
                *noise = node_find(map, "noise");
     if (!texture) texture = node_find(map, "picture"); // its name before
     if (texture) {
         SchemaRow part = {.key = "texture", .type = ROW_FILE};
-        param->field = SINGE_FIELD_TEXTURE;
+        field->kind = SINGE_FIELD_TEXTURE;
         value_file(reader, &part, texture, file);
     }
     if (attribute) {
         SchemaRow part = {.key = "attribute", .type = ROW_TEXT};
-        param->field = SINGE_FIELD_ATTRIBUTE;
+        field->kind = SINGE_FIELD_ATTRIBUTE;
         file->location = attribute->location;
-        if (value_is_text(attribute)) param->attribute = attribute->text;
+        if (value_is_text(attribute)) field->attribute = attribute->text;
         else value_wrong(reader, attribute, &part);
     }
     if (noise) {
-        param->field = SINGE_FIELD_NOISE;
+        field->kind = SINGE_FIELD_NOISE;
         file->location = noise->location;
-        read_noise(reader, row, noise, param);
+        read_noise(reader, row, noise, &field->noise);
     }
     return !!texture + !!attribute + !!noise;
 }
@@ -73,7 +73,10 @@ static void read_param(Reader *reader, const SchemaRow *row, const Node *node, S
     bool good = from && to;
     good = (!from || value_float(reader, &end, from, &result.value)) && good;
     good = (!to || value_float(reader, &end, to, &result.to)) && good;
-    int fields = read_field(reader, row, node, &result, file);
+    SingeField *field = arena_new(reader->arena, 1, sizeof *field);
+    if (!field) return;
+    int fields = read_field(reader, row, node, field, file);
+    result.field = field;
     if (!from || !to || fields != 1)
         message_add(reader->messages, reader->text, node->location,
                     "%s as a map needs 'from', 'to' and one of 'texture', 'attribute' and 'noise'", row->key);

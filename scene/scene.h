@@ -261,6 +261,9 @@ void scene_dump(const Scene *scene, SceneSyntax syntax, int indent, FILE *file);
 /// The index-th material that the program brings along, in the order of their names; NULL behind the last.
 const char *scene_material_name(int index);
 
+/// Whether two materials are equal to the last parameter.
+bool scene_material_same(const SceneMaterial *a, const SceneMaterial *b);
+
 /// Writes docs/scene.md, the reference of scene files, from the schema.
 void scene_document(FILE *file);
 
@@ -298,19 +301,19 @@ typedef struct SceneSequence {
 /// The meshes (transforms applied) and pictures that a scene names.
 typedef struct SceneAssets {
     uint32_t sheet_count, source_count, collider_count, pin_count;
-    Mesh *meshes;                              ///< [sheet_count]
-    MeshReport *reports;                       ///< [sheet_count] what was done to those of files
-    Image *images;                             ///< [sheet_count], zeroed where there is none
-    const Image **pictures;                    ///< [sheet_count], for PreviewDef: NULL where there is none
-    float (*colours)[3];                       ///< [sheet_count], for PreviewDef
-    float *transmittances;                     ///< the same
-    SingeTexture (*params)[SCENE_PARAM_SLOTS]; ///< [sheet_count]
-    SingeTexture *source_textures;             ///< [source_count]
-    SceneSolid *solids;                        ///< [collider_count], zeroed where they are primitives
-    SceneSequence *collider_motions;           ///< [collider_count]
-    SceneSequence *pin_motions;                ///< [pin_count]
-    Image sky;                                 ///< zeroed where there is none
-    SceneProbePlace *probes;                   ///< [Scene.probe_count]
+    Mesh *meshes;                            ///< [sheet_count]
+    MeshReport *reports;                     ///< [sheet_count] what was done to those of files
+    Image *images;                           ///< [sheet_count], zeroed where there is none
+    const Image **pictures;                  ///< [sheet_count], for PreviewDef: NULL where there is none
+    float (*colours)[3];                     ///< [sheet_count], for PreviewDef
+    float *transmittances;                   ///< the same
+    SingeField (*fields)[SCENE_PARAM_SLOTS]; ///< [sheet_count] of parameters that vary, with their textures
+    SingeTexture *source_textures;           ///< [source_count]
+    SceneSolid *solids;                      ///< [collider_count], zeroed where they are primitives
+    SceneSequence *collider_motions;         ///< [collider_count]
+    SceneSequence *pin_motions;              ///< [pin_count]
+    Image sky;                               ///< zeroed where there is none
+    SceneProbePlace *probes;                 ///< [Scene.probe_count]
 } SceneAssets;
 
 /// Reads every file that the scene names. On failure *assets is empty and *messages points at the names, and also at

@@ -2,6 +2,7 @@
 #include "scene/schema_rows.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const char *const operator_names[] = {
     [SINGE_HEAT_SURFACE] = "surface", [SINGE_HEAT_UMBRELLA] = "umbrella", NULL};
@@ -129,3 +130,13 @@ static bool param_in(const Schema *schema, const char *prefix, int *index, Scene
 }
 
 bool scene_param(int index, SceneParam *param) { return param_in(&schema_material, "", &index, param); }
+
+bool scene_material_same(const SceneMaterial *a, const SceneMaterial *b) {
+    SceneMaterial one = *a, two = *b;
+    SceneParam which;
+    for (int i = 0; scene_param(i, &which); i++) {
+        SingeParam *p = scene_param_at(&one.def, &which), *q = scene_param_at(&two.def, &which);
+        if (p->field && q->field && memcmp(p->field, q->field, sizeof *p->field) == 0) q->field = p->field;
+    }
+    return memcmp(&one, &two, sizeof one) == 0;
+}

@@ -35,21 +35,34 @@ typedef enum SingeFieldKind {
     SINGE_FIELD_NOISE = 3,
 } SingeFieldKind;
 
-/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, the
-/// straight line between (and beyond, for an attribute outside [0, 1]). Without a field: `value`.
-/// Centres of cells take a texture or noise at their own position and the mean of their corners'
-/// attributes.
+/// What a parameter follows over the sheet. Centres of cells take a texture or noise at their own position and the mean
+/// of their corners' attributes.
+typedef struct SingeField {
+    SingeFieldKind kind;
+    SingeTexture texture;  ///< SINGE_FIELD_TEXTURE: needs the sheet's uv
+    const char *attribute; ///< SINGE_FIELD_ATTRIBUTE: the name of one of the sheet's attributes
+    SingeNoise noise;      ///< SINGE_FIELD_NOISE
+} SingeField;
+
+/// A parameter that may vary over the sheet: `value` where the field is 0, `to` where it is 1, linear in between (and
+/// beyond, for an attribute outside [0, 1]).
 typedef struct SingeParam {
-    float value; ///< in the parameter's unit and range, as `to` and all between
-    float to;    ///< needs a field; finite
-    SingeFieldKind field;
-    SingeTexture texture;  ///< needs the sheet's uv
-    const char *attribute; ///< the name of one of the sheet's attributes
-    SingeNoise noise;
+    float value;             ///< in the parameter's unit and range, as `to` and all between
+    float to;                ///< finite; unused without a field
+    const SingeField *field; ///< the caller's; parameters may share one. NULL: `value` everywhere
 } SingeParam;
 
 /// A parameter with the same value everywhere.
 SINGE_API SingeParam singe_param(float value);
+
+/// A parameter that follows a field, which must live until the Def has been passed on.
+static inline SingeParam singe_param_field(float value, float to, const SingeField *field) {
+    SingeParam param;
+    param.value = value;
+    param.to = to;
+    param.field = field;
+    return param;
+}
 
 /// The discrete Laplacian of the heat equation.
 typedef enum SingeHeatOperator {

@@ -89,7 +89,8 @@ float shell_sample_texture(const SingeTexture *texture, float u, float v) {
 /// What a parameter is evaluated on.
 typedef struct ParamField {
     const SingeParam *param;
-    const float *attribute; ///< [vertex_count] or NULL
+    const SingeField *follows; ///< NULL: `value` everywhere
+    const float *attribute;    ///< [vertex_count] or NULL
     const SheetSource *source;
 } ParamField;
 
@@ -100,7 +101,7 @@ static SingeResult field_fail(const SheetSource *source, const ParamRule *rule, 
 
 static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *rule, ParamField *field,
                                    SingeError *error) {
-    const char *name = field->param->attribute;
+    const char *name = field->follows->attribute;
     if (!name) return field_fail(field->source, rule, "names no attribute", error);
     for (uint32_t i = 0; i < def->attribute_count; i++)
         if (strcmp(def->attributes[i].name, name) == 0) field->attribute = def->attributes[i].values;
@@ -111,21 +112,21 @@ static SingeResult field_attribute(const SingeSheetDef *def, const ParamRule *ru
 }
 
 static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, ParamField *field, SingeError *error) {
-    const SingeParam *param = field->param;
-    if (param->field == SINGE_FIELD_NONE) return SINGE_OK;
-    if (!isfinite(param->value) || !isfinite(param->to)) // no line leads there
+    const SingeField *follows = field->follows;
+    if (!follows) return SINGE_OK;
+    if (!isfinite(field->param->value) || !isfinite(field->param->to)) // no line leads there
         return field_fail(field->source, rule, "varies between numbers that are not both finite", error);
-    switch ((int)param->field) {
+    switch ((int)follows->kind) {
     case SINGE_FIELD_TEXTURE:
         if (!def->uv) return field_fail(field->source, rule, "is a texture but the sheet has no uv", error);
-        if (param->texture.width < 1 || param->texture.height < 1 || !param->texture.values)
+        if (follows->texture.width < 1 || follows->texture.height < 1 || !follows->texture.values)
             return field_fail(field->source, rule, "is an empty texture", error);
         return SINGE_OK;
     case SINGE_FIELD_ATTRIBUTE: return field_attribute(def, rule, field, error);
     case SINGE_FIELD_NOISE:
-        if (!material_inside(param->noise.scale, POSITIVE_RANGE))
+        if (!material_inside(follows->noise.scale, POSITIVE_RANGE))
             return field_fail(field->source, rule, "is noise whose scale is not above 0", error);
-        if (param->noise.octaves < 1 || param->noise.octaves > 8)
+        if (follows->noise.octaves < 1 || follows->noise.octaves > 8)
             return field_fail(field->source, rule, "is noise of other than 1 to 8 octaves", error);
         return SINGE_OK;
     default: return field_fail(field->source, rule, "varies by an unknown kind of field", error);
@@ -135,7 +136,8 @@ static SingeResult field_open(const SingeSheetDef *def, const ParamRule *rule, P
 /// The parameter at the mean of `count` vertices: 1, or those of a cell, which has its own uv of them.
 static float field_value(const ParamField *field, const uint32_t *vertices, int count, uint32_t cell) {
     const SingeParam *param = field->param;
-    if (param->field == SINGE_FIELD_NONE) return param->value;
+    const SingeField *follows = field->follows;
+    if (!follows) return param->value;
     double uv[2] = {0}, position[3] = {0}, f = 0;
     for (int i = 0; i < count; i++) {
         uint32_t v = vertices[i];
@@ -144,10 +146,10 @@ static float field_value(const ParamField *field, const uint32_t *vertices, int 
         for (int k = 0; k < 3; k++) position[k] += (double)field->source->position[v][k] / count;
         if (field->attribute) f += (double)field->attribute[v] / count;
     }
-    if (param->field == SINGE_FIELD_TEXTURE)
-        f = (double)shell_sample_texture(&param->texture, (float)uv[0], (float)uv[1]);
-    if (param->field == SINGE_FIELD_NOISE)
-        f = (double)random_fractal(&param->noise, (float)position[0], (float)position[1], (float)position[2]);
+    if (follows->kind == SINGE_FIELD_TEXTURE)
+        f = (double)shell_sample_texture(&follows->texture, (float)uv[0], (float)uv[1]);
+    if (follows->kind == SINGE_FIELD_NOISE)
+        f = (double)random_fractal(&follows->noise, (float)position[0], (float)position[1], (float)position[2]);
     return (float)((1 - f) * (double)param->value + f * (double)param->to);
 }
 
@@ -225,8 +227,9 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
     for (int r = 0; r < RULE_COUNT; r++) {
         const ParamRule *rule = &param_rules[r];
         float **values = &source->values[rule->param];
-        const void *param = (const char *)&def->material + rule->offset;
-        ParamField field = {.param = param, .source = source};
+        const SingeParam *param = (const void *)((const char *)&def->material + rule->offset);
+        const bool varies = param->field && param->field->kind != SINGE_FIELD_NONE;
+        ParamField field = {.param = param, .follows = varies ? param->field : NULL, .source = source};
         if (!*values && !NEW(memory, *values, total))
             return error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", source->sheet.name);
         TRY(field_open(def, rule, &field, error));
@@ -235,16 +238,4 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
         if (r + 1 == RULE_COUNT || param_rules[r + 1].param != rule->param) keep_values(memory, source, rule->param);
     }
     return check_matter(source, error);
-}
-
-SingeParam *material_param(SingeMaterialDef *material, int index) {
-    return index < RULE_COUNT ? (void *)((char *)material + param_rules[index].offset) : NULL;
-}
-
-void material_forget_fields(SingeMaterialDef *material) {
-    SingeParam *param;
-    for (int r = 0; (param = material_param(material, r)); r++) {
-        param->texture = (SingeTexture){0};
-        param->attribute = NULL;
-    }
 }

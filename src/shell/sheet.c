@@ -180,8 +180,8 @@ SingeResult sheet_source_create(Memory *memory, const SingeSheetDef *given, Shee
     sheet->source_count = def.source_vertex ? def.source_count : def.vertex_count;
     memcpy(sheet->velocity, def.velocity, sizeof sheet->velocity);
     source->user_data = def.user_data;
-    memcpy(&sheet->material, &def.material, sizeof sheet->material);
-    material_forget_fields(&sheet->material);
+#define SINGE_SCALAR(type, name, standard, text) sheet->material.name = def.material.name;
+#include "singe/material.def"
     if (!source_alloc(memory, &def, source)) {
         SingeResult result = error_set(error, SINGE_ERROR_MEMORY, "sheet", -1, "no memory for sheet '%s'", sheet->name);
         sheet_source_free(memory, source);
@@ -214,7 +214,8 @@ SingeResult sheet_source_check(const SheetSource *source, SingeError *error) {
                          .source_vertex = source->source_vertex,
                          .source_count = sheet->source_count,
                          .corner_source_vertex = (const int32_t *)source->corner_source};
-    memcpy(&def.material, &sheet->material, sizeof def.material);
+#define SINGE_SCALAR(type, name, standard, text) def.material.name = sheet->material.name;
+#include "singe/material.def"
     memcpy(def.velocity, sheet->velocity, sizeof def.velocity);
     TRY(check_def(&def, sheet->name, error));
     if (!source->source_vertex && sheet->source_count != sheet->vertex_count)

@@ -14,10 +14,4 @@ SingeResult material_evaluate(Memory *memory, const SingeSheetDef *def, SheetSou
 /// Checks the values that material_evaluate has left, or that were read back.
 SingeResult material_check_values(const SheetSource *source, SingeError *error);
 
-/// The parameters of a material that may vary over the sheet, one after the other; NULL behind the last.
-SingeParam *material_param(SingeMaterialDef *material, int index);
-
-/// Clears the caller's pointers from a copied material.
-void material_forget_fields(SingeMaterialDef *material);
-
 #endif

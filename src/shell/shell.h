@@ -57,14 +57,20 @@ typedef struct Matter {
     uint16_t *sheet;
 } Matter;
 
+/// The parameters that have one value for a sheet.
+typedef struct SheetMaterial {
+#define SINGE_SCALAR(type, name, standard, text) type name;
+#include "singe/material.def"
+} SheetMaterial;
+
 /// One sheet's own numbers and ranges.
 typedef struct Sheet {
     char name[64];
     uint32_t vertex_first, vertex_count, cell_first, cell_count;
     uint32_t spare_count; ///< at the end of its vertices, without cells until a tear needs them (shell/split.h)
     uint32_t spare_used;
-    float cell_size;           ///< m, median edge
-    SingeMaterialDef material; ///< for values of the whole sheet; its textures and attributes are freed
+    float cell_size; ///< m, median edge
+    SheetMaterial material;
     float velocity[3];
     float drop_pieces_below;             ///< m2
     uint32_t source_first, source_count; ///< range of its vertices in the input

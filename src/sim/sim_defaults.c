@@ -4,19 +4,34 @@
 #include <math.h>
 #include <string.h>
 
-SingeParam singe_param(float value) {
-    return (SingeParam){.value = value, .to = value, .noise = {.scale = 0.01f, .octaves = 4}};
+SingeParam singe_param(float value) { return (SingeParam){.value = value, .to = value}; }
+
+/// What the parameters of the default material follow; zeroed where it is nothing.
+static const struct {
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) SingeField name;
+#define SINGE_PARAM_BACK SINGE_PARAM
+#include "singe/material.def"
+} standard_fields = {
+#define EVEN(value) .kind = SINGE_FIELD_NONE
+#define NOISE(from, to, scale, octaves, seed) .kind = SINGE_FIELD_NOISE, .noise = {scale, octaves, seed}
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) .name = {standard},
+#define SINGE_PARAM_BACK SINGE_PARAM
+#include "singe/material.def"
+#undef EVEN
+#undef NOISE
+};
+
+static SingeParam standard_param(float from, float to, const SingeField *field) {
+    return (SingeParam){from, to, field->kind == SINGE_FIELD_NONE ? NULL : field};
 }
 
 static SingeMaterialDef standard_material(void) {
     SingeMaterialDef def = {
         .struct_size = sizeof def,
-#define EVEN(value) singe_param(value)
-#define NOISE(from, to_, scale, octaves, seed)                                                      \
-    {                                                                                               \
-        .value = (from), .to = (to_), .field = SINGE_FIELD_NOISE, .noise = { scale, octaves, seed } \
-    }
-#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) .name = standard,
+#define EVEN(value) value, value
+#define NOISE(from, to, scale, octaves, seed) from, to
+#define SINGE_PARAM(number, NAME, name, dimension, standard, range, where, field, text) \
+    .name = standard_param(standard, &standard_fields.name),
 #define SINGE_PARAM_BACK SINGE_PARAM
 #define SINGE_SCALAR(type, name, standard, text) .name = standard,
 #include "singe/material.def"

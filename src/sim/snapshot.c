@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-enum { SNAPSHOT_VERSION = 7 };
+enum { SNAPSHOT_VERSION = 8 };
 
 typedef struct SnapshotHeader {
     char magic[8];           ///< "SINGESIM"

@@ -70,20 +70,7 @@ void snapshot_sim_def(Stream *stream, SingeSimDef *def) {
     def_contact(stream, &def->contact);
 }
 
-/// A parameter's numbers; its values at the particles are the sheet's params.
-static void def_param(Stream *stream, SingeParam *param) {
-    STREAM(stream, param->value);
-    STREAM(stream, param->to);
-    STREAM(stream, param->field);
-    STREAM(stream, param->noise.scale);
-    STREAM(stream, param->noise.octaves);
-    STREAM(stream, param->noise.seed);
-}
-
-static void def_material(Stream *stream, SingeMaterialDef *material) {
-    SingeParam *param;
-    material->struct_size = sizeof *material;
-    for (int i = 0; (param = material_param(material, i)); i++) def_param(stream, param);
+static void def_material(Stream *stream, SheetMaterial *material) {
     STREAM(stream, material->heat_operator);
     STREAM(stream, material->thickening);
     STREAM(stream, material->reference_grammage);

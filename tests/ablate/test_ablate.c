@@ -375,9 +375,9 @@ static void ledger_and_pieces_of_a_burning_sheet(void **unused) {
     SingeMaterialDef material = plain_material();
     material.ash_exponent = singe_param(1);
     material.mass_rate = singe_param(1e-3f);
-    material.mass_rate.to = 2e-2f;
-    material.mass_rate.field = SINGE_FIELD_NOISE;
-    material.mass_rate.noise = (SingeNoise){.scale = 0.004f, .octaves = 2, .seed = 3};
+    material.mass_rate = singe_param_field(
+        material.mass_rate.value, 2e-2f,
+        &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {.scale = 0.004f, .octaves = 2, .seed = 3}});
     BurningSheet *b = burning_sheets(1, 50, 30, 0.001f, &material, 3e-6f);
     AblatePlan *plan = plan_for(b);
     double partial[8], initial = mass_left(b), heat = 0;

@@ -64,7 +64,7 @@ static void ceilings_may_vary(void **unused) {
     static const float halves[] = {0, 1};
     SingeMaterialDef material = plain_material();
     material.rate_ceiling =
-        (SingeParam){.value = 50, .to = 200, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+        singe_param_field(50, 200, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
     BurningSheet *b = burning_sheet(8, 2, 0.01f, &material);
     heat_all(b, 5000);
     assert_int_equal(step(b, NULL, 1, 1, 1), SINGE_OK);
@@ -341,9 +341,9 @@ static void bad_mass_is_named(void **unused) {
 static BurningSheet *crossed_by_stripe(Pool *pool) {
     SingeMaterialDef material = plain_material();
     material.ash_exponent = singe_param(0.5f);
-    material.mass_rate.to = 2e-3f;
-    material.mass_rate.field = SINGE_FIELD_NOISE;
-    material.mass_rate.noise = (SingeNoise){.scale = 0.02f, .octaves = 3, .seed = 7};
+    material.mass_rate =
+        singe_param_field(material.mass_rate.value, 2e-3f,
+                          &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {.scale = 0.02f, .octaves = 3, .seed = 7}});
     BurningSheet *b = burning_sheet(80, 50, 0.001f, &material);
     for (int n = 0; n < 40; n++) {
         b->state.time = 0.1 * n;

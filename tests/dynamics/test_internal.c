@@ -254,7 +254,7 @@ static void test_char_weight_by_attribute(void **unused) {
     Bench bench;
     SingeMaterialDef material = plain();
     material.char_weight =
-        (SingeParam){.value = 0.2f, .to = 0.8f, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "along"};
+        singe_param_field(0.2f, 0.8f, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "along"});
     bench_open(&bench, quads_grid(10, 2, 0.01f, 0.01f, false), &material, 1);
     for (uint32_t i = 0; i < bench.shell.particle_count; i++)
         bench.state.burn.mass[i] = field_at(bench.shell.matter.mass_min, i);
@@ -275,7 +275,8 @@ static void test_damping_and_drag_by_picture(void **unused) {
     for (int drag = 0; drag < 2; drag++) {
         Bench bench;
         SingeMaterialDef material = plain();
-        SingeParam param = {.value = 0, .to = 4, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+        SingeParam param =
+            singe_param_field(0, 4, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
         if (drag) material.drag = param;
         else material.damping = param;
         bench_open(&bench, quads_grid(8, 2, 0.01f, 0.01f, false), &material, 1);
@@ -321,7 +322,7 @@ static void test_compliance_by_picture(void **unused) {
     static const float halves[] = {0, 1}; // white at the bottom
     double all[2], half[2];
     hang(singe_param(5), all);
-    hang((SingeParam){.value = 0, .to = 5, .field = SINGE_FIELD_TEXTURE, .texture = {1, 2, halves}}, half);
+    hang(singe_param_field(0, 5, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {1, 2, halves}}), half);
     assert_true(all[0] > 1e-5 && all[1] > 3 * all[0]); // the upper end bears more
     assert_true(fabs(half[0] / all[0] - 1) < 0.05);
     assert_true(fabs(half[1]) < 0.02 * all[1]);

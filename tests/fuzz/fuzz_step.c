@@ -87,12 +87,15 @@ static void vary_material(Input *input, SingeMaterialDef *material) {
         offsetof(SingeMaterialDef, name[3]),
 #include "singe/material.def"
     };
-    for (unsigned k = input_pick(input, 8); k > 0; k--) {
+    enum { CHANGES = 8 };
+    static SingeField fields[CHANGES]; // the material points to them
+    for (unsigned k = input_pick(input, CHANGES); k > 0; k--) {
         size_t at = params[input_pick(input, sizeof params / sizeof *params)];
         SingeParam param = singe_param(input_extreme(input));
         if (input_rarely(input, 3)) {
-            param.to = input_extreme(input), param.field = SINGE_FIELD_NOISE;
-            param.noise = (SingeNoise){0.01f, 1 + (int)input_pick(input, 8), input_byte(input)};
+            param.to = input_extreme(input), param.field = &fields[k];
+            fields[k].kind = SINGE_FIELD_NOISE;
+            fields[k].noise = (SingeNoise){0.01f, 1 + (int)input_pick(input, 8), input_byte(input)};
         }
         memcpy((char *)material + at, &param, sizeof param);
     }

@@ -345,9 +345,9 @@ static void heat_is_kept_where_capacity_varies(void **unused) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(12, 3, 0.002f, 0.003f);
     def.material.grammage =
-        (SingeParam){.value = 0.04f, .to = 0.4f, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+        singe_param_field(0.04f, 0.4f, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
     def.material.specific_heat =
-        (SingeParam){.value = 900, .to = 1800, .field = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}};
+        singe_param_field(900, 1800, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.01f, 2, 5}});
     def.material.reference_grammage = 0;
     Rig rig;
     rig_open(&rig, &def);
@@ -375,7 +375,7 @@ static void layers_even_out_at_their_own_rates(void **unused) {
     RigDef def = rig_default(40, 2, 0.002f, 0.002f);
     def.material.diffusivity = singe_param(0);
     def.material.layer_exchange =
-        (SingeParam){.value = 10, .to = 40, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+        singe_param_field(10, 40, &(SingeField){.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}});
     Rig rig;
     rig_open(&rig, &def);
     for (uint32_t i = 0; i < rig.shell.particle_count; i++)

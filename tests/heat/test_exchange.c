@@ -151,7 +151,8 @@ static const float halves[] = {0, 1};
 
 /// `value` in the left quarter of the sheet, `to` in the right one, a straight line between.
 static SingeParam from_left(float value, float to) {
-    return (SingeParam){.value = value, .to = to, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+    static const SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+    return singe_param_field(value, to, &field);
 }
 
 static void even_flux(void *context, const struct SingeView *view, float *flux, float *conductance,

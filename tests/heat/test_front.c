@@ -181,9 +181,8 @@ static void thickening_goes_by_the_means(void **unused) {
     static const float halves[] = {0, 1};
     RigDef def = rig_default(16, 4, 0.01f, 0.01f);
     SingeParam *params[] = {&def.material.rate_ceiling, &def.material.mass_rate};
-    for (int k = 0; k < 2; k++)
-        *params[k] = (SingeParam){
-            .value = k ? 5e-3f : 100, .to = k ? 15e-3f : 300, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+    const SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, halves}};
+    for (int k = 0; k < 2; k++) *params[k] = singe_param_field(k ? 5e-3f : 100, k ? 15e-3f : 300, &field);
     def.material.thickening = 0;
     Rig rig;
     rig_open(&rig, &def);

@@ -236,7 +236,7 @@ static void materials_have_names(void **state) {
     assert_int_equal(singe_material_preset("cotton", &def, &error), SINGE_OK);
     assert_true(def.struct_size == sizeof def && def.grammage.value == 0.12f && def.fibre_shrink.value == 1);
     assert_true(def.compliance[SINGE_GREEN].value == 0.5f && def.char_strength.to == 20);
-    assert_true(def.char_strength.field == SINGE_FIELD_NOISE && def.char_strength.noise.seed == 3);
+    assert_true(def.char_strength.field->kind == SINGE_FIELD_NOISE && def.char_strength.field->noise.seed == 3);
     SingeMaterialDef before = def;
     assert_int_equal(singe_material_preset("silk", &def, &error), SINGE_ERROR_ARGUMENT);
     assert_memory_equal(&before, &def, sizeof def);

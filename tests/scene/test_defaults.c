@@ -110,8 +110,8 @@ static void walk(Page *page, const Schema *schema, const char *object) {
         if (!row_allowed(row, kind)) continue;
 
         const SingeParam *param = (const SingeParam *)(object + row->offset);
-        if (row->type == ROW_PARAM && param->field == SINGE_FIELD_NOISE && strcmp(row->key, "mass_rate") == 0) {
-            walk(page, &schema_noise, (const char *)&param->noise); // the one that is given
+        if (row->type == ROW_PARAM && param->field && strcmp(row->key, "mass_rate") == 0) {
+            walk(page, &schema_noise, (const char *)&param->field->noise); // the one that is given
             continue;
         }
         compare(page, schema, row, object, schema->kind_offset ? schema->rows[0].names[number] : NULL);

@@ -39,24 +39,23 @@ static void test_picture(void **state) {
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(8);
     static const float values[] = {0, 1};
-    square.def.material.thickness =
-        (SingeParam){.value = 0.001f, .to = 0.003f, .field = SINGE_FIELD_TEXTURE, .texture = {2, 1, values}};
+    SingeField field = {.kind = SINGE_FIELD_TEXTURE, .texture = {2, 1, values}};
+    square.def.material.thickness = singe_param_field(0.001f, 0.003f, &field);
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t i = 0; i < 81 + 64; i++) {
         float uv[2], u = i < 81 ? square.uv[i][0] : centre_uv(&square, i - 81, uv)[0];
         float f = fminf(fmaxf(2 * u - 0.5f, 0), 1);
         assert_float_equal(sheet_param(&source, PARAM_THICKNESS, i), 0.001f + 0.002f * f, 1e-8f);
     }
-    assert_null(source.sheet.material.thickness.texture.values);
     sheet_source_free(&memory, &source);
 
     square.def.uv = NULL;
     refuse(&square.def, -1, "no uv");
     square.def.uv = square.uv[0];
-    square.def.material.thickness.texture.width = 0;
+    field.texture.width = 0;
     refuse(&square.def, -1, "empty texture");
     static const float broken[] = {0, NAN};
-    square.def.material.thickness.texture = (SingeTexture){2, 1, broken};
+    field.texture = (SingeTexture){2, 1, broken};
     refuse(&square.def, 0, "thickness"); // bilinear: a pixel beside NaN is not known either
     square_free(&square);
 }
@@ -71,8 +70,8 @@ static void test_attribute(void **state) {
     SingeAttribute attributes[2] = {{"other", values + 1}, {"burn", values}};
     attributes[0].values = values;
     square.def.attribute_count = 2, square.def.attributes = attributes;
-    square.def.material.mass_rate =
-        (SingeParam){.value = 100, .to = 200, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
+    SingeField field = {.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "burn"};
+    square.def.material.mass_rate = singe_param_field(100, 200, &field);
     SheetSource source = evaluate(&memory, &square.def);
     for (uint32_t v = 0; v < 16; v++)
         assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, v), 100 + 25 * (float)v, 1e-3f);
@@ -81,16 +80,15 @@ static void test_attribute(void **state) {
         for (int i = 0; i < 4; i++) mean += 25 * (float)square.mesh.cells[c][i] / 4;
         assert_float_equal(sheet_param(&source, PARAM_MASS_RATE, 16 + c), 100 + mean, 1e-3f);
     }
-    assert_null(source.sheet.material.mass_rate.attribute);
     sheet_source_free(&memory, &source);
 
     values[6] = -5; // -400
     refuse(&square.def, 6, "mass_rate must be 0 or more, which it is not at vertex 6");
     values[6] = NAN;
     refuse(&square.def, 6, "vertex 6");
-    square.def.material.mass_rate.attribute = "char";
+    field.attribute = "char";
     refuse(&square.def, -1, "no attribute 'char'");
-    square.def.material.mass_rate.attribute = NULL;
+    field.attribute = NULL;
     refuse(&square.def, -1, "names no attribute");
     square_free(&square);
 }
@@ -100,10 +98,10 @@ static void test_noise(void **state) {
     (void)state;
     Memory memory = memory_make((SingeAllocator){0});
     Square square = square_make(24);
-    square.def.material.weight[SINGE_BLUE] =
-        (SingeParam){.value = 0.2f, .to = 1, .field = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
+    SingeField field = {.kind = SINGE_FIELD_NOISE, .noise = {0.2f, 3, 5}};
+    square.def.material.weight[SINGE_BLUE] = singe_param_field(0.2f, 1, &field);
     SheetSource a = evaluate(&memory, &square.def), b = evaluate(&memory, &square.def);
-    square.def.material.weight[SINGE_BLUE].noise.seed = 6;
+    field.noise.seed = 6;
     SheetSource c = evaluate(&memory, &square.def);
     uint32_t total = 25 * 25 + 24 * 24, different = 0;
     float low = 1, high = 0;
@@ -119,11 +117,11 @@ static void test_noise(void **state) {
     sheet_source_free(&memory, &a);
     sheet_source_free(&memory, &b);
     sheet_source_free(&memory, &c);
-    square.def.material.weight[SINGE_BLUE].noise.scale = 0;
+    field.noise.scale = 0;
     refuse(&square.def, -1, "scale");
-    square.def.material.weight[SINGE_BLUE].noise = (SingeNoise){.scale = 1, .octaves = 9};
+    field.noise = (SingeNoise){.scale = 1, .octaves = 9};
     refuse(&square.def, -1, "octaves");
-    square.def.material.weight[SINGE_BLUE].field = (SingeFieldKind)7;
+    field.kind = (SingeFieldKind)7;
     refuse(&square.def, -1, "unknown kind");
     square_free(&square);
 }

@@ -22,12 +22,12 @@ static double layer_sum(const Shell *shell, const float *values, int layer) {
 }
 
 static void check_layers(const Shell *shell, double area, double tolerance) {
-    const SingeMaterialDef *material = &shell->sheets[0].material;
-    double mass = area * (double)material->grammage.value / 2;
+    const SingeMaterialDef material = singe_default_material();
+    double mass = area * (double)material.grammage.value / 2;
     for (int layer = 0; layer < 2; layer++) {
         assert_near(layer_sum(shell, shell->matter.area, layer), area, tolerance);
         assert_near(layer_sum(shell, shell->matter.mass, layer), mass, tolerance);
-        assert_near(layer_sum(shell, shell->matter.capacity, layer), mass * (double)material->specific_heat.value,
+        assert_near(layer_sum(shell, shell->matter.capacity, layer), mass * (double)material.specific_heat.value,
                     tolerance);
     }
 }

@@ -19,7 +19,7 @@ static Shell start_shell(Memory *memory) {
     SingeAttribute attribute = {"warm", warm};
     def.attribute_count = 1, def.attributes = &attribute;
     def.material.temperature =
-        (SingeParam){.value = 300, .to = 340, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "warm"};
+        singe_param_field(300, 340, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "warm"});
     def.velocity[0] = 1, def.velocity[2] = -2;
     SheetSource source;
     Shell shell;

@@ -45,9 +45,8 @@ static SingeResult scene_sheets(Scene *scene, uint32_t cells) {
     test_mesh_move(&tube, 0.1f, 0.1f, 0.06f);
     SingeSheetDef sheet = test_sheet(&grid);
     sheet.material = scene_quick_material();
-    sheet.material.mass_rate.to = 0.12f;
-    sheet.material.mass_rate.field = SINGE_FIELD_NOISE;
-    sheet.material.mass_rate.noise = (SingeNoise){0.03f, 3, 5};
+    sheet.material.mass_rate = singe_param_field(sheet.material.mass_rate.value, 0.12f,
+                                                 &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
     sheet.drop_pieces_below = 1e-4f;
     SingeResult result = singe_sim_add_sheet(scene->sim, &sheet, &scene->sheets[0]);
     sheet = test_sheet(&tube);

@@ -116,7 +116,7 @@ static void refused_numbers_change_nothing(void **state) {
     test_refused(sim, SINGE_ERROR_HANDLE, singe_sim_set_material(sim, (SingeSheetId){2, 1}, &material, share));
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, scene.sheets[0], &material, NULL));
     material = singe_default_material();
-    material.mass_min.field = SINGE_FIELD_ATTRIBUTE, material.mass_min.attribute = "ours";
+    material.mass_min.field = &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "ours"};
     test_refused(sim, SINGE_ERROR_ARGUMENT, singe_sim_set_material(sim, scene.sheets[0], &material, NULL));
     test_steps(sim, 10);
     test_steps(twin.sim, 10);
@@ -160,9 +160,8 @@ static void the_same_material_changes_nothing(void **state) {
     (void)state;
     Scene scene = quiet_scene(8), twin = quiet_scene(8);
     SingeMaterialDef material = scene_quick_material();
-    material.mass_rate.to = 0.12f;
-    material.mass_rate.field = SINGE_FIELD_NOISE;
-    material.mass_rate.noise = (SingeNoise){0.03f, 3, 5};
+    material.mass_rate = singe_param_field(material.mass_rate.value, 0.12f,
+                                           &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
     test_steps(scene.sim, 25);
     test_steps(twin.sim, 25);
     test_ok(scene.sim, singe_sim_set_material(scene.sim, scene.sheets[0], &material, NULL));

@@ -51,7 +51,7 @@ static SingeSim *pulled(const SingeSimDef *def, float strength, float line, cons
     if (from) sheet.material = *from;
     sheet.attribute_count = 1, sheet.attributes = &attribute;
     sheet.material.strength =
-        (SingeParam){.value = strength, .to = strength * line, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
+        singe_param_field(strength, strength * line, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
     assert_int_equal(singe_sim_create(def, &sim, NULL), SINGE_OK);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
     test_ok(sim, singe_sim_commit(sim));
@@ -170,7 +170,7 @@ static void tubes_tear_around(void **unused) {
     enum { AROUND = 20, LONG = 16 };
     SingeSimDef def = pull_def();
     SingeMaterialDef material = singe_default_material();
-    material.strength = (SingeParam){.value = 1, .to = 1.4f, .field = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}};
+    material.strength = singe_param_field(1, 1.4f, &(SingeField){.kind = SINGE_FIELD_NOISE, .noise = {0.03f, 3, 5}});
     SingeSim *sim = test_sim(&def, test_cylinder(AROUND, LONG, 0.016f, LONG * side), &material);
     for (int k = 0; k < 2; k++) {
         uint32_t held[2 * AROUND];
@@ -472,7 +472,8 @@ static void a_hub_of_many_cells_stays_whole(void **unused) {
     SingeSheetId id;
     SingeSim *sim;
     sheet.attribute_count = 1, sheet.attributes = &attribute;
-    sheet.material.strength = (SingeParam){.value = 20, .to = 1, .field = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"};
+    sheet.material.strength =
+        singe_param_field(20, 1, &(SingeField){.kind = SINGE_FIELD_ATTRIBUTE, .attribute = "weak"});
     assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
     test_ok(sim, singe_sim_add_sheet(sim, &sheet, &id));
     test_ok(sim, singe_sim_commit(sim));
