@@ -155,7 +155,7 @@ SingeResult broad_search(CollisionPlan *plan, const Shell *shell, Pool *pool) {
     find_owners(plan, shell);
     pool_for(pool, (int)plan->cell_count, 512, box_range, &find);
     TRY(find_pairs(&find, pool));
-    initial_find(plan, shell, plan->searched == 0);
+    TRY(initial_find(plan, shell, plan->searched == 0));
     plan->searched = 1;
     plan->counters.searches++;
     return SINGE_OK;

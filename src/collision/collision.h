@@ -49,15 +49,14 @@ SingeResult ccd_apply(CollisionPlan *plan, const Shell *shell, const StateInput 
 
 /// Counts since the plan was made.
 typedef struct CollisionCounters {
-    uint64_t searches;   ///< for nearby pairs
-    uint64_t pairs;      ///< pairs of cells that the last search has found near, summed over steps
-    uint64_t repulsions; ///< pairs of points that a substep had to push apart, summed over substeps
-    uint64_t stops;      ///< pairs of cells stopped by CCD
-    uint64_t looks;      ///< pairs of cells checked again, as an iteration had moved one of them
-    uint64_t unresolved; ///< pairs that could not be kept apart, as both are held by pins
-    uint64_t dropped;    ///< pairs, of cells or of points, for which there was no room
-    uint32_t
-        intersecting; ///< cells that crossed others, or lay in their place, at the start, and have not parted since
+    uint64_t searches;           ///< for nearby pairs
+    uint64_t pairs;              ///< pairs of cells that the last search has found near, summed over steps
+    uint64_t repulsions;         ///< pairs of points that a substep had to push apart, summed over substeps
+    uint64_t stops;              ///< pairs of cells stopped by CCD
+    uint64_t looks;              ///< pairs of cells checked again, as an iteration had moved one of them
+    uint64_t unresolved;         ///< pairs that could not be kept apart, as both are held by pins
+    uint64_t dropped;            ///< pairs, of cells or of points, for which there was no room
+    uint32_t intersecting;       ///< cells that have intersected or coincided with others since the start
     uint32_t intersecting_first; ///< the lowest of them
     double seconds;
 } CollisionCounters;

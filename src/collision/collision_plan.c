@@ -52,7 +52,7 @@ typedef struct Array {
     size_t count, size;
 } Array;
 
-enum { ARRAYS = 34 };
+enum { ARRAYS = 35 };
 
 /// The plan's arrays, for what makes and what frees them.
 static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
@@ -64,6 +64,7 @@ static void list_arrays(CollisionPlan *plan, Array list[ARRAYS]) {
         ARRAY(position, vertices),
         ARRAY(speed, vertices),
         ARRAY(alive, cells),
+        ARRAY(initial_first, cells + 2),
         ARRAY(intersecting, cells),
         ARRAY(boxes, cells),
         ARRAY(slabs, cells),
@@ -120,6 +121,7 @@ void collision_plan_free(Memory *memory, CollisionPlan *plan) {
     Array list[ARRAYS];
     list_arrays(plan, list);
     for (int k = 0; k < ARRAYS; k++) memory_free(memory, list[k].at, list[k].count, list[k].size);
+    FREE(memory, plan->initial_other, plan->initial_capacity);
     block_list_free(memory, &plan->found_pairs);
     block_list_free(memory, &plan->found);
     FREE(memory, plan, 1);
@@ -176,13 +178,33 @@ static bool collision_fits(const CollisionPlan *plan, const uint8_t *cell_flags)
     for (uint32_t v = 0; v < plan->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             if (!isfinite(plan->position[v][k]) || !isfinite(plan->speed[v][k])) return false;
-    uint8_t groups = 0; // numbered in the order of their lowest cells
     for (uint32_t c = 0; c < plan->cell_count; c++) {
-        if (plan->alive[c] > 1 || plan->intersecting[c] > groups + 1) return false;
-        if (plan->intersecting[c] > groups) groups = plan->intersecting[c];
+        if (plan->alive[c] > 1) return false;
+        for (uint32_t k = plan->initial_first[c]; k < plan->initial_first[c + 1]; k++)
+            if (plan->initial_other[k] < c || plan->initial_other[k] >= plan->cell_count) return false;
         if (plan->searched && (cell_flags[c] & SINGE_ALIVE) && !plan->alive[c]) return false;
     }
     return true;
+}
+
+/// The pairs that have intersected since the start: how many each cell has, then their other cells.
+static SingeResult stream_initial(CollisionPlan *plan, Stream *stream) {
+    uint32_t *first = plan->initial_first, count = first[plan->cell_count];
+    STREAM(stream, count);
+    stream_data(stream, first, ((size_t)plan->cell_count + 1) * sizeof *first);
+    if (stream->mode == STREAM_READ) {
+        bool fits =
+            !stream->failed && first[0] == 0 && first[plan->cell_count] == count && count <= plan->sizes.pair_max;
+        for (uint32_t c = 0; c < plan->cell_count && fits; c++) fits = first[c] <= first[c + 1];
+        if (!fits || count > (stream->size - stream->offset) / sizeof *first) {
+            memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+            stream->failed = true;
+            return SINGE_OK;
+        }
+        if (!initial_reserve(plan, count)) return SINGE_ERROR_MEMORY;
+    }
+    stream_data(stream, plan->initial_other, count * sizeof *plan->initial_other);
+    return SINGE_OK;
 }
 
 SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const uint8_t *cell_flags, Stream *stream) {
@@ -192,11 +214,10 @@ SingeResult collision_plan_stream(CollisionPlan *plan, const Shell *shell, const
     stream_data(stream, plan->position, plan->vertex_count * sizeof *plan->position);
     stream_data(stream, plan->speed, plan->vertex_count * sizeof *plan->speed);
     stream_data(stream, plan->alive, plan->cell_count);
-    stream_data(stream, plan->intersecting, plan->cell_count);
+    TRY(stream_initial(plan, stream));
     if (stream->mode == STREAM_READ && !collision_fits(plan, cell_flags)) stream->failed = true;
     if (stream->mode != STREAM_READ || stream->failed || !plan->searched) return SINGE_OK;
-    plan->counters.intersecting = 0;
-    for (uint32_t c = 0; c < plan->cell_count; c++) plan->counters.intersecting += plan->intersecting[c] != 0;
+    initial_mark(plan);
     plan->closed = false;
     uint32_t restless = plan->restless;
     TRY(broad_search(plan, shell, NULL));

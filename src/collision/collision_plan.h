@@ -129,9 +129,11 @@ struct CollisionPlan {
     float (*position)[4]; ///< [vertices] m
     float (*speed)[4];    ///< [vertices] m/s
     uint8_t *alive;       ///< [cells]
-    /// [cells] of those that crossed another, or lay in its place, at the start, and have not parted since: the number
-    /// of their group, from 1 on; of others 0
-    uint8_t *intersecting;
+    /// pairs of cells that intersected or coincided at the start and have not separated since (initial_intersections.c)
+    uint32_t *initial_first; ///< [cells + 2]
+    uint32_t *initial_other; ///< [initial_capacity]
+    uint32_t initial_capacity;
+    uint8_t *intersecting; ///< [cells] 1: in one of these pairs
 
     // what was found
     uint32_t steps;     ///< that the search is for
@@ -212,8 +214,15 @@ uint32_t collision_bridge(const CollisionPlan *plan, const Shell *shell, uint32_
 SingeResult broad_search_outside(CollisionPlan *plan, const Shell *shell, Pool *pool, uint32_t outside_count,
                                  const float (*x)[4]);
 
-/// Groups cells that cross: all of them at the first search, later those that have not parted since.
-void initial_find(CollisionPlan *plan, const Shell *shell, bool first);
+/// Lists the pairs of cells that intersect: all of them at the first search, later those that have not separated since.
+/// SINGE_ERROR_MEMORY: there are none.
+SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first);
+
+/// Makes room for so many such pairs; what was there is lost. False when out of memory.
+bool initial_reserve(CollisionPlan *plan, uint32_t count);
+
+/// Sets plan->intersecting, and counts the cells.
+void initial_mark(CollisionPlan *plan);
 
 /// Mean of four vectors; fourth: the largest deviation from it.
 static inline Float4 collision_mean(const Float4 vector[4]) {
@@ -305,9 +314,18 @@ static inline bool collision_owns_edge(const CollisionPlan *plan, uint32_t cell,
     return i >= 4 || (plan->owned[cell] >> (4 + i) & 1);
 }
 
-/// Two cells of one group: they crossed at the start, or others joined them by crossings, and they have not parted.
+/// Where a pair of cells, a before b, is among those that have intersected since the start; SHELL_NONE: it is not.
+static inline uint32_t initial_index(const CollisionPlan *plan, uint32_t a, uint32_t b) {
+    for (uint32_t k = plan->initial_first[a]; k < plan->initial_first[a + 1]; k++)
+        if (plan->initial_other[k] == b) return k;
+    return SHELL_NONE;
+}
+
+/// Whether two cells intersected at the start and have not separated since.
 static inline bool initial_is_crossing(const CollisionPlan *plan, const CollisionPair *pair) {
-    return plan->intersecting[pair->a] && plan->intersecting[pair->a] == plan->intersecting[pair->b];
+    if (!plan->intersecting[pair->a] || !plan->intersecting[pair->b]) return false;
+    return initial_index(plan, pair->a < pair->b ? pair->a : pair->b, pair->a < pair->b ? pair->b : pair->a) !=
+           SHELL_NONE;
 }
 
 #endif

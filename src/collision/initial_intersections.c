@@ -1,13 +1,17 @@
-// What crosses, or lies in the same position, from the start: it is left alone until it has parted. Sheets in one place
-// have no side to be kept on. Cells that cross one another, or are joined by others that do, are a group: pairs within
-// a group are left alone, pairs of two groups are not.
+// Cells that intersect or coincide at the start have no side on which to keep each other. Such a pair is left alone until
+// it has separated; then, and with all other cells, each of the two is in contact as usual. So a pair that never crossed
+// is guarded, whatever else its cells cross.
+//
+// The pairs (a, b), a <= b, are stored by a: those of cell a are initial_other[initial_first[a]] up to
+// initial_other[initial_first[a + 1]].
 #include "collision/narrow_phase.h"
 #include "collision/broad_grid.h"
 #include "shell/cross.h"
 
 #include <string.h>
 
-enum { GROUP_MAX = UINT8_MAX }; // groups beyond count as the last
+/// Marks an entry of initial_other, which is a cell's number: there are fewer than 2^31.
+#define KEPT (1u << 31)
 
 /// Whether two cells that are not connected are as near as rounding can tell.
 static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
@@ -25,52 +29,84 @@ static bool cells_coincide(const CollisionPlan *plan, const Shell *shell, const 
     return nearest < far.measured;
 }
 
-static uint32_t group_root(uint32_t *joined, uint32_t cell) {
-    while (joined[cell] != cell) cell = joined[cell] = joined[joined[cell]];
-    return cell;
+static bool pair_intersects(const CollisionPlan *plan, const Shell *shell, const CollisionPair *pair) {
+    const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
+    if (!quads_meet(p->low, p->high, q->low, q->high)) return false;
+    return cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) || cells_coincide(plan, shell, pair);
 }
 
-static void group_join(uint32_t *joined, uint32_t a, uint32_t b) {
-    if (joined[a] == SHELL_NONE) joined[a] = a;
-    if (joined[b] == SHELL_NONE) joined[b] = b;
-    a = group_root(joined, a), b = group_root(joined, b);
-    if (a < b) joined[b] = a;
-    else joined[a] = b;
+void initial_mark(CollisionPlan *plan) {
+    CollisionCounters *counters = &plan->counters;
+
+    // flag the cells of all pairs
+    memset(plan->intersecting, 0, plan->cell_count);
+    for (uint32_t a = 0; a < plan->cell_count; a++)
+        for (uint32_t k = plan->initial_first[a]; k < plan->initial_first[a + 1]; k++)
+            plan->intersecting[a] = plan->intersecting[plan->initial_other[k]] = 1;
+
+    // count them
+    counters->intersecting = 0;
+    for (uint32_t c = 0; c < plan->cell_count; c++)
+        if (plan->intersecting[c] && counters->intersecting++ == 0) counters->intersecting_first = c;
 }
 
-/// Numbers the groups in the order of their lowest cells, without gaps. After the first search they stay what they
-/// were, as what crosses moves from cell to cell; cells that have parted leave them.
-static void number_groups(CollisionPlan *plan, uint32_t *joined, bool first) {
-    uint8_t now[GROUP_MAX + 1] = {0}; // by the number that it had
-    uint32_t groups = 0;
-    plan->counters.intersecting = 0;
-    for (uint32_t c = 0; c < plan->cell_count; c++) {
-        uint8_t *group = &plan->intersecting[c];
-        uint32_t root = joined[c] == SHELL_NONE ? SHELL_NONE : group_root(joined, c);
-        bool opens = first ? root == c : !now[*group];
-        if (root == SHELL_NONE) {
-            *group = 0;
-            continue;
-        }
-        if (opens && groups < GROUP_MAX) groups++;
-        if (first) *group = opens ? (uint8_t)groups : plan->intersecting[root];
-        else *group = now[*group] = opens ? (uint8_t)groups : now[*group];
-        if (plan->counters.intersecting++ == 0) plan->counters.intersecting_first = c;
-    }
+bool initial_reserve(CollisionPlan *plan, uint32_t count) {
+    FREE(plan->memory, plan->initial_other, plan->initial_capacity);
+    plan->initial_capacity = 0;
+    if (count == 0) return true;
+    if (!NEW(plan->memory, plan->initial_other, count)) return false;
+    plan->initial_capacity = count;
+    return true;
 }
 
-void initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
-    uint32_t *joined = plan->outside; // free until CCD: of a cell that crosses one of its group, no higher than it
-    if (!first && plan->counters.intersecting == 0) return;
-    memset(joined, 0xff, plan->cell_count * sizeof *joined);
+/// The first search: lists all pairs that intersect. plan->active is free until CCD and marks them.
+static SingeResult list_all(CollisionPlan *plan, const Shell *shell) {
+    uint32_t *first = plan->initial_first, count = 0;
+
+    // find them, and count those of each cell
+    memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
     for (uint32_t k = 0; k < plan->pair_count; k++) {
         const CollisionPair *pair = &plan->pairs[k];
-        if (!first && !initial_is_crossing(plan, pair)) continue;
-        const CollisionBox *p = &plan->boxes[pair->a], *q = &plan->boxes[pair->b];
-        if (!quads_meet(p->low, p->high, q->low, q->high)) continue;
-        if (cross_cells(shell, (const float(*)[4])plan->position, pair->a, pair->b) ||
-            cells_coincide(plan, shell, pair))
-            group_join(joined, pair->a, pair->b);
+        plan->active[k] = pair_intersects(plan, shell, pair);
+        if (plan->active[k]) first[pair->a + 2]++, count++;
     }
-    number_groups(plan, joined, first);
+    if (!initial_reserve(plan, count)) {
+        memset(first, 0, ((size_t)plan->cell_count + 2) * sizeof *first);
+        return SINGE_ERROR_MEMORY;
+    }
+
+    // sort them by their first cell; first[a + 1] is where the next of cell a goes
+    for (uint32_t c = 0; c < plan->cell_count; c++) first[c + 2] += first[c + 1];
+    for (uint32_t k = 0; k < plan->pair_count; k++)
+        if (plan->active[k]) plan->initial_other[first[plan->pairs[k].a + 1]++] = plan->pairs[k].b;
+    return SINGE_OK;
+}
+
+/// A later search: keeps those of the pairs that still intersect, in their order. What the search has not listed has
+/// separated.
+static void keep_crossing(CollisionPlan *plan, const Shell *shell) {
+    uint32_t *first = plan->initial_first, kept = 0, begin = 0;
+
+    // mark what has not separated
+    for (uint32_t k = 0; k < plan->pair_count; k++) {
+        const CollisionPair *pair = &plan->pairs[k];
+        const uint32_t at = initial_index(plan, pair->a, pair->b);
+        if (at != SHELL_NONE && pair_intersects(plan, shell, pair)) plan->initial_other[at] |= KEPT;
+    }
+
+    // close the gaps
+    for (uint32_t a = 0; a < plan->cell_count; a++) {
+        const uint32_t end = first[a + 1];
+        for (uint32_t k = begin; k < end; k++)
+            if (plan->initial_other[k] & KEPT) plan->initial_other[kept++] = plan->initial_other[k] & ~KEPT;
+        begin = end, first[a + 1] = kept;
+    }
+}
+
+SingeResult initial_find(CollisionPlan *plan, const Shell *shell, bool first) {
+    if (!first && plan->counters.intersecting == 0) return SINGE_OK;
+    if (first) TRY(list_all(plan, shell));
+    else keep_crossing(plan, shell);
+    initial_mark(plan);
+    return SINGE_OK;
 }

@@ -219,6 +219,31 @@ static void cells_of_other_crossings_are_kept_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
+/// Two cells that approach, both crossed by a third: each is left alone by it, not by the other.
+static void cells_that_one_crosses_are_kept_apart(void **unused) {
+    (void)unused;
+    const float side = 0.02f, speed = 0.5f;
+    SingeSimDef def = singe_default_sim();
+    SingeSim *sim;
+    def.contact.enabled = true, def.air_density = 0, def.gravity[2] = 0;
+    assert_int_equal(singe_sim_create(&def, &sim, NULL), SINGE_OK);
+    for (int upper = 0; upper < 2; upper++) {
+        const float velocity[3] = {0, 0, upper ? -speed : speed};
+        add_flat(sim, &(Flat){1, {0, 0, upper ? 0.01f : 0}, {side, 0, 0}, {0, side, 0}}, 0.6f, 0, velocity);
+    }
+    add_flat(sim, &(Flat){1, {0.006f, 1e-3f, -5e-3f}, {0, side - 2e-3f, 0}, {0, 0, side}}, 0.6f, 0, NULL);
+    assert_int_equal(singe_sim_commit(sim), SINGE_OK);
+    steps(sim, 1);
+    assert_int_equal(singe_sim_stats(sim).intersecting_cells, 3);
+    steps(sim, 14); // unhindered they pass each other at the fifth
+    SingeView view = singe_sim_view(sim);
+    float lower = 0, upper = 0;
+    for (uint32_t v = 0; v < 4; v++) lower += view.position[v][2] / 4, upper += view.position[4 + v][2] / 4;
+    print_message("the upper cell is %.1f mm above the lower one\n", 1e3 * (double)(upper - lower));
+    assert_true(upper > lower);
+    singe_sim_destroy(sim);
+}
+
 static void sheets_at_one_place_are_left_alone(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
@@ -520,6 +545,7 @@ int main(void) {
         cmocka_unit_test(sheets_rub),
         cmocka_unit_test(crossing_input_is_left_alone),
         cmocka_unit_test(cells_of_other_crossings_are_kept_apart),
+        cmocka_unit_test(cells_that_one_crosses_are_kept_apart),
         cmocka_unit_test(sheets_at_one_place_are_left_alone),
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),

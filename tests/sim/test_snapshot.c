@@ -247,6 +247,13 @@ static void forged_snapshots(void **state) {
     free(good.data);
 }
 
+/// Makes the first cell intersect one that is not there.
+static void one_crossing(CollisionPlan *plan) {
+    assert_true(initial_reserve(plan, 1));
+    plan->initial_other[0] = plan->cell_count;
+    for (uint32_t c = 1; c <= plan->cell_count; c++) plan->initial_first[c] = 1;
+}
+
 #define POKE(name, ...) \
     static void poke_##name(SingeSim *sim) { __VA_ARGS__; }
 
@@ -329,7 +336,8 @@ POKE(attach_goal, sim->dynamics->attachments.goal[VERTEX][0] = -1)
 POKE(collision_place, sim->dynamics->collision->position[VERTEX][0] = NAN)
 POKE(collision_speed, sim->dynamics->collision->speed[VERTEX][0] = INFINITY)
 POKE(collision_alive, sim->dynamics->collision->alive[1] = 0)
-POKE(initial_crossing, sim->dynamics->collision->intersecting[1] = 9)
+POKE(initial_crossing, sim->dynamics->collision->initial_first[1] = 9)
+POKE(initial_cell, one_crossing(sim->dynamics->collision))
 POKE(gas_field, sim->gas->turn[sim->state.gas.turn].field[GAS_LIGHTNESS][99] = NAN)
 POKE(gas_air, sim->gas->turn[sim->state.gas.turn].air[VERTEX][1] = INFINITY)
 
@@ -351,7 +359,7 @@ static void impossible_numbers(void **state) {
         ROW(spring_gone), ROW(spring_spare), ROW(degree), ROW(piece_none), ROW(piece_far), ROW(piece_other),
         ROW(pieces_to_come), ROW(piece_count), ROW(line_force), ROW(split_count), ROW(split), ROW(attach_source),
         ROW(attach_gap), ROW(attach_length), ROW(attach_goal), ROW(collision_place), ROW(collision_speed),
-        ROW(collision_alive), ROW(initial_crossing), ROW(gas_field), ROW(gas_air)};
+        ROW(collision_alive), ROW(initial_crossing), ROW(initial_cell), ROW(gas_field), ROW(gas_air)};
     // clang-format on
 #undef ROW
     SingeSimDef def = scene_def();
