@@ -9,7 +9,7 @@ set -euo pipefail
 needed=(build-essential cmake ninja-build pkg-config libfyaml-dev libpng-dev 'libjpeg-dev|libjpeg62-turbo-dev'
         'libembree-dev|libembree4-dev|libembree3-dev' libopenexr-dev libassimp-dev libcmocka-dev python3)
 # without these a run leaves no video and tests are skipped
-useful=(ffmpeg python3-openvdb valgrind locales libsdl2-dev)
+useful=(ffmpeg python3-numpy python3-openvdb valgrind locales libsdl2-dev)
 only_list=false
 for argument in "$@"; do
     case $argument in

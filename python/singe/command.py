@@ -1,0 +1,211 @@
+"""The command `singe`, which is in the package: run, check, measure, render."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import pathlib
+import re
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import threading
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+
+from . import errors
+from ._library import logger
+from .cache import Cache, column, read_cache
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def command_path() -> pathlib.Path:
+    """The program: the one that the environment's SINGE_PROGRAM names, or else the one in the package.
+
+    Installers that drop the executable bit are put right. CommandMissingError where there is none.
+    """
+    named = os.environ.get("SINGE_PROGRAM")
+    path = pathlib.Path(named) if named else pathlib.Path(__file__).with_name("bin") / "singe"
+    if not path.is_file():
+        raise errors.CommandMissingError(f"there is no {path}" if named else "this package was built without the "
+                                         "command; SINGE_PROGRAM may name one that was built otherwise")
+    if not os.access(path, os.X_OK):
+        path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
+    return path
+
+
+def main() -> None:
+    """The console script: becomes the command."""
+    try:
+        path = str(command_path())
+    except errors.CommandMissingError as error:
+        sys.exit(f"singe: error: {error}")
+    os.execv(path, [path, *sys.argv[1:]])
+
+
+class _Process:
+    """The command, running. Its standard error is read as it comes: warnings go to the logger."""
+
+    def __init__(self, arguments: Iterable[str]):
+        # a session of its own, so that Ctrl-C comes to us and we say it once
+        self.child = subprocess.Popen([str(command_path()), *arguments], stdin=subprocess.DEVNULL,
+                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+        self.said: List[str] = []
+        self.printed = b""
+        self._readers = [threading.Thread(target=reader, daemon=True) for reader in (self._listen, self._collect)]
+        for reader in self._readers:
+            reader.start()
+
+    def _listen(self) -> None:
+        assert self.child.stderr
+        for line in self.child.stderr:
+            text = line.decode("utf-8", "replace").rstrip("\n")
+            if re.match(r"frame \d+/\d+ ", text):
+                continue
+            self.said.append(text)
+            if text.startswith("singe: warning: "):
+                logger.warning("%s", text[len("singe: warning: "):])
+            elif text.startswith("singe: ") and not text.startswith("singe: error: "):
+                logger.info("%s", text[len("singe: "):])
+
+    def _collect(self) -> None:
+        assert self.child.stdout
+        self.printed = self.child.stdout.read()
+
+    def _stop(self) -> None:
+        """As Ctrl-C does: the command finishes its step and writes what it resumes from. A second one kills it."""
+        if self.child.poll() is None:
+            self.child.send_signal(signal.SIGINT)
+        try:
+            self.child.wait()
+        except BaseException:
+            self.child.kill()
+            raise
+
+    def _close(self) -> None:
+        for reader, pipe in zip(self._readers, (self.child.stderr, self.child.stdout)):
+            reader.join(10)  # a grandchild may hold the pipe
+            if pipe and not reader.is_alive():
+                pipe.close()
+
+    def finish(self, every: Callable[[], None]) -> str:
+        """Waits, and calls `every` ten times a second; what was printed. Raises what the command refuses."""
+        try:
+            while True:
+                try:
+                    self.child.wait(0.1)
+                    break
+                except subprocess.TimeoutExpired:
+                    every()
+        except BaseException:
+            self._stop()
+            raise
+        finally:
+            self._close()
+        if self.child.returncode:
+            text = "\n".join(line[len("singe: error: "):] if line.startswith("singe: error: ") else line
+                             for line in self.said) or f"it ended with {self.child.returncode}"
+            kind = errors.SceneError if self.child.returncode == 2 else errors.CommandError
+            raise kind(text, self.child.returncode)
+        return self.printed.decode("utf-8", "replace")
+
+
+def _options(frames: Any, threads: Optional[int], settings: Optional[Mapping[str, Any]]) -> List[str]:
+    made = []
+    if frames is not None:
+        made += ["--frames", f"{frames[0]}-{frames[1]}" if isinstance(frames, tuple) else str(int(frames))]
+    if threads is not None:
+        made += ["--threads", str(int(threads))]
+    for name, value in (settings or {}).items():
+        made += ["--set", f"{name}={value if isinstance(value, str) else json.dumps(_plain(value))}"]
+    return made
+
+
+def _plain(value: Any) -> Any:
+    """numpy's numbers and arrays as Python's."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    return value
+
+
+def _positional(path: Path) -> str:
+    """A path that no option is mistaken for."""
+    text = os.fspath(path)
+    return os.path.join(".", text) if text.startswith("-") else text
+
+
+class _Progress:
+    """Calls back with (frames done, frames asked for) as the run's own files grow."""
+
+    def __init__(self, folder: pathlib.Path, call: Callable[[int, int], None]):
+        self._folder, self._call, self._told, self._frames = folder, call, -1, 0
+        self._before = self._mark()
+
+    def _mark(self) -> Optional[Tuple[int, int]]:
+        try:
+            status = (self._folder / "run.json").stat()
+            return status.st_ino, status.st_mtime_ns
+        except OSError:
+            return None
+
+    def __call__(self) -> None:
+        try:
+            if not self._frames:  # run.json of an earlier run stays until the first frame is whole
+                if self._mark() in (None, self._before):
+                    return
+                self._frames = json.loads((self._folder / "run.json").read_text(encoding="utf-8"))["frames"]
+            with open(self._folder / "stats.csv", "rb") as file:
+                done = file.read().count(b"\n") - 1
+        except (OSError, ValueError, KeyError):
+            return  # between two writes; the next call sees it
+        if done > self._told and done > 0:
+            self._told = done
+            self._call(min(done, self._frames), self._frames)
+
+
+def run(scene: Path, out: Optional[Path] = None, *, frames: Optional[int] = None, threads: Optional[int] = None,
+        settings: Optional[Mapping[str, Any]] = None, resume: bool = False, preview: bool = True, exr: bool = False,
+        progress: Optional[Callable[[int, int], None]] = None) -> Cache:
+    """Burns a scene into the folder `out` (out/ and the name of the scene's file) and returns its cache.
+
+    settings: values of the scene to override, such as {"pace": 8, "sheets.0.grid.cells": [40, 60]}. progress: called
+    with (frames done, frames). Ctrl-C, or an exception in `progress`, lets the command write a checkpoint, from which
+    resume=True goes on. SceneError has the file, line and column of what a scene has wrong.
+    """
+    folder = pathlib.Path(out) if out is not None else pathlib.Path("out") / pathlib.Path(scene).stem
+    arguments = ["run", _positional(scene), "-o", _positional(folder), *_options(frames, threads, settings)]
+    for wanted, flag in ((resume, "--resume"), (not preview, "--no-preview"), (exr, "--exr")):
+        arguments += [flag] if wanted else []
+    watch = _Progress(folder, progress or (lambda done, frames: None))
+    _Process(arguments).finish(watch)
+    watch()
+    return read_cache(folder)
+
+
+def check(scene: Path, *, frames: Optional[int] = None, threads: Optional[int] = None,
+          settings: Optional[Mapping[str, Any]] = None) -> str:
+    """What the scene is made of and how long it will take, as text. Writes nothing. SceneError: it would not run."""
+    return _Process(["check", _positional(scene), *_options(frames, threads, settings)]).finish(lambda: None)
+
+
+def measure(folder: Path, frames: Optional[Tuple[int, int]] = None) -> Dict[str, np.ndarray]:
+    """The shape of the sheets of a cache, frame by frame: arrays by name (docs/cli.md, measure). NaN: not there."""
+    with tempfile.TemporaryDirectory() as place:
+        table = os.path.join(place, "measure.csv")
+        _Process(["measure", _positional(folder), "--csv", table, *_options(frames, None, None)]).finish(lambda: None)
+        with open(table, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    return {name: column(rows[1:], i) for i, name in enumerate(rows[0])}
+
+
+def render(folder: Path, *, frames: Optional[Tuple[int, int]] = None, threads: Optional[int] = None,
+           settings: Optional[Mapping[str, Any]] = None) -> None:
+    """Draws the pictures of a cache again. Needs a command that was built with the preview."""
+    _Process(["render", _positional(folder), *_options(frames, threads, settings)]).finish(lambda: None)

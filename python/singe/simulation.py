@@ -1,0 +1,489 @@
+"""A simulation: sheets, what lights and holds them, and steps."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import pathlib
+import threading
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _abi, errors
+from ._fields import (Attributes, Vary, as_dict, assign, default, floats, indices, path_keys, pointer, set_texture)
+from ._library import library, log_callback, raise_for
+from .objects import Collider, Pin, Sheet, Source, make_mesh
+from .picture import draw_png, html_picture
+from .views import Gas, OwnedSurface, Surface, Views, shown
+
+Vector = Sequence[float]
+Material = Union[str, Mapping[str, Any]]
+EVENT = np.dtype(_abi.SingeEvent)
+_SLICE = 16  # steps between which advance() can be interrupted
+
+
+class _Handle:
+    """A simulation of the library, destroyed when neither a Sim nor an array holds it any more."""
+
+    def __init__(self, pointer_: ctypes.c_void_p):
+        self.pointer = pointer_
+        self._destroy = library.singe_sim_destroy
+
+    def __del__(self) -> None:
+        self._destroy(self.pointer)
+
+
+class Sim(Views):
+    """A simulation. Units are SI and kelvin.
+
+    Options are the fields of SingeSimDef (include/singe/types.h): `pace`, seconds of fire per second of motion (1);
+    `time_step`, s (1/480); `threads` (1); `gravity`, m/s2; `ambient_temperature`, K; `seed`; `surface_detail`, m;
+    `gas` and `contact`, True or a dict of their fields; `wind` and `solver`, dicts: `solver={"tearing": True}`.
+
+    Steps release the interpreter's lock: simulations in several threads run at once. One simulation does one call at a
+    time; a second thread waits. The library's messages go to the logger "singe".
+    """
+
+    def __init__(self, **options: Any):
+        self._setup(None)
+        if "threads" in options:
+            options["thread_count"] = options.pop("threads")
+        keep: List[Any] = []
+        made = default(_abi.SingeSimDef, "singe_init_sim")
+        assign(made, options, keep)
+        made.log.write = log_callback
+        out, error = ctypes.c_void_p(), _abi.SingeError()
+        if library.singe_sim_create(ctypes.byref(made), ctypes.byref(out), ctypes.byref(error)):
+            raise_for(error)
+        self._handle = _Handle(out)
+        self._time_step = made.time_step
+
+    def _setup(self, handle: Optional[_Handle]) -> None:
+        self._handle = handle
+        self._lock, self._owner = threading.Lock(), 0
+        self._time_step = 0.0  # not known after a load
+        self._events = np.zeros(0, EVENT)
+        self._collider_sizes: Dict[Tuple[int, int], int] = {}
+
+    @classmethod
+    def _of(cls, out: ctypes.c_void_p) -> "Sim":
+        made = cls.__new__(cls)
+        made._setup(_Handle(out))
+        return made
+
+    # calls
+
+    @contextlib.contextmanager
+    def _locked(self) -> Iterator[_Handle]:
+        """The handle, for one thread at a time."""
+        if self._owner == threading.get_ident():
+            raise errors.StateError("a simulation cannot be called from within one of its own calls")
+        with self._lock:
+            self._owner = threading.get_ident()
+            try:
+                if self._handle is None:
+                    raise errors.StateError("the simulation is closed")
+                yield self._handle
+            finally:
+                self._owner = 0
+
+    def _call(self, name: str, *arguments: Any) -> None:
+        with self._locked() as handle:
+            self._checked(handle, getattr(library, name)(handle.pointer, *arguments))
+
+    @staticmethod
+    def _checked(handle: _Handle, result: int) -> None:
+        if result:
+            raise_for(library.singe_sim_error(handle.pointer).contents)
+
+    def _read(self, struct: type, name: str) -> Any:
+        made = struct()
+        with self._locked() as handle:
+            getattr(library, name)(handle.pointer, ctypes.byref(made), ctypes.sizeof(made))
+        return made
+
+    def _view(self) -> Tuple[_abi.SingeView, object]:
+        made = _abi.SingeView()
+        with self._locked() as handle:
+            library.singe_sim_read_view(handle.pointer, ctypes.byref(made), ctypes.sizeof(made))
+            return made, handle
+
+    # what is in it
+
+    def sheet(self, points: Any, faces: Any, uv: Any = None, material: Material = "office-paper", *,
+              corner_uv: Any = None, name: Optional[str] = None, velocity: Vector = (0, 0, 0),
+              drop_pieces_below: float = 0, mesh: Optional[Mapping[str, Any]] = None, **attributes: Any) -> Sheet:
+        """Adds a sheet, before the commit.
+
+        points: [vertices, 3] m. faces: [n, corners], or a list of faces of any sizes, counter-clockwise seen from the
+        front; triangles become quads. uv: [vertices, 2], or corner_uv [corners, 2] where the mesh has seams.
+        material: a name (singe.materials()), or a dict of parameters over the one named `base`; each is a number, an
+        array [vertices] or a singe.Vary. attributes: arrays [vertices] that parameters may follow by name. velocity:
+        m/s at the start. drop_pieces_below: m2, loose pieces smaller than this vanish. mesh: options of the repair:
+        {"quads": "split", "weld": 1e-4}.
+        """
+        keep: List[Any] = []
+        points = floats(points, 3, "points")
+        named = Attributes(len(points), attributes)
+        made = default(_abi.SingeSheetDef, "singe_init_sheet")
+        assign(made, {"name": name, "velocity": velocity, "drop_pieces_below": drop_pieces_below}, keep)
+        made.material = _material(material, keep, named)
+        quads = make_mesh(points, faces, uv, corner_uv, named, mesh or {}, keep)
+        quads.fill(made)
+        id_ = _abi.SingeSheetId()
+        self._call("singe_sim_add_sheet", ctypes.byref(made), ctypes.byref(id_))
+        return Sheet(self, id_, quads.became(len(points)))
+
+    def commit(self) -> None:
+        """Builds what steps need. No sheet can be added after it."""
+        self._call("singe_sim_commit")
+
+    def source(self, kind: str = "spot", *, path: Any = None, texture: Any = None, strength: Any = None,
+               **fields: Any) -> Source:
+        """Adds something that heats: `spot`, `ball` (on a path) or `texture` (a flux over uv).
+
+        Fields are those of SingeSourceDef. path: rows (time, x, y, z) in s and m. texture: [rows, columns] 0 to 1.
+        strength: rows (time, factor).
+        """
+        keep: List[Any] = []
+        made = default(_abi.SingeSourceDef, "singe_init_source")
+        assign(made, {"kind": kind, **fields}, keep)
+        if path is not None:
+            made.path_count, made.path = path_keys(path, keep)
+        if texture is not None:
+            set_texture(made.texture, texture, "texture", keep)
+        if strength is not None:
+            rows = np.asarray(strength, np.float64).reshape(-1, 2)
+            made.strength = (_abi.SingeValueKey * len(rows))(*((t, v) for t, v in rows))
+            made.strength_count = len(rows)
+        id_ = _abi.SingeSourceId()
+        self._call("singe_sim_add_source", ctypes.byref(made), ctypes.byref(id_))
+        return Source(self, id_)
+
+    def spot(self, position: Vector, radius: float = 0.005, temperature: float = 1200, **fields: Any) -> Source:
+        """Adds a hot spot that stands still: position and radius in m, temperature in K; at any time.
+
+        Fields: `start` and `end` in s, `conductance` in W/(m2 K) (150), `falloff` in m (0.01).
+        """
+        return self.source("spot", position=position, radius=radius, temperature=temperature, **fields)
+
+    def pin(self, sheet: Sheet, points: Any = None, vertices: Any = None, radius: float = 0.005,
+            path: Any = None) -> Pin:
+        """Holds vertices of the caller's mesh, and what is within `radius` (m) of points [n, 3] (m, at rest).
+
+        path: rows (time, x, y, z) or (time, x, y, z, qx, qy, qz, qw), relative to the pose at the time it is added.
+        """
+        keep: List[Any] = []
+        made = default(_abi.SingePinDef, "singe_init_pin")
+        made.sheet, made.radius = sheet.id, float(radius)
+        if sheet._sim is not self:
+            raise errors.HandleError("the sheet is of another simulation")
+        if points is not None:
+            array = floats(points, 3, "points")
+            made.point_count, made.points = len(array), pointer(array, ctypes.c_float, keep)
+        if vertices is not None:
+            held = indices(_now(sheet, indices(vertices, "vertices")), "vertices")
+            made.vertex_count, made.vertices = len(held), pointer(held, ctypes.c_uint32, keep)
+        if path is not None:
+            made.path_count, made.path = path_keys(path, keep)
+        id_ = _abi.SingePinId()
+        self._call("singe_sim_add_pin", ctypes.byref(made), ctypes.byref(id_))
+        return Pin(self, id_)
+
+    def collider(self, kind: str = "plane", *, vertices: Any = None, triangles: Any = None, heights: Any = None,
+                 path: Any = None, **fields: Any) -> Collider:
+        """Adds a solid: `plane`, `sphere`, `box`, `capsule`, `heightfield`, `mesh` or `deforming`.
+
+        Fields are those of SingeColliderDef: `position` (m), `rotation` (x, y, z, w), `radius`, `half_size`, `height`,
+        `friction`, `temperature` (K), `conductance` (W/(m2 K)), ... vertices: [n, 3] m and triangles: [n, 3], closed.
+        heights: [rows, columns] m. path: as a pin's.
+        """
+        keep: List[Any] = []
+        made = default(_abi.SingeColliderDef, "singe_init_collider")
+        assign(made, {"kind": kind, **fields}, keep)
+        if vertices is not None:
+            array = floats(vertices, 3, "vertices")
+            made.vertex_count, made.vertices = len(array), pointer(array, ctypes.c_float, keep)
+        if triangles is not None:
+            corners = indices(triangles, "triangles")
+            made.triangle_count, made.triangles = len(corners) // 3, pointer(corners, ctypes.c_uint32, keep)
+        if heights is not None:
+            array = np.ascontiguousarray(heights, np.float32)
+            made.rows, made.columns = array.shape
+            made.heights = pointer(array, ctypes.c_float, keep)
+        if path is not None:
+            made.path_count, made.path = path_keys(path, keep)
+        id_ = _abi.SingeColliderId()
+        self._call("singe_sim_add_collider", ctypes.byref(made), ctypes.byref(id_))
+        self._collider_sizes[id_.index, id_.generation] = made.vertex_count
+        return Collider(self, id_)
+
+    def wind(self, velocity: Vector = (0, 0, 0), **fields: Any) -> None:
+        """Replaces the wind: m/s. Fields: `gust` (m/s), `gust_time` (s), `gust_size` (m), `seed`."""
+        made = default(_abi.SingeWindDef, "singe_init_wind")
+        assign(made, {"velocity": velocity, **fields}, [])
+        self._call("singe_sim_set_wind", ctypes.byref(made))
+
+    def set_gravity(self, gravity: Vector) -> None:
+        """m/s2, from the next step on."""
+        self._call("singe_sim_set_gravity", (ctypes.c_float * 3)(*gravity))
+
+    def set_pace(self, pace: float) -> None:
+        """Seconds of fire per second of motion, from the next step on."""
+        self._call("singe_sim_set_pace", float(pace))
+
+    def set_ambient_temperature(self, temperature: float) -> None:
+        """K. The simulation is built again; arrays that were read before go on showing what was then."""
+        self._rebuilt("singe_sim_set_ambient_temperature", float(temperature))
+
+    def _set_material(self, sheet: Sheet, material: Material, share: Any) -> None:
+        keep: List[Any] = []
+        made = _material(material, keep, None)
+        array = None
+        if share is not None:
+            values, wanted = floats(share, 0, "share"), sheet._range().vertex_count
+            if len(values) != wanted:
+                raise ValueError(f"share must have {wanted} values, one a vertex, after the commit; not {len(values)}")
+            array = pointer(values, ctypes.c_float, keep)
+        self._rebuilt("singe_sim_set_material", sheet.id, ctypes.byref(made), array)
+
+    def _rebuilt(self, name: str, *arguments: Any) -> None:
+        """A call that frees what views show: made on a clone, so that arrays of the old one stay."""
+        copy = self.clone() if self.committed else self
+        copy._call(name, *arguments)
+        if copy is not self:
+            with self._locked():
+                self._handle = copy._handle
+
+    # time
+
+    def step(self, n: int = 1) -> None:
+        """`n` steps of `time_step`. Ctrl-C ends it between two steps. A step that fails changes nothing."""
+        found = []
+        try:
+            for _ in range(n):
+                with self._locked() as handle:
+                    self._checked(handle, library.singe_sim_step(handle.pointer))
+                    found += self._new_events(handle)
+        finally:
+            self._events = np.concatenate(found) if found else np.zeros(0, EVENT)
+
+    def advance(self, seconds: float, steps_max: int = 0) -> int:
+        """As many steps as fit in `seconds` plus what earlier calls left; returns how many.
+
+        With `steps_max` whole steps beyond that many are dropped. Without it Ctrl-C ends it every 16 steps, and what is
+        left of `seconds` is lost.
+        """
+        whole = float(seconds)
+        part = whole if steps_max else _SLICE * (self._time_step or self._mean_step() or 1e-3)
+        done, found, count = 0, [], ctypes.c_uint32()
+        try:
+            while True:
+                now = min(part, whole)
+                with self._locked() as handle:
+                    result = library.singe_sim_advance(handle.pointer, now, steps_max, ctypes.byref(count))
+                    found += self._new_events(handle)
+                    self._checked(handle, result)
+                done, whole = done + count.value, whole - now
+                if not whole > 0:
+                    return done
+        finally:
+            self._events = np.concatenate(found) if found else np.zeros(0, EVENT)
+
+    def _mean_step(self) -> float:
+        view, _ = self._view()
+        return view.time / view.step if view.step else 0.0
+
+    @staticmethod
+    def _new_events(handle: _Handle) -> List[np.ndarray]:
+        count = ctypes.c_size_t()
+        first = library.singe_sim_events(handle.pointer, ctypes.byref(count))
+        return [shown(first, (count.value,), EVENT, handle).copy()] if count.value else []
+
+    @property
+    def events(self) -> np.ndarray:
+        """The events of the last step() or advance(), a structured array: `kind` (singe.IGNITED, HOLE_OPENED,
+        PIECE_FREED), `element` (the particle, or the piece's id), `time` (s), `position` ([3] m). A copy."""
+        return self._events.copy()
+
+    # what is read
+
+    @property
+    def time(self) -> float:
+        """s."""
+        return self._view()[0].time
+
+    @property
+    def steps(self) -> int:
+        """Steps done."""
+        return self._view()[0].step
+
+    @property
+    def remainder(self) -> float:
+        """s that the last advance() left."""
+        with self._locked() as handle:
+            return library.singe_sim_remainder(handle.pointer)
+
+    @property
+    def topology_version(self) -> int:
+        """Grows whenever something is removed or torn."""
+        return self._view()[0].topology_version
+
+    @property
+    def committed(self) -> bool:
+        """Whether it has been committed."""
+        return self._view()[0].particle_count > 0
+
+    @property
+    def alive(self) -> np.ndarray:
+        """[particles] bool: what is still part of a sheet. A copy."""
+        return (self.particle_flags & 1) != 0
+
+    def stats(self) -> Dict[str, Any]:
+        """Numbers about the present state, by the names of SingeStats (include/singe/sim.h)."""
+        return as_dict(self._read(_abi.SingeStats, "singe_sim_read_stats"))
+
+    def counts(self) -> Dict[str, Any]:
+        """Counts of its elements and its memory, by the names of SingeCounts."""
+        return as_dict(self._read(_abi.SingeCounts, "singe_sim_read_counts"))
+
+    def timers(self) -> Dict[str, Any]:
+        """Seconds and work by stage since the commit or load, by the names of SingeTimers."""
+        return as_dict(self._read(_abi.SingeTimers, "singe_sim_read_timers"))
+
+    def surface(self) -> Surface:
+        """The drawn surface of now: a mesh of its own, cut where the sheets have burnt."""
+        owner = OwnedSurface()
+        self._call("singe_sim_draw", ctypes.byref(owner.struct), ctypes.sizeof(owner.struct))
+        return Surface(owner, self.time)
+
+    def gas(self) -> Gas:
+        """The gas of now; without `gas` it has no cells."""
+        made = _abi.SingeGas()
+        with self._locked() as handle:
+            library.singe_sim_read_gas(handle.pointer, ctypes.byref(made), ctypes.sizeof(made))
+            return Gas(made, handle)
+
+    def _objects(self, kind: type, id_: type, name: str) -> List[Any]:
+        with self._locked() as handle:
+            function = getattr(library, name)
+            ids = (id_ * function(handle.pointer, None, 0))()
+            function(handle.pointer, ids, len(ids))
+        return [kind(self, one) for one in ids]
+
+    @property
+    def sheets(self) -> List[Sheet]:
+        return self._objects(Sheet, _abi.SingeSheetId, "singe_sim_sheets")
+
+    @property
+    def sources(self) -> List[Source]:
+        return self._objects(Source, _abi.SingeSourceId, "singe_sim_sources")
+
+    @property
+    def colliders(self) -> List[Collider]:
+        return self._objects(Collider, _abi.SingeColliderId, "singe_sim_colliders")
+
+    @property
+    def pins(self) -> List[Pin]:
+        return self._objects(Pin, _abi.SingePinId, "singe_sim_pins")
+
+    # copies
+
+    def save(self, path: Union[str, "os.PathLike[str]", None] = None) -> bytes:
+        """The whole simulation as bytes; with `path` also in a file, which is whole or as it was."""
+        data, size = ctypes.POINTER(ctypes.c_uint8)(), ctypes.c_size_t()
+        with self._locked() as handle:
+            self._checked(handle, library.singe_sim_save(handle.pointer, ctypes.byref(data), ctypes.byref(size)))
+            try:
+                saved = ctypes.string_at(data, size.value)
+            finally:
+                library.singe_sim_free_bytes(handle.pointer, data, size)
+        if path is not None:
+            part = pathlib.Path(f"{os.fspath(path)}.{os.getpid()}.tmp")
+            try:
+                part.write_bytes(saved)
+                os.replace(part, path)
+            finally:
+                part.unlink(missing_ok=True)
+        return saved
+
+    @classmethod
+    def load(cls, saved: Union[bytes, str, "os.PathLike[str]"], threads: int = 1) -> "Sim":
+        """A simulation of saved bytes or a file of them. It steps to the bit as the saved one would have."""
+        data = saved if isinstance(saved, (bytes, bytearray, memoryview)) else pathlib.Path(saved).read_bytes()
+        hooks = default(_abi.SingeSimDef, "singe_init_sim")
+        hooks.log.write = log_callback
+        assign(hooks, {"thread_count": threads}, [])
+        array = np.frombuffer(data, np.uint8)
+        out, error = ctypes.c_void_p(), _abi.SingeError()
+        if library.singe_sim_load(ctypes.byref(hooks), array.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8)), len(array),
+                                  ctypes.byref(out), ctypes.byref(error)):
+            raise_for(error)
+        return cls._of(out)
+
+    def clone(self) -> "Sim":
+        """A second simulation in the same state. Objects keep their handles: copy.sheets[0] is that of self."""
+        out = ctypes.c_void_p()
+        self._call("singe_sim_clone", ctypes.byref(out))
+        made = self._of(out)
+        made._time_step, made._collider_sizes = self._time_step, dict(self._collider_sizes)
+        return made
+
+    def __reduce__(self) -> Any:
+        return Sim.load, (self.save(),)
+
+    def close(self) -> None:
+        """Lets go of the simulation. Its memory goes with the last array that shows it."""
+        with self._lock:
+            self._handle = None
+
+    def __enter__(self) -> "Sim":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        if self._handle is None:
+            return "<singe.Sim: closed>"
+        view, _ = self._view()
+        return f"<singe.Sim: {view.cell_count} cells at {view.time:g} s>"
+
+    def _repr_html_(self) -> str:
+        if self._handle is None or not self.committed:
+            return f"<code>{self!r}</code>".replace("<singe", "&lt;singe")
+        return html_picture(draw_png(self.surface()), f"{self.time:.3f} s, "
+                            f"{100 * self.stats()['burnt_fraction']:.1f} % burnt")
+
+
+def _now(sheet: Sheet, vertices: np.ndarray) -> np.ndarray:
+    """What vertices of the caller's mesh are in the sheet; those of no face are left out."""
+    if sheet.became is None:
+        return vertices
+    if len(vertices) and vertices.max() >= len(sheet.became):
+        raise ValueError(f"there is no vertex {vertices.max()}: the mesh has {len(sheet.became)}")
+    now = sheet.became[vertices]
+    return now[now >= 0]
+
+
+def _material(material: Material, keep: List[Any], sheet: Optional[Attributes]) -> _abi.SingeMaterialDef:
+    values = {"base": material} if isinstance(material, str) else dict(material)
+    made = default(_abi.SingeMaterialDef, "singe_init_material")
+    error = _abi.SingeError()
+    base = str(values.pop("base", "office-paper")).replace("_", "-")
+    if library.singe_material_preset(base.encode(), ctypes.byref(made), ctypes.byref(error)):
+        raise_for(error)
+    assign(made, values, keep, sheet)
+    return made
+
+
+def materials() -> List[str]:
+    """The names of the materials that Singe brings along."""
+    names: List[str] = []
+    while True:
+        name = library.singe_material_preset_name(len(names))
+        if name is None:
+            return names
+        names.append(name.decode())

@@ -1,0 +1,429 @@
+"""The Python package: what a simulation takes, what it shows, and what it refuses."""
+
+import ctypes
+import gc
+import logging
+import os
+import pickle
+import re
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+from support import ROOT, Case, burning, singe
+
+import numpy as np
+from singe import _abi
+from singe._library import library
+
+GENERATE = ROOT / "python/generate.py"
+FIELDS = ("position velocity rest_position uv area mass fuel temperature temperature_peak burn_rate time_ignited "
+          "time_burnt piece particle_flags cell_flags cells source_vertex").split()
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+class Layout(Case):
+    def generate(self, *arguments):
+        return subprocess.run([sys.executable, str(GENERATE), "--cc", os.environ.get("CC", "cc"), *arguments],
+                              capture_output=True, text=True)
+
+    def test_is_of_the_headers(self):
+        made = self.dir / "abi.py"
+        done = self.generate("--output", str(made))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(made.read_text(), (ROOT / "python/singe/_abi.py").read_text(), "run python/generate.py")
+
+    def test_is_that_of_c(self):
+        done = self.generate("--check", str(self.dir / "abi"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(int(done.stdout.split()[0]), 450)
+
+    def test_a_wrong_layout_is_found(self):
+        text = (ROOT / "python/singe/_abi.py").read_text()
+        wrong = self.dir / "abi.py"
+        wrong.write_text(text.replace('("step", c_uint64), ("topology_version", c_uint64)',
+                                      '("topology_version", c_uint64), ("step", c_uint64)'))
+        self.assertNotEqual(wrong.read_text(), text)
+        done = self.generate("--check", str(self.dir / "abi"), "--output", str(wrong))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("SingeView", done.stderr)
+
+    def test_every_function_is_there(self):
+        self.assertGreater(len(_abi.FUNCTIONS), 70)
+        for name in _abi.FUNCTIONS:
+            self.assertTrue(getattr(library, name))
+
+
+class Burning(Case):
+    def test_as_in_c(self):
+        """examples/c/burn.c, line by line."""
+        program = os.environ.get("SINGE_BURN")
+        if not program:
+            self.skipTest("SINGE_BURN names no program")
+        sim = singe.Sim(pace=5)
+        y, x = np.mgrid[0:41, 0:41].astype(np.float32)
+        points = np.stack([np.float32(0.15) * (x / 40 - np.float32(0.5)), np.float32(0.15) * (y / 40 - np.float32(0.5)),
+                           0 * x], axis=2).reshape(-1, 3)
+        first = (np.arange(40)[:, None] * 41 + np.arange(40)).reshape(-1, 1)
+        sheet = sim.sheet(points, first + [0, 1, 42, 41])
+        sim.commit()
+        sim.spot((0.075, 0, 0), radius=0.01, falloff=0.01, temperature=1123, end=0.5)
+        sim.pin(sheet, vertices=[0, 40], radius=0.005)
+        lines = []
+        for frame in range(1, 49):
+            sim.step(20)
+            alive = sim.alive
+            lines.append(f"frame {frame:2d}: lowest at {1e3 * float(sim.position[alive, 2].min()):4.0f} mm, hottest "
+                         f"{sim.temperature[alive].max():4.0f} K, {100 * sim.stats()['burnt_fraction']:3.0f} % burnt")
+        self.assertEqual(lines, subprocess.run([program], capture_output=True, text=True).stdout.splitlines())
+
+    def test_advance_and_events(self):
+        sim, other = burning(), burning()
+        self.assertEqual(sim.advance(0.25), 120)
+        self.assertGreater(len(sim.events), 10)
+        self.assertTrue(np.all(np.diff(sim.events["time"]) >= 0))
+        self.assertEqual(set(sim.events["kind"]), {singe.IGNITED})
+        found = []
+        for _ in range(120):
+            other.step()
+            found += list(other.events["element"])
+        self.assertEqual(found, list(sim.events["element"]))
+        self.assertEqual(sim.advance(0.001), 0)
+        self.assertAlmostEqual(sim.remainder, 0.001, 6)
+        self.assertEqual(sim.advance(1, steps_max=3), 3)
+        self.assertEqual(len(singe.Sim.load(sim.save()).events), 0)
+
+    def test_copies_step_to_the_same_bytes(self):
+        sim = burning(gas=True, contact=True)
+        sim.step(40)
+        copies = [singe.Sim.load(sim.save(self.dir / "snapshot")), singe.Sim.load(self.dir / "snapshot", threads=2),
+                  sim.clone(), pickle.loads(pickle.dumps(sim))]
+        sim.step(20)
+        for copy in copies:
+            self.assertNotEqual(copy.save(), sim.save())
+            copy.step(20)
+            self.assertEqual(copy.save(), sim.save())
+        with self.assertRaises(singe.FormatError):
+            singe.Sim.load(sim.save()[:-100])
+        with self.assertRaises(singe.FormatError):
+            singe.Sim.load(b"")
+
+    def test_surface_and_gas(self):
+        sim = burning(gas={"cell_size": 0.008}, surface_detail=0.001)
+        sim.advance(0.4)
+        surface, gas = sim.surface(), sim.gas()
+        self.assertEqual(surface.position.shape, (len(surface.mass), 3))
+        self.assertEqual(surface.triangles.max() + 1, len(surface.position))
+        self.assertTrue(np.allclose(np.linalg.norm(surface.normal, axis=1), 1, atol=1e-4))
+        self.assertGreater(surface.temperature.max(), 700)
+        z, y, x = gas.flame.shape
+        self.assertEqual(gas.velocity.shape, (z, y, x, 3))
+        self.assertGreater(gas.flame.max(), 1e5)
+        heat = gas.flame.sum(axis=(0, 1))  # it burns at the lit edge, at x = 5 cm
+        self.assertAlmostEqual(gas.origin[0] + gas.cell * (heat.argmax() + 0.5), 0.045, delta=0.02)
+        kept = surface.position.copy()
+        sim.step(20)
+        self.assertTrue(np.array_equal(kept, surface.position))
+        self.assertEqual(burning().gas().flame.size, 0)
+        with self.assertRaises(ValueError):
+            surface.mass[0] = 1
+
+    def test_quick_picture(self):
+        sim = burning()
+        self.assertNotIn("<img", burning(commit=False)._repr_html_())
+        fresh = singe.draw(sim.surface(), 120, 90).astype(int)
+        sim.advance(0.6)
+        burnt = singe.draw(sim.surface(), 120, 90).astype(int)
+        self.assertEqual(burnt.shape, (90, 120, 3))
+        glowing = (burnt[..., 0] > 200) & (burnt[..., 2] < 150)
+        self.assertGreater(glowing.sum(), 100)
+        self.assertFalse(((fresh[..., 0] > 200) & (fresh[..., 2] < 150)).any())
+        self.assertIn("<img", sim._repr_html_())
+        self.assertTrue(singe.draw_png(sim.surface()).startswith(b"\x89PNG"))
+
+
+class Given(Case):
+    def test_triangles_and_what_vertices_become(self):
+        points, faces, uv = singe.grid((0.1, 0.1), (8, 8))
+        corners = faces[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+        loose = np.vstack([points, [[5, 5, 5]]])  # a vertex of no face, at the end
+        sim = singe.Sim()
+        sheet = sim.sheet(loose, corners, np.vstack([uv, [[0, 0]]]))
+        self.assertEqual(sheet.became[-1], -1)
+        sim.commit()
+        self.assertEqual(sim.cells.shape, (64, 4))
+        self.assertTrue(np.allclose(sim.position[sheet.vertices][sheet.became[:-1]], points))
+        pin = sim.pin(sheet, vertices=[3, 81])
+        self.assertEqual(list(pin.particles), [sheet.became[3]])
+        with self.assertRaises(ValueError):
+            sim.pin(sheet, vertices=[82])
+        with self.assertRaises(ValueError):
+            sim.pin(sheet, vertices=[-1])
+        mixed = singe.Sim()
+        mixed.sheet([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0]], [[0, 1, 2, 3], [1, 4, 2]])
+        mixed.commit()
+
+    def test_materials(self):
+        points, faces, uv = singe.grid((0.1, 0.1), (8, 8))
+        wet = (points[:, 0] > 0).astype(float)
+
+        def hottest(material, **attributes):
+            sim = singe.Sim(pace=5)
+            sim.sheet(points, faces, uv, material, **attributes)
+            sim.source("texture", texture=np.ones((2, 2)), flux=3e4)
+            sim.commit()
+            sim.step(10)
+            return sim.temperature[:81].copy()
+
+        even = hottest({"base": "cotton", "specific_heat": 1400})
+        self.assertLess(np.ptp(even), 5)
+        ways = [{"specific_heat": 1400 + 8600 * wet}, {"specific_heat": singe.Vary(1400, 10000, attribute=wet)},
+                {"specific_heat": singe.Vary(1400, 10000, attribute="wet")}]
+        for material in ways:
+            found = hottest({"base": "cotton", **material}, wet=wet)
+            self.assertGreater(found[wet == 0].min(), found[wet == 1].max() + 20)
+        for field in ({"texture": np.eye(2)}, {"noise": 0.02}, {"noise": (0.02, 2, 7)}):
+            found = hottest({"base": "cotton", "specific_heat": singe.Vary(1400, 9000, **field)})
+            self.assertGreater(np.ptp(found), 25)
+        self.assertEqual(set(singe.materials()), {"cotton", "newsprint", "office-paper", "one-reaction", "tissue"})
+
+    def test_objects_move_and_go(self):
+        sim = burning()
+        sim.collider("sphere", position=[0, 0, -0.1], radius=0.03)
+        box = sim.collider("box", half_size=(0.01, 0.01, 0.01), path=[(0, 0, 0, -1), (1, 0, 0, -2)])
+        box.move([(0, 0, 0, -3)])
+        box.remove()
+        with self.assertRaises(singe.HandleError):
+            box.remove()
+        self.assertEqual(len(sim.colliders), 1)
+        pin = sim.pins[0]
+        self.assertEqual(pin, sim.pins[0])
+        pin.set_positions(sim.position[pin.particles] + [0, 0, 0.01], sim.time + 0.1)
+        with self.assertRaises(ValueError):
+            pin.set_positions([[0, 0, 0]], 1)
+        sim.wind([1, 0, 0], gust=0.5)
+        sim.set_gravity([0, 0, 0])
+        sim.set_pace(2)
+        sim.sheets[0].set_velocity(np.full((289, 3), 0.1))
+        sim.advance(0.1)
+        self.assertAlmostEqual(float(sim.position[pin.particles, 2].min()), 0.01, 4)
+        self.assertEqual(len(sim.sources), 1)
+        corner = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], float) * 0.02 - [0, 0, 0.3]
+        cube = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6],
+                [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        moving = sim.collider("deforming", vertices=corner, triangles=cube)
+        moving.set_vertices(corner + 0.01, sim.time + 0.1)
+        with self.assertRaises(ValueError):
+            moving.set_vertices(corner[:4], 1)
+        sim.step(5)
+
+    def test_refusals(self):
+        grid = singe.grid()
+        cases = [
+            (TypeError, "did you mean 'pace'", lambda: singe.Sim(pac=1)),
+            (singe.ArgumentError, "pace must be between", lambda: singe.Sim(pace=-1)),
+            (TypeError, "must be a whole number", lambda: singe.Sim(threads=1.5)),
+            (ValueError, "must fit", lambda: singe.Sim(seed=-1)),
+            (ValueError, "one of strand", lambda: singe.Sim(solver={"method": "euler"})),
+            (TypeError, "there is no 'speed'", lambda: singe.Sim(wind={"speed": 1})),
+            (ValueError, "3 values", lambda: singe.Sim(gravity=[0, 1])),
+            (singe.StateError, "commit", lambda: singe.Sim().step()),
+            (singe.StateError, "no sheet", lambda: singe.Sim().commit()),
+            (singe.MeshError, "vertex 9 of 4", lambda: singe.Sim().sheet(np.eye(4, 3), [[0, 1, 2, 9]])),
+            (ValueError, "whole numbers", lambda: singe.Sim().sheet(np.eye(4, 3), [[0, 1, 2.5]])),
+            (ValueError, "between 0", lambda: singe.Sim().sheet(np.eye(4, 3), [[0, 1, -1]])),
+            (ValueError, "points must have the shape", lambda: singe.Sim().sheet(np.eye(4), [[0, 1, 2]])),
+            (ValueError, "uv must have 2601 rows", lambda: singe.Sim().sheet(*grid[:2], grid.uv[:5])),
+            (ValueError, "one a vertex", lambda: singe.Sim().sheet(*grid, wet=[1, 2])),
+            (singe.ArgumentError, "cotton", lambda: singe.Sim().sheet(*grid, material="wood")),
+            (TypeError, "did you mean 'mass_rate'", lambda: singe.Sim().sheet(*grid, material={"masrate": 1})),
+            (singe.ArgumentError, "grammage", lambda: singe.Sim().sheet(*grid, material={"grammage": -1})),
+            (singe.ArgumentError, "nowhere", lambda: singe.Sim().sheet(
+                *grid, material={"mass_rate": singe.Vary(0, 1, attribute="nowhere")})),
+            (ValueError, "one of attribute", lambda: singe.Sim().sheet(
+                *grid, material={"mass_rate": singe.Vary(0, 1)})),
+            (singe.ArgumentError, "seconds", lambda: burning(4).advance(-1)),
+            (singe.HandleError, "another simulation", lambda: burning(4).pin(burning(4).sheets[0], vertices=[0])),
+        ]
+        for kind, text, call in cases:
+            with self.subTest(text), self.assertRaisesRegex(kind, text):
+                call()
+
+    def test_a_step_that_fails_changes_nothing(self):
+        sim = burning()
+        sim.step(10)
+        before, steps = sim.position.copy(), sim.steps
+        pin = sim.pins[0]
+        pin.move([(sim.time, 0, 0, 0), (sim.time + 1e-3, 1e8, 0, 0)])  # drags its particles out of the world
+        with self.assertRaises(singe.DivergedError) as caught:
+            sim.step(5)
+        self.assertEqual(caught.exception.stage, "dynamics")
+        self.assertEqual(sim.steps, steps)
+        self.assertTrue(np.array_equal(sim.position, before))
+        pin.move([(0, 0, 0, 0)])
+        sim.step(5)
+
+    def test_messages_go_to_the_logger(self):
+        with self.assertLogs("singe", logging.INFO) as found:
+            burning()
+        self.assertTrue(any("cells" in line for line in found.output))
+
+
+class Shown(Case):
+    def test_nothing_is_copied_or_written(self):
+        sim = burning()
+        places = {name: address(getattr(sim, name)) for name in FIELDS}
+        before = sim.temperature
+        cold = before.copy()
+        sim.step(60)
+        for name in FIELDS:
+            array = getattr(sim, name)
+            self.assertEqual(address(array), places[name], name)
+            self.assertFalse(array.flags.writeable)
+            with self.assertRaises(ValueError):
+                array.flags.writeable = True
+        self.assertGreater(before.max(), cold.max() + 100)
+        self.assertEqual(sim.position.shape, (17 * 17 + 256, 3))
+        self.assertEqual(sim.springs(singe.RED).shape, (1024, 2))
+        self.assertEqual(sim.spring_length(singe.BLUE).shape, sim.spring_rest(singe.BLUE).shape)
+        self.assertIsNone(sim.line_force)
+        self.assertEqual(burning(commit=False).position.shape, (0, 3))
+
+    def test_arrays_outlive_their_simulation(self):
+        self.python("""
+import gc, numpy as np
+from support import burning, singe
+def kept():
+    with burning(gas=True) as sim:
+        sim.step(30)
+        arrays = [sim.position, sim.cells, sim.springs(0), sim.gas().flame, sim.surface().triangles, sim.temperature]
+    return arrays, [a.copy() for a in arrays]
+arrays, copies = kept()
+gc.collect()
+others = [burning(gas=True) for _ in range(5)]  # would take the place of what was freed
+[other.step(40) for other in others]
+assert all(np.array_equal(a, b) for a, b in zip(arrays, copies))
+sim = burning()
+sim.step(10)
+old, ids = sim.temperature, sim.sheets[0]
+sim.set_ambient_temperature(350)
+ids.set_material("cotton", np.ones(289))
+then = old.copy()
+sim.step(30)
+assert np.array_equal(old, then) and not np.array_equal(sim.temperature, then)
+""")
+
+    def test_memory_goes_with_the_last_array(self):
+        def resident():
+            with open("/proc/self/statm", encoding="ascii") as file:
+                return int(file.read().split()[1]) * 4096
+        if not os.path.exists("/proc/self/statm"):
+            self.skipTest("no /proc")
+        burning(100)
+        gc.collect()
+        before = resident()
+        for _ in range(10):  # 20 MB each
+            sim = burning(100)
+            array = sim.position
+            sim.surface()
+            sim.close()
+        del sim, array
+        gc.collect()
+        self.assertLess(resident() - before, 60e6)
+
+    def test_closed(self):
+        sim = burning()
+        sim.close()
+        sim.close()
+        for call in (lambda: sim.position, sim.step, sim.save, sim.stats, lambda: sim.sheets):
+            with self.assertRaisesRegex(singe.StateError, "closed"):
+                call()
+        self.assertIn("closed", repr(sim))
+
+
+class Threads(Case):
+    def overlap(self, step):
+        """Steps of one simulation that end while one long call of another, in another thread, is under way."""
+        long, short, stop, ends = burning(24), burning(4), threading.Event(), []
+        span = []
+
+        def many():
+            done = ctypes.c_uint32()
+            with long._locked() as handle:
+                span.append(time.monotonic())
+                step("singe_sim_advance", handle.pointer, ctypes.c_double(0.4), 0, ctypes.byref(done))
+                span.append(time.monotonic())
+            stop.set()
+
+        thread = threading.Thread(target=many)
+        thread.start()
+        while not stop.is_set():
+            short.step()
+            ends.append(time.monotonic())
+        thread.join()
+        margin = 0.05 * (span[1] - span[0])
+        return sum(span[0] + margin < end < span[1] - margin for end in ends)
+
+    def test_two_simulations_step_at_once(self):
+        self.assertGreater(self.overlap(lambda name, *a: getattr(library, name)(*a)), 5)
+        holding = ctypes.PyDLL(library._name)  # calls through it keep the interpreter's lock
+        self.assertEqual(self.overlap(lambda name, *a: getattr(holding, name)(*a)), 0)
+
+    def test_one_simulation_does_one_call_at_a_time(self):
+        sim, other = burning(8), burning(8)
+        threads = [threading.Thread(target=lambda: sim.step(50)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        while any(thread.is_alive() for thread in threads):
+            sim.stats(), sim.surface(), sim.save()
+        other.step(200)
+        self.assertEqual(sim.save(), other.save())
+
+    def test_ctrl_c_ends_a_long_step(self):
+        out = self.python("""
+import os, signal, threading, time
+from support import burning
+for call in (lambda sim: sim.step(10**9), lambda sim: sim.advance(1e6)):
+    sim = burning(8)
+    threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    try:
+        call(sim)
+    except KeyboardInterrupt:
+        steps = sim.steps
+        sim.step(2)
+        print(steps > 0, sim.steps == steps + 2)
+""")
+        self.assertEqual(out.split(), ["True"] * 4)
+
+    def test_no_call_from_within(self):
+        class Nosy(logging.Handler):
+            def emit(self, record):
+                if sim is None:  # the mesh's own
+                    return
+                try:
+                    sim.stats()
+                except singe.StateError as error:
+                    found.append(str(error))
+
+        sim = None
+        found, nosy, logger = [], Nosy(), logging.getLogger("singe")
+        level = logger.level
+        logger.addHandler(nosy)
+        logger.setLevel(logging.INFO)
+        try:
+            sim = singe.Sim()
+            sim.sheet(*singe.grid((0.1, 0.1), (4, 4)))
+            sim.commit()
+        finally:
+            logger.removeHandler(nosy)
+            logger.setLevel(level)
+        self.assertTrue(found and re.search("within", found[0]))
+
+
+if __name__ == "__main__":
+    unittest.main()
