@@ -7,7 +7,7 @@
 //           it turns least (the matrix J of wrinkles.c)
 //   N'      N on a line of 6 c along the fold, 8 samples a cell, less its mean under a Hann window of 3 c
 //
-// The measure is the root mean square of |N'| over the middle 3 c of all lines that are on the sheet, 3 c and more from
+// The measure is the root mean square of |N'| over the centre 3 c of all lines that are on the sheet, 3 c and more from
 // its border and from what has burnt.
 #include "analysis/folds.h"
 

@@ -7,7 +7,7 @@
 #include "singe/sim.h"
 
 typedef struct InitialTriangle {
-    float at[3]; ///< m, the triangle's middle at rest
+    float at[3]; ///< m, the triangle's centre at rest
     float reach; ///< m
     int32_t sheet;
 } InitialTriangle;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// How far the middle of a cell lies within the outline at least, in cells: less of it would be a sliver.
+/// How far the centre of a cell lies within the outline at least, in cells: less of it would be a sliver.
 static const double centroid_inside = 0.25;
 
 /// m, how far a point lies within the outline; below 0 it is outside.

@@ -12,7 +12,7 @@ typedef struct TurnedGrid {
     GridWear wear; ///< of the grid before it is cut
 } TurnedGrid;
 
-/// The cells whose middle lies within the outline. Their vertices beyond it move onto it: a side that cuts across cells
+/// The cells whose centre lies within the outline. Their vertices beyond it move onto it: a side that cuts across cells
 /// has teeth of half a cell at most. uv goes from (0,0) at (-x,-y) to (1,1), as the outline lies, whatever the angle.
 SINGE_NODISCARD SingeResult turned_grid(const TurnedGrid *cut, Mesh *mesh, SingeError *error);
 

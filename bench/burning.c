@@ -10,12 +10,12 @@
 
 static SingeResult add_colliders(SingeSim *sim) {
     const SingePoseKey ground = {0, {0, 0, 0.005f}, {0, 0, 0, 1}}; // the sheet's lower edge lies on it
-    const SingePoseKey middle = {0, {0.15f, 0.048f, 0.12f}, {0, 0, 0, 1}};
+    const SingePoseKey centre = {0, {0.15f, 0.048f, 0.12f}, {0, 0, 0, 1}};
     SingeColliderDef plane = singe_default_collider(), sphere = singe_default_collider();
     SingeColliderId id;
     plane.path_count = 1, plane.path = &ground;
     TRY(singe_sim_add_collider(sim, &plane, &id));
-    sphere.kind = SINGE_COLLIDER_SPHERE, sphere.radius = 0.05f, sphere.path_count = 1, sphere.path = &middle;
+    sphere.kind = SINGE_COLLIDER_SPHERE, sphere.radius = 0.05f, sphere.path_count = 1, sphere.path = &centre;
     return singe_sim_add_collider(sim, &sphere, &id);
 }
 

@@ -1,6 +1,6 @@
 // What a fold leaves: a strip is rolled over the arc between two halves that are held, to an angle, and let go.
 //
-// The strip is 80 mm by 12.5 mm, 1.5 mm thick in the model, D = 9e-6 N m. Its middle, 15 mm long, is rolled as about a
+// The strip is 80 mm by 12.5 mm, 1.5 mm thick in the model, D = 9e-6 N m. Its centre, 15 mm long, is rolled as about a
 // rod: to a radius of 4.8 mm at 180 degrees. The half that moves gets there in 0.6 s, stays for 0.3 s and is let go;
 // only friction acts then. The other half stays held. `left` is the angle between the halves 2 s later.
 //

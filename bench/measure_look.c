@@ -2,7 +2,7 @@
 // the substeps and half the cell size, against a base.
 //
 // Rest: a sheet hangs from two corner patches that come 10 cm nearer to each other, and comes to rest.
-//   sag    m, height of the patches over the middle of the upper edge
+//   sag    m, height of the patches over the centre of the upper edge
 //   drop   m, fall of the centre of mass
 //   shape  mm, root mean square distance of points of the sheet to the same points of the base
 // Wrinkles: a sheet that hangs from two corner patches shrinks uniformly to 0.8.
@@ -62,13 +62,13 @@ static SingeResult look_settle(const BenchSetup *setup, double seconds, SingeSim
 }
 
 static void read_rest(Look *look, const SingeView *view, int cells, double height_start) {
-    double left[3], right[3], middle[3];
+    double left[3], right[3], centre[3];
     for (int p = 0; p < POINTS * POINTS; p++)
         geometry_point(view, cells, (p % POINTS) / (POINTS - 1.0), (p / POINTS) / (POINTS - 1.0), look->shape[p]);
     geometry_point(view, cells, 0, 1, left);
     geometry_point(view, cells, 1, 1, right);
-    geometry_point(view, cells, 0.5, 1, middle);
-    look->sag = 0.5 * (left[2] + right[2]) - middle[2];
+    geometry_point(view, cells, 0.5, 1, centre);
+    look->sag = 0.5 * (left[2] + right[2]) - centre[2];
     look->drop = height_start - geometry_height(view);
 }
 

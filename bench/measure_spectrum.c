@@ -46,7 +46,7 @@ typedef struct Spectrum {
     double square, lines; ///< of the angle, summed over the lines
 } Spectrum;
 
-/// m, the middle of a band.
+/// m, the centre of a band.
 static double band_wave(int band) { return shortest * pow(2, (band + 0.5) / 2); }
 
 static int wave_band(double wave) { return (int)floor(2 * log2(wave / shortest) + 1e-9); }
@@ -185,7 +185,7 @@ static void add_line(Spectrum *spectrum, double *line) {
     }
 }
 
-/// The rest height up to which the middle of the sheet has lost mass.
+/// The rest height up to which the centre of the sheet has lost mass.
 static double burnt_height(const SingeView *view, const Strip *strip) {
     const int row = strip->across + 1;
     int j = 0;

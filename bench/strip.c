@@ -52,7 +52,7 @@ static bool strip_mesh(Strip *strip, const StripSetup *setup) {
     return true;
 }
 
-/// A strip has neither uv nor the mesh's attributes, and one speed: the middle of what varies.
+/// A strip has neither uv nor the mesh's attributes, and one speed: the mean of what varies.
 static SingeMaterialDef strip_material(const SingeMaterialDef *from) {
     SingeMaterialDef material = *from;
     SingeParam *params[] = {&material.grammage,
@@ -105,18 +105,18 @@ static SingeResult strip_fill(Strip *strip, const StripSetup *setup) {
     SingeAttribute lit = {"lit", strip->lit};
     SingePinDef pin = singe_default_pin();
     SingePinId pin_id;
-    const float middle[3] = {setup->length / 2, 0, 0};
+    const float centre[3] = {setup->length / 2, 0, 0};
     sheet.vertex_count = (strip->along + 1) * (strip->across + 1), sheet.positions = strip->positions;
     sheet.cell_count = strip->along * strip->across, sheet.cells = strip->cells;
     sheet.attribute_count = 1, sheet.attributes = &lit;
     sheet.material = strip_material(&setup->material);
     SingeResult result = singe_sim_add_sheet(strip->sim, &sheet, &pin.sheet);
     if (!result) result = singe_sim_commit(strip->sim);
-    pin.point_count = 1, pin.points = middle, pin.radius = 1; // all of it
+    pin.point_count = 1, pin.points = centre, pin.radius = 1; // all of it
     return result ? result : singe_sim_add_pin(strip->sim, &pin, &pin_id);
 }
 
-/// How far along the middle the fire has come.
+/// How far along the centre the fire has come.
 static double strip_front(const Strip *strip, const SingeView *view) {
     const float *ignited = view->time_ignited + (strip->across / 2) * (strip->along + 1);
     uint32_t i = strip->along;

@@ -5,7 +5,7 @@
 #include "singe/singe.h"
 
 typedef struct StripSetup {
-    SingeMaterialDef material; ///< what varies over the sheet counts by its middle
+    SingeMaterialDef material; ///< what varies over the sheet counts by its mean
     float cell;                ///< m
     float time_step;           ///< s
     float length, width;       ///< m

@@ -1,6 +1,6 @@
 // How much the folds of what burns follow the mesh: the same burn on a grid and on the grid turned by 45 degrees.
 //
-// A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its middle; its layers shrink by equation 6
+// A sheet of 14 cm, a square or a disc, lies on the ground and is lit in its centre; its layers shrink by equation 6
 // near its full strength, differently, and char stays in spots. r is the bend of creases along the sheet's axes over
 // that along its diagonals (analysis/wrinkles.h), summed over MOMENTS of the second half of the burn. With O what the
 // outline and the fibres do to it, and M what the mesh does, r_0 = O M on the grid and r_45 = O/M on the turned one:
@@ -83,12 +83,12 @@ static SingeResult add_sheet(SingeSim *sim, const Burn *burn, double angle, Sing
 }
 
 static SingeResult add_world(SingeSim *sim, SingeError *error) {
-    const SingePoseKey middle = {0, {0, 0, 0}, {0, 0, 0, 1}};
+    const SingePoseKey centre = {0, {0, 0, 0}, {0, 0, 0, 1}};
     SingeColliderDef ground = singe_default_collider();
     SingeSourceDef spot = singe_default_source();
     SingeColliderId collider;
     SingeSourceId source;
-    ground.path_count = spot.path_count = 1, ground.path = spot.path = &middle;
+    ground.path_count = spot.path_count = 1, ground.path = spot.path = &centre;
     spot.radius = 0.01f, spot.falloff = 0.015f, spot.temperature = 1123.15f, spot.end = 1.5f;
     SingeResult result = singe_sim_add_collider(sim, &ground, &collider);
     if (!result) result = singe_sim_add_source(sim, &spot, &source);

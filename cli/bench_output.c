@@ -100,9 +100,9 @@ static void *output_write(void *argument) {
 static double seconds_of(struct timeval t) { return (double)t.tv_sec + 1e-6 * (double)t.tv_usec; }
 
 /// Seconds a frame of the program, of the system and of the clock: those of the fastest of some times.
-static void output_measure(OutputBench *b, double least[3]) {
+static void output_measure(OutputBench *b, double min[3]) {
     const int frames = b->format == OUTPUT_textures ? 1 : FRAMES; // which take a hundred times as long
-    for (int k = 0; k < 3; k++) least[k] = INFINITY;
+    for (int k = 0; k < 3; k++) min[k] = INFINITY;
     for (int times = 0; times < REPEATS && !b->result; times++) {
         struct rusage before, after;
         const double clock = machine_clock();
@@ -115,15 +115,15 @@ static void output_measure(OutputBench *b, double least[3]) {
         getrusage(RUSAGE_SELF, &after);
         const double user = (seconds_of(after.ru_utime) - seconds_of(before.ru_utime)) / frames;
         const double system = (seconds_of(after.ru_stime) - seconds_of(before.ru_stime)) / frames;
-        if (user + system >= least[0] + least[1]) continue;
-        least[0] = user, least[1] = system, least[2] = (machine_clock() - clock) / frames;
+        if (user + system >= min[0] + min[1]) continue;
+        min[0] = user, min[1] = system, min[2] = (machine_clock() - clock) / frames;
     }
 }
 
 static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, SingeError *error) {
-    double least[3];
+    double min[3];
     Bytes bytes = {0};
-    output_measure(b, least);
+    output_measure(b, min);
     if (!b->result) b->result = file_read(b->path, (SingeAllocator){0}, &bytes, &b->error);
     const double size = (double)bytes.size;
     bytes_free(&bytes);
@@ -133,10 +133,10 @@ static SingeResult output_row(OutputBench *b, BenchTable *table, double *ply, Si
     if (b->format == OUTPUT_ply) *ply = size;
     BenchValue row[COLUMNS] = {[FORMAT] = bench_text(output_formats[b->format].name),
                                [VERTICES] = bench_number(COUNT),
-                               [USER] = bench_number(1e3 * least[0]),
-                               [SYSTEM] = bench_number(1e3 * least[1]),
-                               [BOTH] = bench_number(1e3 * (least[0] + least[1])),
-                               [WALL] = bench_number(1e3 * least[2]),
+                               [USER] = bench_number(1e3 * min[0]),
+                               [SYSTEM] = bench_number(1e3 * min[1]),
+                               [BOTH] = bench_number(1e3 * (min[0] + min[1])),
+                               [WALL] = bench_number(1e3 * min[2]),
                                [BYTES] = bench_number(size),
                                [OF_PLY] = bench_number(100 * size / *ply)};
     return table_add(table, row) ? SINGE_OK : SINGE_ERROR_MEMORY;

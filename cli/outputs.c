@@ -133,7 +133,7 @@ SingeResult outputs_convert(const Outputs *outputs, int number, OutputSet format
 
 // ---- roots
 
-/// What is drawn at a slot of the scene, and its way through the frames. False where nothing ever is.
+/// What is drawn at a slot of the scene, and its trajectory through the frames. False where nothing ever is.
 static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, OutputPose *poses, OutputShape *shape) {
     const Job *job = outputs->job;
     bool ever = false;
@@ -158,7 +158,7 @@ static bool follow_shape(const Outputs *outputs, uint32_t slot, int frames, Outp
     return ever;
 }
 
-/// The scene with what it has besides sheets, and its way through the frames.
+/// The scene with what it has besides sheets, and its trajectory through the frames.
 typedef struct WholeScene {
     OutputScene scene;
     OutputPose *poses;

@@ -56,7 +56,7 @@ typedef struct LabGrid {
     const float *mass;                                        ///< [vertices] the attribute "mass", or NULL
     double (*field)(const void *context, double x, double y); ///< the attribute "field", or NULL
     const void *context;
-    bool (*inside)(double x, double y); ///< whether a cell with this middle is there, or NULL: all
+    bool (*inside)(double x, double y); ///< whether a cell with this centre is there, or NULL: all
 } LabGrid;
 
 /// From the origin to sides along x and y; vertex i + j (cells[0] + 1). Inert but for what its material is reported.

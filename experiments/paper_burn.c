@@ -288,7 +288,7 @@ SingeResult paper_mass_loss(Lab *lab, SingeError *error) {
 
 enum { RIVAL_LOOKS = 145 };
 
-/// K that the front is hotter than the back, and 1/m of the strip along its middle line, positive towards the back.
+/// K that the front is hotter than the back, and 1/m of the strip along its centre line, positive towards the back.
 static void rival_look(const SingeView *view, double *difference, double *curvature) {
     enum { ALONG = 30 };
     double front = 0, back = 0, angle = 0, length = 0;
@@ -339,7 +339,7 @@ static void rival_draw(FILE *file, const double (*profile)[RIVAL_POINTS][2], con
     fprintf(file, "</svg>\n");
 }
 
-/// The middle line about its own middle, for rival_draw.
+/// The centre line about its own centre, for rival_draw.
 static void rival_profile(const SingeView *view, double profile[RIVAL_POINTS][2]) {
     double mean[2] = {0};
     for (int i = 0; i < RIVAL_POINTS; i++)

@@ -163,7 +163,7 @@ SingeResult paper_fig7cd(Lab *lab, SingeError *error) {
 
 enum { SHELLS = 4 };
 
-/// m, how far the middle of the sheet is above the mean of its border; degrees, by how much the sheet has bent from
+/// m, how far the centre of the sheet is above the mean of its border; degrees, by how much the sheet has bent from
 /// there: the mean slope of the border's cells, across the border.
 static void shell_measure(const SingeView *view, int n, double *sag, double *bend) {
     const uint32_t row = (uint32_t)n + 1, last = (uint32_t)n;
@@ -246,7 +246,7 @@ static void fig10_report(Report *report, double (*sag)[SHELLS], double (*bend)[S
                    bend[1][i]);
     report_text(
         report,
-        "Sag: height of the middle over the mean of the border. Bend: the mean slope of the border's cells, "
+        "Sag: height of the centre over the mean of the border. Bend: the mean slope of the border's cells, "
         "across the border. By strands both are means over sheets of 24, 28, 32 and 36 cells a side, which fold "
         "in different ways; by the paper's solver the sheet has 16.");
     const double near = more[0] / bend[0][SHELL_B], weak = more[1] / bend[0][SHELL_C];

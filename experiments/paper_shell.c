@@ -23,7 +23,7 @@ static void sight_position(const Sight *sight, const float *p, double out[2]) {
     out[1] = sight->height / 2.0 - sight->scale * (y * sin(sight->tilt) + (double)p[2] * cos(sight->tilt) - sight->y);
 }
 
-/// Looks at the middle of what there is, large enough to fill the drawing.
+/// Looks at the centroid of what there is, large enough to fill the drawing.
 static Sight sight_fit(const SingeView *view, double turn, double tilt, int width, int height) {
     Sight sight = {.turn = turn, .tilt = tilt, .scale = 1, .width = width, .height = height};
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, p[2];
@@ -328,7 +328,7 @@ static double march_share(const double *level, int *inside) {
     return NAN;
 }
 
-static void march_draw(FILE *file, const SingeSurface *surface, double cell, const double (*middles)[3], int count) {
+static void march_draw(FILE *file, const SingeSurface *surface, double cell, const double (*centroids)[3], int count) {
     static const char *const fills[] = {"#fff", "#fdd0a2", "#fdae6b", "#c9dcf0"};
     const double scale = 56 / cell;
     fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"360\" height=\"360\">\n");
@@ -336,7 +336,7 @@ static void march_draw(FILE *file, const SingeSurface *surface, double cell, con
         fprintf(file,
                 "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"7\" fill=\"%s\" "
                 "stroke=\"#bbb\"/>\n",
-                12 + scale * middles[i][0], 348 - scale * middles[i][1], fills[(int)middles[i][2]]);
+                12 + scale * centroids[i][0], 348 - scale * centroids[i][1], fills[(int)centroids[i][2]]);
     for (uint32_t t = 0; t < surface->triangle_count; t++) {
         fprintf(file, "<polygon fill=\"#9ab\" fill-opacity=\".35\" stroke=\"#234\" stroke-width=\".8\" points=\"");
         for (int k = 0; k < 3; k++) {
@@ -352,7 +352,7 @@ typedef struct March {
     int cases[4];    ///< triangles by how many of their corners are left
     double expected; ///< m2 that eq 7 leaves
     int count;
-    double middles[4 * MARCH_CELLS * MARCH_CELLS][3]; ///< of the triangles: x, y, case
+    double centroids[4 * MARCH_CELLS * MARCH_CELLS][3]; ///< of the triangles: x, y, case
 } March;
 
 /// A cell's four triangles around its centre.
@@ -366,12 +366,12 @@ static void march_cell(March *march, const SingeView *view, const float *mass, u
         int inside;
         march->expected += march_share(level, &inside) * side * side / 4;
         march->cases[inside]++;
-        double *middle = march->middles[march->count++];
+        double *centroid = march->centroids[march->count++];
         for (int d = 0; d < 2; d++)
-            middle[d] = ((double)view->rest_position[a][d] + (double)view->rest_position[b][d] +
-                         (double)view->rest_position[m][d]) /
-                        3;
-        middle[2] = inside;
+            centroid[d] = ((double)view->rest_position[a][d] + (double)view->rest_position[b][d] +
+                           (double)view->rest_position[m][d]) /
+                          3;
+        centroid[2] = inside;
     }
 }
 
@@ -392,7 +392,7 @@ static double drawn_area(const SingeSurface *surface) {
 /// What the bars of Fig 6 must not pass: cells drawn whole where any of their triangles is.
 static double march_whole(const March *march, double side) {
     double area = 0;
-    for (int i = 0; i < march->count; i++) area += march->middles[i][2] > 0 ? side * side / 4 : 0;
+    for (int i = 0; i < march->count; i++) area += march->centroids[i][2] > 0 ? side * side / 4 : 0;
     return area;
 }
 
@@ -406,7 +406,7 @@ static int march_fewest(const March *march) {
 /// `fresh`: of the same sheet before it burns.
 static void march_report(Lab *lab, const SingeSurface *surface, const March *march, const March *fresh, double side) {
     static const char *const shapes[] = {"nothing", "a triangle", "a quadrilateral", "the whole"};
-    march_draw(report_drawing(lab->report), surface, side, march->middles, march->count);
+    march_draw(report_drawing(lab->report), surface, side, march->centroids, march->count);
     report_text(lab->report,
                 "%d x %d cells whose masses are given, each cell four triangles around its virtual centre; the dots "
                 "tell the case of each triangle.",

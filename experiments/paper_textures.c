@@ -46,7 +46,7 @@ SingeResult paper_heat(Lab *lab, SingeError *error) {
 
 // ---- diffusivity by a texture
 
-/// How far fire has come to the left of the middle, over how far to the right.
+/// How far fire has come to the left of the centre, over how far to the right.
 static double lopsided(const SingeView *view) {
     double left = 0, right = 0;
     for (uint32_t v = 0; v < view->vertex_count; v++) {

@@ -94,8 +94,8 @@ SingeResult validate_heat(Lab *lab, SingeError *error) {
 // ---- a hot spot: its variance grows by 2 alpha t
 
 static double spot(const void *context, double x, double y) {
-    const double *middle = context;
-    return 2 * exp(-(pow(x - middle[0], 2) + pow(y - middle[1], 2)) / (2 * middle[2] * middle[2]));
+    const double *centre = context;
+    return 2 * exp(-(pow(x - centre[0], 2) + pow(y - centre[1], 2)) / (2 * centre[2] * centre[2]));
 }
 
 /// Variances along x and y of what both layers are warmer, weighted by area.
@@ -120,10 +120,10 @@ typedef struct MeshCase {
 
 static SingeResult spread_measure(Lab *lab, const MeshCase *mesh, SingeHeatOperator operator, double ratio[2],
                                   SingeError *error) {
-    const double middle[3] = {(double)mesh->sides[0] / 2, (double)mesh->sides[1] / 2, 0.008}, seconds = 0.4;
+    const double centre[3] = {(double)mesh->sides[0] / 2, (double)mesh->sides[1] / 2, 0.008}, seconds = 0.4;
     LabGrid grid = heat_grid(mesh->cells[0], mesh->cells[1], 1, operator);
     grid.sides[0] = mesh->sides[0], grid.sides[1] = mesh->sides[1], grid.jitter = mesh->jitter;
-    grid.field = spot, grid.context = middle, grid.time_step = 0.004f;
+    grid.field = spot, grid.context = centre, grid.time_step = 0.004f;
     grid.material.thickness = singe_param(1e-4f);
     SingeSim *sim;
     SingeResult result = lab_build(lab, &grid, &sim, error);

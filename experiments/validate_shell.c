@@ -152,7 +152,7 @@ static double diagonal_poisson(const Stiffness *c) {
 }
 
 /// Pulls a strip by its ends, or shears it. Only its layer of centres has stiffness, as only that gives when the sheet
-/// bends. Reads strain and line force in the middle.
+/// bends. Reads strain and line force in the centre.
 static SingeResult pull_test(Lab *lab, bool shear, Stiffness *out, SingeError *error) {
     enum { ALONG = 30, ACROSS = 10, REACH = 2 };
     const double cell = 2e-3, length = ALONG * cell, width = ACROSS * cell;

@@ -54,7 +54,7 @@ static void brown(float s, float colour[3]) {
 void burn_colour(const OutputSheet *sheet, const SingeSurface *s, uint32_t v, float colour[3]) {
     static const float soot[3] = {0.018f, 0.016f, 0.015f}, grey[3] = {0.42f, 0.41f, 0.40f};
     fresh_colour(sheet, s->uv[v], colour);
-    if (s->burn[v] < BURN_COLOUR_LEAST && s->temperature_peak[v] <= BURN_COLOUR_PEAK) return;
+    if (s->burn[v] < BURN_COLOUR_MIN && s->temperature_peak[v] <= BURN_COLOUR_PEAK) return;
     brown(scorch(s->temperature_peak[v], s->burn[v]), colour);
     const float black = between(0.12f, 0.46f, s->burn[v]);
     const float residue = s->char_fraction[v] + s->ash_fraction[v];

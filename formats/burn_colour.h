@@ -6,7 +6,7 @@
 
 /// Below these a vertex looks as it did at the start: K, highest so far; burn progress.
 #define BURN_COLOUR_PEAK 348.0f
-#define BURN_COLOUR_LEAST 1e-3f
+#define BURN_COLOUR_MIN 1e-3f
 
 /// Linear colour of the surface, without light of its own.
 void burn_colour(const OutputSheet *sheet, const SingeSurface *surface, uint32_t vertex, float colour[3]);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { HASH_BITS = 13, MATCH_LEAST = 4, TAIL = 5, MATCH_MARGIN = 12, DISTANCE_MOST = 65535 };
+enum { HASH_BITS = 13, MATCH_MIN = 4, TAIL = 5, MATCH_MARGIN = 12, DISTANCE_MAX = 65535 };
 
 static uint32_t read_word(const uint8_t *p) {
     uint32_t word;
@@ -31,7 +31,7 @@ static uint8_t *put_sequence(uint8_t *out, const uint8_t *literals, size_t count
     out += count;
     if (!match) return out;
     *out++ = (uint8_t)distance, *out++ = (uint8_t)(distance >> 8);
-    size_t rest = match - MATCH_LEAST;
+    size_t rest = match - MATCH_MIN;
     *token |= (uint8_t)(rest < 15 ? rest : 15);
     return rest >= 15 ? put_length(out, rest - 15) : out;
 }
@@ -50,7 +50,7 @@ size_t lz4_pack(const uint8_t *in, size_t size, uint8_t *out) {
         const uint32_t hash = hash_word(read_word(in + at)), before = last[hash];
         last[hash] = (uint32_t)at + 1;
         const size_t distance = at + 1 - before;
-        if (!before || distance > DISTANCE_MOST || read_word(in + before - 1) != read_word(in + at)) {
+        if (!before || distance > DISTANCE_MAX || read_word(in + before - 1) != read_word(in + at)) {
             at += 1 + (misses++ >> 6);
             continue;
         }

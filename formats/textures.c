@@ -58,14 +58,14 @@ static void draw_chart(void *context, size_t pixel, const float weight[3]) {
 /// The uncut sheet: each cell as four triangles about the mean of its corners.
 static void draw_mesh(Canvas *c, const OutputMesh *mesh) {
     for (uint32_t cell = 0; cell < mesh->cell_count; cell++) {
-        float uv[4][2], middle[2] = {0, 0};
+        float uv[4][2], centroid[2] = {0, 0};
         for (size_t i = 0; i < 4; i++) {
             output_mesh_uv(mesh, cell, (int)i, uv[i]);
-            for (int k = 0; k < 2; k++) middle[k] += uv[i][k] / 4;
+            for (int k = 0; k < 2; k++) centroid[k] += uv[i][k] / 4;
         }
         for (int i = 0; i < 4; i++) {
             const int j = (i + 1) & 3;
-            const float triangle[3][2] = {{middle[0], middle[1]}, {uv[i][0], uv[i][1]}, {uv[j][0], uv[j][1]}};
+            const float triangle[3][2] = {{centroid[0], centroid[1]}, {uv[i][0], uv[i][1]}, {uv[j][0], uv[j][1]}};
             uv_triangle(c->size, triangle, draw_chart, c);
         }
     }

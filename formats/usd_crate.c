@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { HEADER_SIZE = 88, PACKED_LEAST = 16, SECTIONS = 6 };
+enum { HEADER_SIZE = 88, PACKED_MIN = 16, SECTIONS = 6 };
 static const CrateValue flag_array = (uint64_t)1 << 63, flag_packed = (uint64_t)1 << 61;
 
 /// Room for one more entry of a list; false, and the crate fails, where there is no memory.
@@ -56,7 +56,7 @@ void crate_free(Crate *crate) {
 static void put_packed(Crate *crate, Sink *sink, const uint8_t *bytes, size_t size) {
     const size_t place = sink->size;
     sink_u64(sink, 0);
-    uint8_t *room = sink_room(sink, 1 + lz4_most(size));
+    uint8_t *room = sink_room(sink, 1 + lz4_size_max(size));
     if (!room) return;
     *room = 0;
     const size_t length = 1 + lz4_pack(bytes, size, room + 1);
@@ -135,7 +135,7 @@ CrateValue crate_ints(Crate *crate, const int32_t *values, size_t count) {
     sink_align(&crate->sink, 8);
     value |= crate->sink.size;
     sink_u64(&crate->sink, count);
-    if (count < PACKED_LEAST) {
+    if (count < PACKED_MIN) {
         sink_words(&crate->sink, values, count);
         return value;
     }
@@ -194,7 +194,7 @@ CrateValue crate_floats(Crate *crate, int width, const float *values, size_t cou
     sink_align(&crate->sink, 8);
     value |= crate->sink.size;
     sink_u64(&crate->sink, count);
-    if (width == 1 && count >= PACKED_LEAST && put_table(crate, values, count)) return value | flag_packed;
+    if (width == 1 && count >= PACKED_MIN && put_table(crate, values, count)) return value | flag_packed;
     sink_words(&crate->sink, values, count * (size_t)width);
     return value;
 }

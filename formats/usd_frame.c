@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ATTRIBUTES_MOST = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
+enum { ATTRIBUTES_MAX = USD_OWN + SURFACE_FIELDS, COLOURS = 1 << 16, PRIM_FIELDS = 4 };
 
 /// What a sheet has at a time: own attributes, fields, and the faces of its subsets, burnt and fresh.
 enum { SLOT_FIELDS = USD_OWN, SLOT_SUBSETS = SLOT_FIELDS + SURFACE_FIELDS, SLOTS = SLOT_SUBSETS + 2 };
@@ -164,7 +164,7 @@ static CrateValue put_subset_faces(UsdWriter *w, const SheetPart *part, bool fre
         bool untouched = true;
         for (int k = 0; k < 3; k++) {
             const uint32_t v = s->triangles[part->triangles[i]][k];
-            untouched = untouched && s->burn[v] < BURN_COLOUR_LEAST && s->temperature_peak[v] <= BURN_COLOUR_PEAK;
+            untouched = untouched && s->burn[v] < BURN_COLOUR_MIN && s->temperature_peak[v] <= BURN_COLOUR_PEAK;
         }
         if (untouched == fresh) w->numbers[count++] = (int32_t)i;
     }
@@ -208,7 +208,7 @@ static void put_mesh(UsdWriter *w, uint32_t sheets, uint32_t sheet) {
         {"subdivisionScheme", "none"}, {"orientation", "rightHanded"}, {"doubleSided", NULL}};
     const SheetPart part = w->kept ? (SheetPart){.sheet = sheet} : sheet_part(&w->parts, sheet);
     const bool pictured = w->scene->sheets[sheet].picture != NULL;
-    const char *names[ATTRIBUTES_MOST + 4];
+    const char *names[ATTRIBUTES_MAX + 4];
     // the first is that of all faces where a program binds no subsets, such as Blender from the second frame on
     const char *children[] = {"burnt", "fresh"};
     char primvars[SURFACE_FIELDS][40], name[USD_NAME];

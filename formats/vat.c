@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VAT_HEIGHT_MOST = 16384 };
+enum { VAT_HEIGHT_MAX = 16384 };
 
 typedef struct Vat {
     const OutputScene *scene;
@@ -38,15 +38,15 @@ typedef struct Vat {
 } Vat;
 
 static SingeResult vat_size(Vat *vat, const char *path, SingeError *error) {
-    for (vat->width = 4096; vat->width <= VAT_HEIGHT_MOST; vat->width *= 2) {
+    for (vat->width = 4096; vat->width <= VAT_HEIGHT_MAX; vat->width *= 2) {
         const uint32_t width = vat->count < (uint32_t)vat->width ? vat->count : (uint32_t)vat->width;
         const uint64_t rows = (vat->count + width - 1) / width, height = rows * (uint64_t)vat->cache->frames;
-        if (height > VAT_HEIGHT_MOST) continue;
+        if (height > VAT_HEIGHT_MAX) continue;
         vat->width = (int)width, vat->rows = (int)rows, vat->height = (int)height;
         return SINGE_OK;
     }
     return refuse(error, SINGE_ERROR_LIMIT, "vat", -1, "%s: %u vertices by %d frames do not fit on %d x %d texels",
-                  short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MOST, VAT_HEIGHT_MOST);
+                  short_name(path), vat->count, vat->cache->frames, VAT_HEIGHT_MAX, VAT_HEIGHT_MAX);
 }
 
 static SingeResult vat_make(Vat *vat, const char *path, SingeError *error) {

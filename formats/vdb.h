@@ -32,7 +32,7 @@ enum {
 };
 
 #define VDB_MAP "UniformScaleTranslateMap"
-// metadata of the file, by which smoke and flame are told from what it has
+// metadata of the file, by which smoke and flame are computed from what it has
 #define VDB_EXTINCTION "extinction_of_soot" ///< m2/kg
 #define VDB_FLAME_UNIT "flame_unit"         ///< W/m3
 

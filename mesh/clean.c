@@ -1,4 +1,4 @@
-// Faces that are none: without area, there twice, or touching themselves; and those that no middle sees.
+// Faces that are none: without area, there twice, or touching themselves; and those that no centre sees.
 #include "mesh/loops.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ static void push_loop(Work *work, const Loops *loops, uint32_t loop, uint32_t or
     push_ring(work, loops->corner + loops->end[loop], loops->end[loop + 1] - loops->end[loop], origin, out);
 }
 
-/// A loop as it is where its middle sees all of it, or else its triangles.
+/// A loop as it is where its centre sees all of it, or else its triangles.
 static void push_cut_loop(Work *work, Loops *loops, uint32_t loop, uint32_t origin, Faces *out) {
     const uint32_t first = loops->triangles[loop], end = loops->triangles[loop + 1];
     if (first == end) return;

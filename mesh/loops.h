@@ -6,7 +6,7 @@
 
 /// What a face is.
 typedef enum FaceKind {
-    FACE_WHOLE,   ///< one loop, all of which can be seen from its middle
+    FACE_WHOLE,   ///< one loop, all of which can be seen from its centre
     FACE_CUT,     ///< loops that are cut into cut.triangle
     FACE_IDLE,    ///< without area
     FACE_CROSSED, ///< crosses itself

@@ -113,7 +113,7 @@ static void turn_faces(Work *work) {
 
 // ---- one fan a vertex
 
-/// Of the way to the middle of its faces, what a copy is drawn back by.
+/// Of the way to the centre of its faces, what a copy is drawn back by.
 static const double PART_GAP = 0.03;
 
 /// Draws the copies of vertices, those from `first` on, back into their own faces: what lies on each other from the

@@ -73,7 +73,7 @@ typedef enum MeshRepair {
     MESH_ONE_SIDED,  ///< sides at which a surface came back to itself the other way round cut apart
     MESH_BOW_TIE,    ///< copies of vertices whose faces met in that point alone
     MESH_PAIRED,     ///< pairs of triangles that became a quad
-    MESH_HALVED,     ///< sides that got a vertex in their middle so that the triangles at them became quads
+    MESH_HALVED,     ///< sides that got a vertex in their centre so that the triangles at them became quads
     MESH_SPLIT,      ///< faces split into quads
     MESH_REPAIRS
 } MeshRepair;

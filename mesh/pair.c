@@ -10,7 +10,7 @@
 // fit best, and opposite sides run through many quads: strands are long. What stays alone is mended by match.c, which
 // shifts pairs along a way of triangles until two that are alone meet, or one comes to the border. A pair that would be
 // no good quad (an angle above 175 degrees, a sharp fold, a seam of the uv) shares its side with a new vertex in the
-// middle, by which both triangles are quads of their own; so does a triangle at the border.
+// centre, by which both triangles are quads of their own; so does a triangle at the border.
 #include "mesh/polygon.h"
 
 #include <math.h>
@@ -375,7 +375,7 @@ static bool find_mates(Pairs *pairs) {
 
 // ---- quads
 
-/// The triangle of `half` with a vertex in the middle of that side.
+/// The triangle of `half` with a vertex in the centre of that side.
 static void push_halved(const Faces *old, uint32_t half, uint32_t centroid, Faces *out) {
     faces_push(out, old->corner[half], old, half);
     faces_push_between(out, centroid, old, half, pair_next3(half));

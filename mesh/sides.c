@@ -145,7 +145,7 @@ static bool is_second(const Work *work, const uint32_t *halves, uint32_t at) {
     return false;
 }
 
-/// Gives all but the first of the sheets that share a side a vertex in its middle. Returns how many vertices.
+/// Gives all but the first of the sheets that share a side a vertex in its centre. Returns how many vertices.
 static uint32_t part_side(Work *work, const uint32_t *halves, uint32_t size, uint32_t *centroid) {
     const Faces *faces = &work->faces;
     uint32_t sheets = 0;

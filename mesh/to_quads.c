@@ -1,9 +1,9 @@
-// Every face of n corners becomes n quads: from a corner to the middle of its side, the face's centre, the middle of
+// Every face of n corners becomes n quads: from a corner to the centre of its side, the face's centre, the centre of
 // the side before (Catmull and Clark, 1978, without their smoothing). Opposite sides of what was a quad still run
 // through.
 #include "mesh/work.h"
 
-/// The vertex in the middle of each half-edge's side.
+/// The vertex in the centre of each half-edge's side.
 static uint32_t *split_sides(Work *work) {
     const Faces *faces = &work->faces;
     uint32_t *centroid = work_new(work, faces->corner_count, sizeof *centroid);

@@ -135,7 +135,7 @@ void mesh_weld(Work *work);
 /// Makes one of the ends of very short sides; work->smallest is a share of the median side (collapse.c).
 SingeResult mesh_shrink(Work *work);
 /// Leaves out what has no area and what is there twice; faces that touch themselves, or that are not seen from their
-/// middle, fall apart (clean.c).
+/// centre, fall apart (clean.c).
 SingeResult mesh_clean(Work *work);
 /// Leaves out faces whose corners an earlier one has (clean.c).
 void mesh_leave_out_copies(Work *work);

@@ -53,8 +53,8 @@ static inline void rest_ray(struct RTCRay16 *ray, int lane) {
     aim_ray(ray, lane, float3(0, 0, 0), float3(0, 0, 1), 0, -1, 0);
 }
 
-/// Instead of a sample's number: the middle of the sun and an open sky, for where nothing can hide them.
-enum { SAMPLE_MIDDLE = -1 };
+/// Instead of a sample's number: the centre of the sun and an open sky, for where nothing can hide them.
+enum { SAMPLE_CENTRE = -1 };
 
 // layers.c
 void layers_begin(LayerSum *sum);

@@ -30,7 +30,7 @@ static void sample_offset(int sample, float at[2]) {
     for (int c = 0; c < 2; c++) at[c] = 0.9f * (at[c] < 0.5f ? sqrtf(2 * at[c]) - 1 : 1 - sqrtf(2 - 2 * at[c]));
 }
 
-/// Rays of a sample through the pixels, each with its place on the lens and its time: SAMPLE_MIDDLE of both.
+/// Rays of a sample through the pixels, each with its place on the lens and its time: SAMPLE_CENTRE of both.
 static void aim_block(const Preview *preview, Block *block, int sample, const float at[2]) {
     bool lens = preview->camera.lens > 0 && sample >= 0, shutter = preview->def.shutter > 0 && sample >= 0;
     for (int i = 0; i < LANES; i++) {
@@ -291,12 +291,12 @@ static void draw_block(Preview *preview, Block *block) {
     start_block(preview, block, active);
     bool bare = !mask_covers(preview, block->x[0], block->y[0]);
     if (bare) {
-        aim_block(preview, block, SAMPLE_MIDDLE, (const float[2]){0, 0});
+        aim_block(preview, block, SAMPLE_CENTRE, (const float[2]){0, 0});
         for (int i = 0; i < LANES; i++)
             if (active[i]) see_ground(preview, block, i);
     }
     if (bare && !light_may_be_hidden(preview, block, active)) {
-        add_light(preview, block, active, SAMPLE_MIDDLE, 1);
+        add_light(preview, block, active, SAMPLE_CENTRE, 1);
         for (int i = 0; i < LANES; i++) taken[i] = 1;
     } else {
         add_samples(preview, block, active, bare, taken);

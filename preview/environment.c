@@ -8,7 +8,7 @@
 
 #include "preview/internal.h"
 
-/// Direction of the middle of a cell. Its middle longitude lies towards +y.
+/// Direction of the centre of a cell. Its centre longitude lies towards +y.
 static Float3 sky_direction(int row, int column) {
     float polar = PI_F * ((float)row + 0.5f) / SKY_DOWN;
     float azimuth = 2 * PI_F * (((float)column + 0.5f) / SKY_ACROSS - 0.5f);

@@ -50,7 +50,7 @@ static void facets_bounds(Facets *facets) {
         low = float3(minf(low.x, v.x), minf(low.y, v.y), minf(low.z, v.z));
         high = float3(maxf(high.x, v.x), maxf(high.y, v.y), maxf(high.z, v.z));
     }
-    facets->middle = float3_scale(float3_add(low, high), 0.5f);
+    facets->centre = float3_scale(float3_add(low, high), 0.5f);
     facets->extent = 0.5f * float3_length(float3_sub(high, low));
 }
 
@@ -167,7 +167,7 @@ void facets_free(Preview *preview) {
 
 /// Whether a ray of unit direction comes near enough.
 static bool facets_near(const Facets *facets, Float3 origin, Float3 direction) {
-    Float3 to = float3_sub(facets->middle, origin);
+    Float3 to = float3_sub(facets->centre, origin);
     Float3 aside = float3_mad(to, direction, -float3_dot(to, direction));
     return float3_dot(aside, aside) <= 1.0001f * facets->extent * facets->extent;
 }

@@ -2,7 +2,7 @@
 //
 // Burning is q / (q + q0) of the heat released, q (W/m3). The height of a flame's gas above the paper is that above
 // the paper that burns in its cell, and elsewhere found by following the velocity back, layer by layer from below:
-// r(x) = (r(x - v dt) + dz) times the share that was burning there; it tells the clear base from the bright middle and
+// r(x) = (r(x - v dt) + dz) times the share that was burning there; it tells the clear base from the bright centre and
 // the torn tip. Smoke is its extinction, 8.7 m2/g times its
 // density (Mulholland & Croarkin 2000, for the soot of flames).
 

@@ -44,7 +44,7 @@ typedef struct Fire {
     int size[3];   ///< cells with their border; all 0 where there is no gas
     bool visible;  ///< whether any of it is seen
     float cell;    ///< m
-    Float3 origin; ///< m, middle of cell (0, 0, 0), border included
+    Float3 origin; ///< m, centre of cell (0, 0, 0), border included
     FireCell *cells;
     size_t cell_capacity;
     int bricks[3];

@@ -8,9 +8,9 @@
 SingeResult preview_bake_gas(Preview *preview, const SingeSurface *surface, double time, int detail, float *smoke,
                              float *flame, SingeError *error) {
     const Fire *fire = &preview->fire;
-    if (!isfinite(time) || detail < 1 || detail > PREVIEW_BAKE_MOST)
+    if (!isfinite(time) || detail < 1 || detail > PREVIEW_BAKE_MAX)
         return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "the time is not finite, or the detail not 1 to %d",
-                            PREVIEW_BAKE_MOST);
+                            PREVIEW_BAKE_MAX);
     if (!fire->size[0]) return preview_fail(error, SINGE_ERROR_ARGUMENT, -1, "there is no gas");
     preview->time = time;
     SingeResult result = tracer_load(preview, surface, error);

@@ -100,9 +100,9 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
     int low = 0, high = view->count;
     if (high && view->distance[high - 1] <= distance) low = high;
     while (low < high) {
-        int middle = (low + high) / 2;
-        if (view->distance[middle] <= distance) low = middle + 1;
-        else high = middle;
+        int mid = (low + high) / 2;
+        if (view->distance[mid] <= distance) low = mid + 1;
+        else high = mid;
     }
     // `low` steps lie wholly in front, and of the next a part
     Float3 sum = low ? view->light[low - 1] : float3(0, 0, 0);
@@ -115,7 +115,7 @@ static void add_view(const FireView *view, float distance, float weight, Float3 
 }
 
 void fire_until(const FireTile *tile, int x, int y, float distance, Float3 *light, float *clear) {
-    const float near = 0.75f, far = 0.25f; // a pixel's middle lies a quarter of the way from one ray to the next
+    const float near = 0.75f, far = 0.25f; // a pixel's centre lies a quarter of the way from one ray to the next
     float right = x % 2 ? near : far, down = y % 2 ? near : far;
     const FireView *view = &tile->views[y / 2 * FIRE_ACROSS + x / 2];
     *light = float3(0, 0, 0), *clear = 0;

@@ -42,7 +42,7 @@ static inline Four four_load(const float *p) {
     return four;
 }
 
-/// Quadratic B-spline over 3 x 3 x 3 cells at g, in cells from the middle of cell (0, 0, 0).
+/// Quadratic B-spline over 3 x 3 x 3 cells at g, in cells from the centre of cell (0, 0, 0).
 static FireCell look_up(const Fire *fire, Float3 g) {
     float f[3], w[3][3];
     int base[3];

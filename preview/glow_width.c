@@ -52,7 +52,7 @@ static float width_at(const GlowPicture *picture, int x, int y) {
         int a[2], b[2];
         glow_walk(picture, x, y, dx, dy, a), glow_walk(picture, x, y, -dx, -dy, b);
         float depth = picture->layers->depth[(size_t)y * (size_t)picture->width + (size_t)x];
-        // between the middles of the last pixels, and half of each
+        // between the centres of the last pixels, and half of each
         float width = float3_length(float3_sub(glow_position(picture, a[0], a[1]), glow_position(picture, b[0], b[1])));
         min = minf(min, width + depth * picture->camera.pixel);
     }

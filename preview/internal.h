@@ -96,7 +96,7 @@ typedef struct Camera {
 typedef struct Scene {
     RTCScene embree; ///< NULL when there is no triangle
     PaperVertex *vertices;
-    float (*positions)[4]; ///< in the middle of the exposure
+    float (*positions)[4]; ///< in the centre of the exposure
     float (*moved[2])[4];  ///< when it begins and ends; not used without a shutter
     uint32_t (*triangles)[3];
     uint32_t vertex_count, triangle_count;
@@ -112,8 +112,8 @@ typedef struct Facets {
     const PreviewSolid *solid;
     RTCScene embree;
     Float3 *normals; ///< [3 * triangle_count] of each triangle's corners
-    Float3 middle;   ///< of its bounds, in its own frame
-    float extent;    ///< m, from the middle
+    Float3 centre;   ///< of its bounds, in its own frame
+    float extent;    ///< m, from the centre
     uint32_t triangle_count;
     bool passing; ///< goes when no shape has it any more
     struct Facets *next;
@@ -223,15 +223,15 @@ void facets_free(Preview *preview);
 float facets_intersect(const Facets *facets, Float3 origin, Float3 direction, float near, float far, Float3 *normal);
 
 // shape.c
-/// Seconds from the middle of the exposure, for a ray's time in [0, 1].
+/// Seconds from the centre of the exposure, for a ray's time in [0, 1].
 static inline float shutter_moment(const Preview *preview, float time) { return (time - 0.5f) * preview->def.shutter; }
 /// Distance to the shape in (near, far), or -1; *normal points outward.
 float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Float3 direction, float near, float far,
                       Float3 *normal);
 
-/// Middle of a sphere that holds the shape in the middle of the frame's time.
-Float3 shape_middle(const PreviewShape *shape);
-/// Radius of a sphere about its middle that holds the shape while the shutter is open.
+/// Centre of a sphere that holds the shape in the centre of the frame's time.
+Float3 shape_centre(const PreviewShape *shape);
+/// Radius of a sphere about its centre that holds the shape while the shutter is open.
 float shape_extent(const PreviewShape *shape, float shutter);
 
 // mask.c

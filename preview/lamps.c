@@ -117,8 +117,8 @@ void lamps_add(const Preview *preview, Block *block, const int *active, int samp
         if (luminance > too_faint) wanted[i] = luminance, any = true;
     }
     if (!any || !ask_now) return;
-    int rays = sample == SAMPLE_MIDDLE ? LAMP_SAMPLES : 1;
-    for (int k = 0; k < rays; k++) ask(preview, block, wanted, weight, sample == SAMPLE_MIDDLE ? k : sample);
+    int rays = sample == SAMPLE_CENTRE ? LAMP_SAMPLES : 1;
+    for (int k = 0; k < rays; k++) ask(preview, block, wanted, weight, sample == SAMPLE_CENTRE ? k : sample);
 }
 
 void lamps_write(const Preview *preview, size_t pixel, const Block *block, int lane, int samples) {

@@ -75,7 +75,7 @@ static void add_shapes(Preview *preview) {
         float r = shape->facets ? 0.5f * shape->facets->extent : shape->radius;
         if (shape->kind == SINGE_COLLIDER_BOX) r = float3_length(float3_load(shape->half_size)) * 0.6f;
         Float3 glow = blackbody_glow(preview->blackbody, shape->temperature);
-        Float3 position = shape_middle(shape);
+        Float3 position = shape_centre(shape);
         add_light(scene, position, float3_scale(glow, 1.6f * r * r), 0.3f * r * r,
                   1.02f * shape_extent(shape, preview->def.shutter));
     }

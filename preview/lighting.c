@@ -44,7 +44,7 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
         float square[2] = {0, 0}, disc[2];
-        if (index != SAMPLE_MIDDLE) sample_square((uint32_t)index, block->turn[i][0], block->turn[i][1], square);
+        if (index != SAMPLE_CENTRE) sample_square((uint32_t)index, block->turn[i][0], block->turn[i][1], square);
         sample_disc(square, disc);
         Float3 l = float3_mad(preview->sun, preview->sun_right, disc[0] * preview->sun_spread);
         l = float3_unit_or(float3_mad(l, preview->sun_up, disc[1] * preview->sun_spread), preview->sun);
@@ -65,7 +65,7 @@ static void add_sun_ray(const Preview *preview, Block *block, const int *active,
     }
 }
 
-/// Light from the sun's middle, of which as much comes as the block's rays have found: without another one.
+/// Light from the sun's centre, of which as much comes as the block's rays have found: without another one.
 static void add_known_sun(const Preview *preview, Block *block, const int *active) {
     float seen = block->sun_asked ? block->sun_seen / (float)block->sun_asked : 1;
     for (int i = 0; i < LANES; i++)
@@ -77,7 +77,7 @@ static void add_known_sun(const Preview *preview, Block *block, const int *activ
 void light_add_sun(const Preview *preview, Block *block, const int *active, int sample, int rays) {
     if (!rays) add_known_sun(preview, block, active);
     for (int k = 0; k < rays; k++)
-        add_sun_ray(preview, block, active, sample == SAMPLE_MIDDLE ? SAMPLE_MIDDLE : sample * rays + k,
+        add_sun_ray(preview, block, active, sample == SAMPLE_CENTRE ? SAMPLE_CENTRE : sample * rays + k,
                     1 / (float)rays);
 }
 
@@ -96,7 +96,7 @@ static bool sky_may_be_hidden(const Preview *preview, Float3 p, float reach) {
     if (within(&preview->scene, p, reach)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
         float near = shape_extent(&preview->shapes[k], preview->def.shutter) + reach;
-        Float3 to = float3_sub(shape_middle(&preview->shapes[k]), p);
+        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
         if (float3_dot(to, to) < near * near) return true;
     }
     return false;
@@ -109,7 +109,7 @@ static bool sun_may_be_hidden(const Preview *preview, Float3 p, float margin) {
     float spread = 1.5f * preview->sun_spread, rise = maxf(scene->high.z - p.z, 0) / maxf(sun.z, 0.02f);
     if (scene->triangle_count && tracer_near(scene, p, sun, INFINITY, spread * rise + margin)) return true;
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        Float3 to = float3_sub(shape_middle(&preview->shapes[k]), p);
+        Float3 to = float3_sub(shape_centre(&preview->shapes[k]), p);
         float along = float3_dot(to, sun), extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Float3 aside = float3_mad(to, sun, -along);
         float near = extent + margin + spread * maxf(along + extent, 0);
@@ -152,7 +152,7 @@ static void ask_sky(const Preview *preview, Block *block, const int *active, int
         rest_ray(&block->shadow, i);
         if (!light_reaches(block, active, i)) continue;
         const Point *point = &block->point[i];
-        if (sample == SAMPLE_MIDDLE || !sky_may_be_hidden(preview, point->position, reach)) continue;
+        if (sample == SAMPLE_CENTRE || !sky_may_be_hidden(preview, point->position, reach)) continue;
         float square[2];
         sample_square((uint32_t)sample, block->turn[i][1], block->turn[i][0], square);
         Float3 d = sample_cosine(point->normal, square);

@@ -36,7 +36,7 @@ static void include(const Preview *preview, Float3 p, Rectangle *r) {
 }
 
 static void mark(Preview *preview, const Rectangle *r) {
-    const float reach = 1.5f; // pixels; a sample lies up to 0.9 from the middle of its pixel
+    const float reach = 1.5f; // pixels; a sample lies up to 0.9 from the centre of its pixel
     int across = blocks_across(preview), down = blocks_down(preview);
     int x0 = (int)clampf((r->low[0] - reach) / BLOCK, 0, (float)across);
     int y0 = (int)clampf((r->low[1] - reach) / BLOCK, 0, (float)down);
@@ -62,7 +62,7 @@ void mask_fill(Preview *preview) {
         mark(preview, &r);
     }
     for (uint32_t k = 0; k < preview->shape_count; k++) {
-        Float3 centre = shape_middle(&preview->shapes[k]);
+        Float3 centre = shape_centre(&preview->shapes[k]);
         float extent = shape_extent(&preview->shapes[k], preview->def.shutter);
         Rectangle r = nowhere;
         for (int corner = 0; corner < 8; corner++)

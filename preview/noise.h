@@ -60,7 +60,7 @@ static inline Float3 noise3_gradient(Float3 p, float n, uint32_t seed) {
 }
 
 /// Difference between the distances to the nearest two of scattered points, one in each cell of the unit lattice
-/// (Worley 1996): 0 on the walls between their regions, about 0.5 in the middles.
+/// (Worley 1996): 0 on the walls between their regions, about 0.5 in the centres.
 static inline float noise_walls(Float3 p, uint32_t seed) {
     float fx, fy, fz, first = 9, second = 9;
     uint32_t ix = (uint32_t)noise_floor(p.x, &fx), iy = (uint32_t)noise_floor(p.y, &fy);

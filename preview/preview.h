@@ -58,14 +58,14 @@ typedef struct PreviewDef {
     float sun_colour[3];    ///< of about 2.2 with a sky of 0.4, white paper comes to 230 of 255
     float sky_colour[3];    ///< ambient light from above
     PreviewSky sky;
-    const Image *sky_picture; ///< latitudes from the top, longitudes about z; its middle lies towards +y
+    const Image *sky_picture; ///< latitudes from the top, longitudes about z; its centre lies towards +y
     float sky_turn;           ///< radians about z, counted from above
     float ground_height;      ///< m, z of the ground; -INFINITY for none
     PreviewGround ground;
     float ground_colour[3]; ///< linear
     float background[3];
     float exposure; ///< multiplies before tone mapping
-    float shutter;  ///< s that a frame is open, its time in the middle; 0: nothing blurs
+    float shutter;  ///< s that a frame is open, its time in the centre; 0: nothing blurs
     float pace;     ///< how many times as fast as a real one fire burns: ages are reported by it
     uint32_t seed;
     const Image *const *pictures; ///< [sheet_count] picture on both sides of each sheet, NULL entries are white
@@ -88,7 +88,7 @@ SINGE_NODISCARD SingeResult preview_set_shapes(Preview *preview, const PreviewSh
 /// Replaces the gas (it changes from frame to frame), of which flame, smoke and velocity are looked at; what is needed
 /// is copied. NULL or one of size 0: none.
 SINGE_NODISCARD SingeResult preview_set_gas(Preview *preview, const SingeGas *gas, SingeError *error);
-enum { PREVIEW_BAKE_MOST = 4 };
+enum { PREVIEW_BAKE_MAX = 4 };
 /// The gas that was set, on cells `detail` times as fine along each side, with the tongues and streaks that pictures
 /// add by noise; the surface is that of its frame. smoke and flame are [detail^3 * the gas's cells], x fastest:
 /// extinction in 1/m, and the flame's light as a share of the brightest there is (118 times that of white paper a

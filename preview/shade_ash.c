@@ -22,7 +22,7 @@ static float fibres(Float3 position, float footprint) {
 
 /// Creases that the shrinking leaf threw up: long and fine, forking. 1 on a vein.
 static float veins(const Bent *bent, float footprint) {
-    Float3 bowed = float3_mad(bent->position, float3(bent->middle, bent->coarse, bent->fine), 1.1e-3f);
+    Float3 bowed = float3_mad(bent->position, float3(bent->medium, bent->coarse, bent->fine), 1.1e-3f);
     float large = ridge(paper_noise(bowed, 8.5f, footprint, 14), 0.10f);
     float small =
         ridge(paper_noise(float3_mad(bowed, float3(1, -1, 1), 2e-3f * bent->coarse), 3.4f, footprint, 18), 0.13f);
@@ -33,7 +33,7 @@ void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *poin
     float amount = ash_amount(bent);
     if (amount <= 0.01f) return;
     float size = point->footprint, vein = veins(bent, size), fibre = fibres(bent->position, size);
-    float cloud = paper_noise(bent->position, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->middle;
+    float cloud = paper_noise(bent->position, 14, size, 19) + 0.5f * bent->coarse + 0.2f * bent->medium;
     float pale = stepf(1, 16, state->age + 5 * cloud), rim = stepf(0.25f, 0.6f, ash_lace(bent, size));
     float value = mixf(0.034f, 0.20f, pale) + (0.010f + 0.06f * pale) * cloud + (0.02f + 0.06f * pale) * vein;
     value += (0.006f + 0.022f * pale) * fibre + 0.006f * bent->fine;
@@ -44,7 +44,7 @@ void ash_shade(const PaperState *state, const Bent *bent, float ink, Point *poin
     point->gloss *= 1 - 0.8f * amount;
     point->mirror = mixf(point->mirror, 0.55f - 0.25f * pale, amount);
     point->transmission = mixf(point->transmission, 0.28f, amount);
-    Float3 bowed = float3_mad(bent->position, float3(bent->coarse, bent->middle, -bent->coarse), 0.8e-3f);
+    Float3 bowed = float3_mad(bent->position, float3(bent->coarse, bent->medium, -bent->coarse), 0.8e-3f);
     paper_fold(bowed, 8.5f, 0.55f * amount, 16, point);
     paper_fold(bowed, 3.4f, 0.26f * amount, 17, point);
 }

@@ -24,7 +24,7 @@ static float line_life(const Preview *preview, const Bent *bent) {
     Float3 drift = float3_add(float3_scale(bent->position, 190), float3(0.5f * t, -0.35f * t, 0.8f * t));
     Float3 patch = float3_add(float3_scale(bent->position, 62), float3(-0.12f * t, 0.2f * t, 0.15f * t));
     return stepf(-0.22f, 0.62f,
-                 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->middle + 0.2f * bent->fine);
+                 0.75f * noise3(drift, 21) + 0.5f * noise3(patch, 22) + 0.35f * bent->medium + 0.2f * bent->fine);
 }
 
 static Float3 ember_line(const Preview *preview, const PaperState *state, const Bent *bent, float air,
@@ -51,7 +51,7 @@ static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *
     if (activity < 0.02f || ember_temperature(state->temperature) < BLACKBODY_MIN) return float3(0, 0, 0);
     float life = line_life(preview, bent) * minf(air, 1.2f);
     float temperature =
-        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->middle;
+        ember_temperature(state->temperature) + 130 * (life - 0.5f) + 70 * bent->fine + 40 * bent->medium;
     float strength = activity * (0.15f + 0.85f * life) * air;
     return float3_scale(blackbody_glow(preview->blackbody, temperature), EMBER_GAIN * strength);
 }
@@ -59,9 +59,9 @@ static Float3 leaf(const Preview *preview, const PaperState *state, const Bent *
 static Float3 sparks(const Preview *preview, const PaperState *state, const Bent *bent, float air, float footprint) {
     float warm = stepf(420, 640, state->temperature) * stepf(0.76f, 0.86f, bent->burn);
     if (warm <= 0 || state->age <= 0) return float3(0, 0, 0);
-    float patch = stepf(0.10f, 0.55f, noise3(float3_scale(bent->position, 85), 24) + 0.3f * bent->middle);
+    float patch = stepf(0.10f, 0.55f, noise3(float3_scale(bent->position, 85), 24) + 0.3f * bent->medium);
     if (patch <= 0) return float3(0, 0, 0);
-    float delay = noise3(float3_scale(bent->position, 240), 23) + 0.5f * bent->middle + 0.25f * bent->fine;
+    float delay = noise3(float3_scale(bent->position, 240), 23) + 0.5f * bent->medium + 0.25f * bent->fine;
     float late = (state->age - 3.2f) * 0.28f - delay;
     float glow = warm * patch * air * expf(-70 * late * late) * clampf(1.6f - footprint * 900, 0.3f, 1);
     return float3_scale(blackbody_glow(preview->blackbody, 1035 + 50 * bent->fine), 1.5f * glow);

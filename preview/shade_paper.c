@@ -58,14 +58,14 @@ void paper_state(const Scene *scene, uint32_t triangle, float u, float v, PaperS
 static Bent shade_paper_bend(const PaperState *state, float footprint) {
     Bent bent = {.position = askew(state->rest)};
     bent.coarse = paper_noise(bent.position, 4.0f, footprint, 1);
-    bent.middle = paper_noise(bent.position, 1.3f, footprint, 2);
+    bent.medium = paper_noise(bent.position, 1.3f, footprint, 2);
     bent.fine = paper_noise(bent.position, 0.45f, footprint, 3);
-    float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.middle + 0.22e-3f * bent.fine;
+    float delta = 1.5e-3f * bent.coarse + 0.7e-3f * bent.medium + 0.22e-3f * bent.fine;
     delta *= clampf(state->spacing / 1.8e-3f, 0.3f, 1);
     float slope = minf(state->gradient, 400.0f);
     float inside = stepf(0.15f, 0.5f, state->burn);
-    bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.middle + 0.03f * bent.fine);
-    float jitter = (0.17f * bent.coarse + 0.08f * bent.middle + 0.025f * bent.fine) * (1 - 0.6f * inside);
+    bent.burn = state->burn + slope * delta + inside * (0.03f * bent.coarse + 0.05f * bent.medium + 0.03f * bent.fine);
+    float jitter = (0.17f * bent.coarse + 0.08f * bent.medium + 0.025f * bent.fine) * (1 - 0.6f * inside);
     float peak = maxf(state->peak, state->temperature);
     // nothing where there was no heat to speak of
     bent.temperature = state->temperature + (state->temperature - 293) * jitter * stepf(320, 420, state->temperature);
@@ -75,9 +75,9 @@ static Bent shade_paper_bend(const PaperState *state, float footprint) {
 }
 
 float paper_cracks(const Bent *bent, float millimetres, float width, float footprint) {
-    Float3 p = float3_mad(bent->position, float3(bent->middle, bent->fine, bent->coarse), 0.5e-3f);
+    Float3 p = float3_mad(bent->position, float3(bent->medium, bent->fine, bent->coarse), 0.5e-3f);
     float min = 0.5f * footprint * 1000 / millimetres; // no thinner than a pixel, but paler then
-    float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->middle);
+    float open = width * maxf(0, 0.75f + 0.9f * bent->coarse + 0.5f * bent->medium);
     float wall = noise_walls(float3_scale(p, 1000 / millimetres), 13);
     return minf(1, open / min) * (1 - stepf(0.4f, 1, wall / maxf(open, min)));
 }
@@ -108,7 +108,7 @@ void paper_fold(Float3 position, float millimetres, float height, uint32_t seed,
 
 /// Burnt borders crumble, so that the cut's straight pieces turn ragged within a triangle, and ash wears.
 static bool is_hole(const PaperState *state, const Bent *bent, float footprint) {
-    float bite = 0.40f + 0.38f * bent->middle + 0.20f * bent->fine + 0.28f * bent->coarse;
+    float bite = 0.40f + 0.38f * bent->medium + 0.20f * bent->fine + 0.28f * bent->coarse;
     float burnt = stepf(PAPER_WHOLE, 0.65f, state->burn);
     if (burnt > 0 && state->rim > 1 - burnt * clampf(bite, 0, 0.85f)) return true;
     return bent->burn > 0.7f && ash_amount(bent) * stepf(0.72f, 0.95f, ash_lace(bent, footprint)) > 0.5f;
@@ -149,7 +149,7 @@ static float heat_scorch(float peak) {
 
 /// Char: browner where it is thin, bluer where it is done; print (1) stays readable on it, as a dull grey.
 static Float3 char_colour(const Bent *bent, float ink, float footprint) {
-    float value = 1 + 0.35f * bent->middle + 0.3f * bent->fine + 0.35f * bent->coarse;
+    float value = 1 + 0.35f * bent->medium + 0.3f * bent->fine + 0.35f * bent->coarse;
     Float3 soot =
         float3_mix(float3(0.034f, 0.020f, 0.012f), float3(0.0125f, 0.0125f, 0.0132f), stepf(0.22f, 0.62f, bent->burn));
     float craze = paper_cracks(bent, 2.1f, 0.05f, footprint);

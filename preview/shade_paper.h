@@ -8,7 +8,7 @@
 typedef struct Bent {
     Float3 position;               ///< where noise is read
     float burn, temperature, peak; ///< b', T' and P'
-    float coarse, middle, fine;    ///< the noise that bent them, [-1, 1]
+    float coarse, medium, fine;    ///< the noise that bent them, [-1, 1]
 } Bent;
 
 /// Noise whose features are `millimetres` wide, gone where a pixel no longer resolves it.

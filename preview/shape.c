@@ -80,9 +80,9 @@ float shape_intersect(const PreviewShape *shape, float moment, Float3 origin, Fl
     return t;
 }
 
-Float3 shape_middle(const PreviewShape *shape) {
+Float3 shape_centre(const PreviewShape *shape) {
     Float3 position = float3_load(shape->position);
-    return shape->facets ? float3_add(position, float3_rotate(shape->rotation, shape->facets->middle, 1)) : position;
+    return shape->facets ? float3_add(position, float3_rotate(shape->rotation, shape->facets->centre, 1)) : position;
 }
 
 float shape_extent(const PreviewShape *shape, float shutter) {

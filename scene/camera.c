@@ -66,7 +66,7 @@ void scene_frame(Scene *scene, const SceneAssets *assets) {
     camera_look(&box, camera->up, back, right, top);
     double half = tan(0.5 * (double)camera->fov), aspect = (double)scene->preview.size[0] / scene->preview.size[1];
     for (int corner = 0; corner < 8; corner++) {
-        double d[3]; // from the middle to the corner
+        double d[3]; // from the centre to the corner
         for (int i = 0; i < 3; i++) d[i] = 0.5 * (box.high[i] - box.low[i]) * (corner >> i & 1 ? 1 : -1);
         double across = fmax(fabs(dot3(d, right)) / aspect, fabs(dot3(d, top)));
         distance = fmax(distance, dot3(d, back) + 1.15 * across / half); // a margin of 15 %

@@ -123,7 +123,7 @@ static const SchemaRow output_rows[] = {
      .doc = "`events.csv`: ignitions, holes and pieces that come free, with time and position"},
     {"texture_size", ROW_INT, DIM_NONE, AT(SceneOutput, texture_size), WITHIN(16, 8192),
      .doc = "pixels a side of `textures`"},
-    {"gas_detail", ROW_INT, DIM_NONE, AT(SceneOutput, gas_detail), WITHIN(1, PREVIEW_BAKE_MOST),
+    {"gas_detail", ROW_INT, DIM_NONE, AT(SceneOutput, gas_detail), WITHIN(1, PREVIEW_BAKE_MAX),
      .doc = "how many times finer along each side `singe convert --to gas` makes the cells of the gas"},
 };
 static const Schema schema_output = {

@@ -43,7 +43,7 @@ static const SchemaRow environment_rows[] = {
      .doc = "`even`: the same from everywhere above; `studio`: a dim room with a tall window across from the light and "
             "a lamp; `open`: a clear day"},
     {"picture", ROW_FILE, DIM_NONE, AT(ScenePreview, environment_picture),
-     .doc = "PNG or JPEG of all around, in place of a kind: twice as wide as high, its middle towards +y, its top up"},
+     .doc = "PNG or JPEG of all around, in place of a kind: twice as wide as high, its centre towards +y, its top up"},
     {"turn", ROW_FLOAT, DIM_ANGLE, AT(ScenePreview, environment_turn), WITHIN(-1000, 1000),
      .doc = "about the z axis, counted from above; kinds follow the light without it"},
 };

@@ -55,7 +55,7 @@ static void shape_pose(const SceneKey *keys, uint32_t count, double time, Previe
         shape->position[i] = (float)((1 - s) * (double)a->position[i] + s * (double)b->position[i]);
 }
 
-/// Where the shape goes: its way over a thousandth of a second. Turning blurs nothing.
+/// Where the shape goes: its displacement over a thousandth of a second. Turning blurs nothing.
 static void shape_move(const SceneKey *keys, uint32_t count, double time, PreviewShape *shape) {
     PreviewShape later = *shape;
     const float span = 1e-3f;

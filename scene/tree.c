@@ -102,7 +102,7 @@ static void builder_value(Builder *builder, const YamlEvent *event, SceneLocatio
         return;
     }
     int top = builder->depth - 1;
-    if ((event->flags & YAML_ABSENT) && top >= 0) // told at what it is the value of
+    if ((event->flags & YAML_ABSENT) && top >= 0) // reported at the key whose value it is
         location = builder->stack[top]->kind == NODE_MAP ? builder->key_locations[top] : builder->stack[top]->location;
     node->kind = NODE_VALUE;
     node->location = location;

@@ -5,7 +5,7 @@ Counts do not depend on what else the machine does, so a stage that got slower s
 may be up to 10 % off its baseline, either way: one that got faster must not get slower again unseen, so the baseline
 has to follow. --update writes it anew.
 
-Exit status: 0 within the bound, 1 outside, 77 where it cannot be told: valgrind is missing, or the baseline is of
+Exit status: 0 within the bound, 1 outside, 77 where it cannot be measured: valgrind is missing, or the baseline is of
 another compiler, processor or build.
 """
 import argparse

@@ -109,7 +109,7 @@ static int draw(Live *live) {
     return 0;
 }
 
-/// A match that goes up along the sheet's edge and into its middle, for runs without a hand.
+/// A match that goes up along the sheet's edge and into its centre, for runs without a hand.
 static int hold_by_itself(Live *live, int frame) {
     const float along = (float)frame / 60;
     return hold(live, frame < 90, WIDTH * (0.14f + 0.25f * along), HEIGHT * (0.85f - 0.25f * along));

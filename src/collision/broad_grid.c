@@ -96,8 +96,8 @@ bool collision_is_listed(const CollisionPlan *plan, uint32_t a, uint32_t b, floa
     // b's box, on its displacement relative to a
     Float4 low = q->low + float4_min(displacement, zero), high = q->high + float4_max(displacement, zero);
     if (!quads_meet(p->low - plan->reach, p->high + plan->reach, low, high)) return false;
-    Float4 apart = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
-    float boxes = float4_dot(apart, apart),
+    Float4 separation = float4_max(float4_max(q->low - p->high, p->low - q->high), zero);
+    float boxes = float4_dot(separation, separation),
           far = plan->reach + sqrtf(float4_dot(displacement, displacement)) + p->displacement[3] + q->displacement[3];
     if (boxes > far * far) return false;
     const CollisionSlab *s = &plan->slabs[a], *t = &plan->slabs[b];

@@ -126,10 +126,10 @@ static unsigned four_are_free(const Ccd *ccd, const uint32_t number[4]) {
     const CollisionPlan *plan = ccd->plan;
     CollisionFourPairs four = collision_four_pairs(plan, number);
     // so far apart that the sweep, which stops a little before the gap, would not stop either
-    Float4Mask apart =
+    Float4Mask separation =
         (four.distance > 2 * plan->gap) &
         (collision_four_differ(&four, COLLISION_DISPLACEMENT) + plan->noise < 0.9f * (four.distance - plan->gap));
-    unsigned free = float4_bits(apart), bridged = four.bridged & ~free;
+    unsigned free = float4_bits(separation), bridged = four.bridged & ~free;
     if (!bridged) return free;
     Float4Mask sides = collision_four_within(&four, four.a, four.b, FEATURE_CONE_SIDE);
     Float4Mask corners = collision_four_within(&four, four.a, four.bridge, FEATURE_CONE_CORNER) &

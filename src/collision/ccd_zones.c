@@ -31,7 +31,7 @@ static void zones_spread(float corner[4], int node, float weight) {
 static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swept *q, float wa[4], float wb[4]) {
     const Swept *one = pair->kind == COLLISION_NODE_OF_B ? q : p, *two = pair->kind == COLLISION_NODE_OF_B ? p : q;
     float *w1 = pair->kind == COLLISION_NODE_OF_B ? wb : wa, *w2 = pair->kind == COLLISION_NODE_OF_B ? wa : wb;
-    Float4 x[5], y[5], apart;
+    Float4 x[5], y[5], separation;
     for (int i = 0; i < 5; i++) {
         x[i] = one->position[i] + pair->hit * one->displacement[i];
         y[i] = two->position[i] + pair->hit * two->displacement[i];
@@ -39,17 +39,17 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
     if (pair->kind == COLLISION_EDGES) {
         const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
         float s, t;
-        apart = feature_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
+        separation = feature_from_segment(x[k[0]], x[k[1]], y[l[0]], y[l[1]], &s, &t);
         zones_spread(w1, k[0], 1 - s), zones_spread(w1, k[1], s);
         zones_spread(w2, l[0], 1 - t), zones_spread(w2, l[1], t);
-        return apart;
+        return separation;
     }
     const uint8_t *k = collision_triangle[pair->first[1]];
     float weight[3];
-    apart = feature_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);
+    separation = feature_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);
     zones_spread(w1, pair->first[0], 1);
     for (int i = 0; i < 3; i++) zones_spread(w2, k[i], weight[i]);
-    return pair->kind == COLLISION_NODE_OF_B ? -apart : apart;
+    return pair->kind == COLLISION_NODE_OF_B ? -separation : separation;
 }
 
 /// What each corner of a side goes of a shift of its point: as its weight and inverse mass say, but that no corner

@@ -129,18 +129,18 @@ static void point_weights(int kind, int first, int second, float u, float v, flo
 /// Whether two points of one sheet are nearer at rest than `far`.
 static bool near_at_rest(const Opening *job, const CollisionPair *pair, const NearFeatures *near, float far) {
     const Shell *shell = job->shell;
-    Float4 apart = job->plan->rest[pair->a] - job->plan->rest[pair->b];
+    Float4 separation = job->plan->rest[pair->a] - job->plan->rest[pair->b];
     float max = far + job->plan->rest[pair->a][3] + job->plan->rest[pair->b][3];
-    if (float4_dot(apart, apart) > max * max) return false;
+    if (float4_dot(separation, separation) > max * max) return false;
     const uint16_t *sheet = shell->matter.sheet;
     if (sheet[shell_centre(shell, pair->a)] != sheet[shell_centre(shell, pair->b)]) return false;
     float wa[4] = {0}, wb[4] = {0};
     point_weights(near->kind, near->first, near->second, near->u, near->v, wa, wb);
-    apart = (Float4){0};
+    separation = (Float4){0};
     for (int i = 0; i < 4; i++)
-        apart += wa[i] * float4_load(shell->rest_position[shell->cells[pair->a][i]]) -
-                 wb[i] * float4_load(shell->rest_position[shell->cells[pair->b][i]]);
-    return float4_dot(apart, apart) < far * far;
+        separation += wa[i] * float4_load(shell->rest_position[shell->cells[pair->a][i]]) -
+                      wb[i] * float4_load(shell->rest_position[shell->cells[pair->b][i]]);
+    return float4_dot(separation, separation) < far * far;
 }
 
 /// How far two features are to be kept apart in this step; 0 where they need not be looked after.
@@ -148,7 +148,7 @@ static float target(const Opening *job, const CollisionPair *pair, const Look *l
     const CollisionPlan *plan = job->plan;
     float thickness = open_min(plan->thin[pair->a], plan->thin[pair->b]), distance = near->distance;
     if (!(distance > 0)) return 0;
-    float toward = -float4_dot(point_speed(look, near), near->apart) / distance;
+    float toward = -float4_dot(point_speed(look, near), near->separation) / distance;
     if (distance > due(plan->thickness, plan, toward)) return 0;
     if (near_at_rest(job, pair, near, 2 * thickness)) {
         thickness = open_min(thickness, 4 * plan->gap);
@@ -174,15 +174,15 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
     look.due = due_distance;
     narrow_cell_set(plan, job->shell, pair->a, x, origin, &look.a);
     narrow_cell_set(plan, job->shell, pair->b, x, origin, &look.b);
-    float apart = narrow_boxes_distance(&look.a, &look.b) - plan->noise;
-    pair->distance = apart > pair->distance ? apart : pair->distance;
+    float separation = narrow_boxes_distance(&look.a, &look.b) - plan->noise;
+    pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
-    apart = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
-    pair->distance = apart > pair->distance ? apart : pair->distance;
+    separation = narrow_slabs_distance(&look.a, &look.b) - plan->noise;
+    pair->distance = separation > pair->distance ? separation : pair->distance;
     if (pair->distance > look.due) return;
     // beside a triangle a node may be over the next one: a normal that stays would make a ridge of the edge between
     FeatureRange far = {look.due, look.due, open_min(plan->thin[pair->a], plan->thin[pair->b]),
-                        apart < FEATURE_SEPARATED * plan->thickness};
+                        separation < FEATURE_SEPARATED * plan->thickness};
     // measuring a little farther, not every step has to look again
     if (far.edges) far.measured += 0.25f * plan->thickness;
     NearFeatures near[NARROW_MAX];
@@ -199,7 +199,7 @@ static void measure_pair(const Opening *job, uint32_t k, float due_distance, Blo
         FoundPoints *found = keep > 0 ? block_list_add(writer) : NULL;
         if (!found) continue;
         *found = (FoundPoints){k, near[i].kind, near[i].first, near[i].second, near[i].u, near[i].v, {0}, keep};
-        for (int d = 0; d < 3; d++) found->normal[d] = near[i].apart[d] / near[i].distance;
+        for (int d = 0; d < 3; d++) found->normal[d] = near[i].separation[d] / near[i].distance;
     }
 }
 

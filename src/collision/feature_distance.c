@@ -128,7 +128,7 @@ Float4 feature_from_segment(Float4 a, Float4 b, Float4 c, Float4 d, float *s, fl
     return (a + *s * u) - (c + *t * v);
 }
 
-static Float4 sweep_apart(const FeatureSweep *sweep, float time, Float4 x[4]) {
+static Float4 sweep_separation(const FeatureSweep *sweep, float time, Float4 x[4]) {
     float weight[3], s, t;
     for (int i = 0; i < 4; i++) x[i] = sweep->position[i] + time * sweep->displacement[i];
     return sweep->edges ? feature_from_segment(x[0], x[1], x[2], x[3], &s, &t)
@@ -136,8 +136,8 @@ static Float4 sweep_apart(const FeatureSweep *sweep, float time, Float4 x[4]) {
 }
 
 static float sweep_distance(const FeatureSweep *sweep, float time) {
-    Float4 x[4], apart = sweep_apart(sweep, time, x);
-    return sqrtf(float4_dot(apart, apart));
+    Float4 x[4], separation = sweep_separation(sweep, time, x);
+    return sqrtf(float4_dot(separation, separation));
 }
 
 /// The fastest that the two can come nearer in: their longest displacements, without what is common to all.
@@ -154,7 +154,7 @@ static float sweep_approach(const FeatureSweep *sweep) {
 /// How long from `time` on two planes across the shortest displacement between the two keep them `keep` apart, which
 /// move along with the nearest of their points.
 static float sweep_planes(const FeatureSweep *sweep, float time, float keep) {
-    Float4 x[4], normal = sweep_apart(sweep, time, x);
+    Float4 x[4], normal = sweep_separation(sweep, time, x);
     int own = sweep->edges ? 2 : 1;
     float longest = 2, height[4], speed[4];
     normal = normal / sqrtf(float4_dot(normal, normal));

@@ -10,7 +10,7 @@ static inline Float4 narrow_clamp01(Float4 a) { return float4_min(float4_max(a, 
 
 /// Four pairs of points: from the second to the first, the square of its length, and where on the features they are.
 typedef struct FourNear {
-    FourVectors apart;
+    FourVectors separation;
     Float4 square, u, v;
     Float4Mask faces;
 } FourNear;
@@ -39,8 +39,8 @@ static FourNear from_triangles(FourVectors p, FourVectors a, FourVectors b, Four
     // a triangle without area has no weights in its centroid: then its first corner stands for it
     at_a |= ~((u > -0.5f) & (v > -0.5f) & (u + v < 2));
     out.u = float4_select(at_a, zero, u), out.v = float4_select(at_a, zero, v);
-    out.apart = four_along(four_along(ap, -out.u, ab), -out.v, ac);
-    out.square = four_dot(out.apart, out.apart);
+    out.separation = four_along(four_along(ap, -out.u, ab), -out.v, ac);
+    out.square = four_dot(out.separation, out.separation);
     return out;
 }
 
@@ -58,8 +58,8 @@ static FourNear from_segments(FourVectors a, FourVectors b, FourVectors c, FourV
     Float4 mended = float4_select(uu > 0, narrow_clamp01((t * uv - ur) / uu), zero);
     s = float4_select(out_of_range, mended, s);
     FourNear out = {.u = s, .v = t};
-    out.apart = four_along(four_along(r, s, along), -t, others);
-    out.square = four_dot(out.apart, out.apart);
+    out.separation = four_along(four_along(r, s, along), -t, others);
+    out.square = four_dot(out.separation, out.separation);
     // where an end is the nearest point, that node's triangles see it too; and edges side by side, less than 10 degrees
     // apart, would make ridges of a flat sheet
     out.faces = (s > 0) & (s < one) & (t > 0) & (t < one) & (uv * uv < 0.97f * uu * vv);
@@ -93,7 +93,7 @@ float narrow_boxes_distance(const NarrowCell *a, const NarrowCell *b) {
 }
 
 /// As narrow_slabs_distance, for the planes through a's diagonals only.
-static float apart_along(const NarrowCell *a, const NarrowCell *b) {
+static float separation_along(const NarrowCell *a, const NarrowCell *b) {
     Float4 normal = float4_cross(a->node[2] - a->node[0], a->node[3] - a->node[1]);
     float square = float4_dot(normal, normal);
     if (!(square > 0)) return -1;
@@ -104,7 +104,7 @@ static float apart_along(const NarrowCell *a, const NarrowCell *b) {
 }
 
 float narrow_slabs_distance(const NarrowCell *a, const NarrowCell *b) {
-    float one = apart_along(a, b), two = apart_along(b, a);
+    float one = separation_along(a, b), two = separation_along(b, a);
     return one > two ? one : two;
 }
 
@@ -125,9 +125,9 @@ float narrow_error_bound(const NarrowCell *cell) {
 typedef struct Search {
     NearFeatures *near;
     int count;
-    float far;             ///< m, that is looked
-    Float4 square;         ///< smallest so far of each of the four
-    Float4 listed, beside; ///< squares of what a FeatureRange tells; beside is -1 for edges
+    float far;               ///< m, that is looked
+    Float4 square;           ///< smallest so far of each of the four
+    Float4 listed, adjacent; ///< squares of what a FeatureRange tells; adjacent is -1 for edges
 } Search;
 
 /// Notes those of four that are near enough; `meet` are those that count.
@@ -136,18 +136,19 @@ static void narrow_note(Search *search, const FourNear *four, unsigned meet, int
     const Float4Mask bits = {1, 2, 4, 8};
     Float4Mask counts = (bits & (int32_t)meet) != 0;
     search->square = float4_select(counts, float4_min(four->square, search->square), search->square);
-    meet &= float4_bits((four->square <= search->listed) &
-                        (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->beside))));
+    meet &=
+        float4_bits((four->square <= search->listed) &
+                    (four->faces | (four->square <= (kind == COLLISION_EDGES ? float4_all(-1) : search->adjacent))));
     for (; meet; meet &= meet - 1) {
         int k = __builtin_ctz(meet);
-        search->near[search->count++] =
-            (NearFeatures){.apart = sign * (Float4){four->apart.x[k], four->apart.y[k], four->apart.z[k], 0},
-                           .distance = sqrtf(four->square[k]),
-                           .u = four->u[k],
-                           .v = four->v[k],
-                           .kind = (uint8_t)kind,
-                           .first = (uint8_t)first,
-                           .second = (uint8_t)(second + k)};
+        search->near[search->count++] = (NearFeatures){
+            .separation = sign * (Float4){four->separation.x[k], four->separation.y[k], four->separation.z[k], 0},
+            .distance = sqrtf(four->square[k]),
+            .u = four->u[k],
+            .v = four->v[k],
+            .kind = (uint8_t)kind,
+            .first = (uint8_t)first,
+            .second = (uint8_t)(second + k)};
     }
 }
 
@@ -195,7 +196,7 @@ int narrow_features(const Shell *shell, const CollisionPair *pair, NarrowCell *a
                      .far = far->measured,
                      .square = float4_all(far->measured * far->measured),
                      .listed = float4_all(far->listed * far->listed),
-                     .beside = float4_all(far->beside * far->beside)};
+                     .adjacent = float4_all(far->adjacent * far->adjacent)};
     cell_boxes(a), cell_boxes(b);
     find_nodes(&search, a, b, of_b, COLLISION_NODE_OF_A);
     find_nodes(&search, b, a, of_a, COLLISION_NODE_OF_B);

@@ -15,7 +15,7 @@ typedef struct NarrowCell {
 
 /// Two features and their nearest points.
 typedef struct NearFeatures {
-    Float4 apart;                ///< m, from the point of b to that of a
+    Float4 separation;           ///< m, from the point of b to that of a
     float distance;              ///< m
     float u, v;                  ///< weights of the triangle's second and third node, or shares of the edges of a and b
     uint8_t kind, first, second; ///< as in a CollisionPair
@@ -41,7 +41,7 @@ float narrow_error_bound(const NarrowCell *cell);
 typedef struct FeatureRange {
     float measured; ///< m, to tell the smallest distance; see narrow_error_bound
     float listed;   ///< m, at most as far: of a node over a triangle, or edges that cross each other
-    float beside;   ///< m, at most as far: of a node beside a triangle
+    float adjacent; ///< m, at most as far: of a node beside a triangle
     bool edges;     ///< they count
 } FeatureRange;
 

@@ -7,8 +7,8 @@ typedef struct OutsideSearch {
     const Shell *shell;
     const float (*x)[4];
     uint32_t count;
-    uint32_t entry_count; ///< of the strays' own grid
-    bool crowded;         ///< it has no room for all: strays are held against all others
+    uint32_t entry_count; ///< of the grid of cells out of bounds
+    bool crowded;         ///< it has no room for all: cells out of bounds are checked against all others
 } OutsideSearch;
 
 static OutsideBox outside_box(const OutsideSearch *job, uint32_t cell) {
@@ -72,7 +72,7 @@ static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox
             }
 }
 
-// ---- strays among each other: a grid of the same cubes, buckets as chains
+// ---- cells out of bounds among each other: a grid of the same cubes, buckets as chains
 
 static void chain_outside(OutsideSearch *job) {
     CollisionPlan *plan = job->plan;

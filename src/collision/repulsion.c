@@ -41,10 +41,10 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
-        Float4 apart = {0};
+        Float4 separation = {0};
         for (uint32_t i = 0; i < repulsion->count; i++)
-            apart += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
-        float height = float4_dot(apart, repulsion->normal) - repulsion->target, weight = 0;
+            separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
+        float height = float4_dot(separation, repulsion->normal) - repulsion->target, weight = 0;
         if (height >= 0) continue;
         for (uint32_t i = 0; i < repulsion->count; i++)
             weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];

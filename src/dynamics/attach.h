@@ -37,7 +37,7 @@ typedef struct Attachments {
     uint32_t split_count;
 } Attachments;
 
-/// Puts back what is too far from the sources: of `count` vertices beside each other, as many whole blocks of lanes
+/// Puts back what is too far from the sources: of `count` contiguous vertices, as many whole blocks of lanes
 /// as there are (attach_kernel.h). `length` as in Attachments, `position` with the inverse mass as fourth.
 typedef void AttachHold(const AttachSpread *spread, const float *length, float *position, int count);
 AttachHold attach_hold_plain, attach_hold_v2, attach_hold_v3, attach_hold_v4, attach_hold_neon;

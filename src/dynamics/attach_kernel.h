@@ -21,7 +21,8 @@ static inline void attach_stretch(const AttachSpread *spread, Lanes length[ATTAC
 void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *position, int count) {
     Lanes zero = lanes_all(0), one = lanes_all(1);
     for (int i = 0; i + LANES <= count; i += LANES) {
-        Quads point = quads_beside(position + 4 * i, LANES), lengths = quads_beside(length + 4 * i, LANES);
+        Float4s point = float4s_load_contiguous(position + 4 * i, LANES),
+                lengths = float4s_load_contiguous(length + 4 * i, LANES);
         Node node = quads_node(&point), by_source = quads_node(&lengths);
         Lanes max[ATTACH_SOURCES] = {by_source.x, by_source.y, by_source.z, by_source.w};
         bool moved = false;
@@ -43,6 +44,6 @@ void ATTACH_HOLD(const AttachSpread *spread, const float *length, float *positio
             quads_pull(&point, anchor, pull);
             moved = true;
         }
-        if (moved) quads_put_beside(position + 4 * i, LANES, &point);
+        if (moved) float4s_store_contiguous(position + 4 * i, LANES, &point);
     }
 }

@@ -59,7 +59,7 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
     return moving;
 }
 
-/// Where a way enters a collider, and the normal there.
+/// Where a trajectory enters a collider, and the normal there.
 typedef struct Entry {
     Float3 position, normal;
     float distance;

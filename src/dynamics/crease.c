@@ -115,7 +115,7 @@ static inline float hinge_angle(Float3 a, Float3 b, Float3 edge) {
     return across * (1 + square * (1.0f / 6 + square * (3.0f / 40 + square * (15.0f / 336))));
 }
 
-/// curvature_max in the middle of an edge, where it has one at both ends, and what cells of this size bear at most.
+/// curvature_max in the centre of an edge, where it has one at both ends, and what cells of this size bear at most.
 static float hinge_limit(const Shell *shell, uint32_t from, uint32_t to, float borne) {
     float a = field_at(shell->matter.curvature_max, from), b = field_at(shell->matter.curvature_max, to);
     return a > 0 && b > 0 ? fminf(0.5f * (a + b), borne) : INFINITY;

@@ -3,7 +3,7 @@
 
 /// Three nodes in a row.
 typedef struct Bend {
-    Quads a, b, c;
+    Float4s a, b, c;
 } Bend;
 
 /// Straightens what is bent too sharply by its share of the way; false where no lane is.
@@ -17,7 +17,8 @@ static inline bool bend_straighten(Bend *bend, Lanes max) {
     Lanes factor = (lanes_all(1) - max / lanes_sqrt(square)) * lanes_all(BEND_GAIN) / weight;
     factor = lanes_where_less(limit, square, factor, zero);
     // r = (c - b) - (b - a): a and c move by -w r factor, b by 2 w r factor
-    Quads after = quads_push(&bend->b, &bend->c, factor), before = quads_push(&bend->a, &bend->b, factor);
+    Float4s after = float4s_correction(&bend->b, &bend->c, factor),
+            before = float4s_correction(&bend->a, &bend->b, factor);
     quads_move(&bend->a, &before, &after);
     quads_move(&bend->b, &after, &before);
     quads_move(&bend->b, &after, &before);
@@ -26,16 +27,16 @@ static inline bool bend_straighten(Bend *bend, Lanes max) {
 }
 
 static inline void group_straighten(const Group *group, const float *limit, bool ring) {
-    Bend bend = {.b = group_quads(group, 0), .c = group_quads(group, 1)};
+    Bend bend = {.b = group_float4s(group, 0), .c = group_float4s(group, 1)};
     for (uint32_t k = 1; k < group->rows; k++) {
-        bend.a = bend.b, bend.b = bend.c, bend.c = group_quads(group, k + 1);
+        bend.a = bend.b, bend.b = bend.c, bend.c = group_float4s(group, k + 1);
         if (!bend_straighten(&bend, lanes_load(limit + (size_t)k * STRAND_LANES))) continue;
         group_put(group, k - 1, &bend.a);
         group_put(group, k, &bend.b);
         group_put(group, k + 1, &bend.c);
     }
     if (!ring) return;
-    bend = (Bend){group_quads(group, group->rows - 1), group_quads(group, 0), group_quads(group, 1)};
+    bend = (Bend){group_float4s(group, group->rows - 1), group_float4s(group, 0), group_float4s(group, 1)};
     if (!bend_straighten(&bend, lanes_load(limit))) return;
     group_put(group, group->rows - 1, &bend.a);
     group_put(group, 0, &bend.b);
@@ -54,10 +55,10 @@ void STRAND_BEND(const StrandSet *set, float *position, uint32_t index) {
         size_t slot = (size_t)part->row * STRAND_LANES + lane;
         Group group = {.position = position,
                        .node = set->node + slot,
-                       .beside = set->beside + part->row,
+                       .contiguous = set->contiguous + part->row,
                        .rows = part->rows,
                        .stride = part->width,
-                       .first_beside = position + 4 * strand_column(part->width, lane)};
+                       .first_contiguous = position + 4 * strand_column(part->width, lane)};
         group_straighten(&group, set->bend_limit + slot, part->ring);
     }
 }

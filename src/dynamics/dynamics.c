@@ -107,7 +107,7 @@ void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]) {
     memcpy(plan->settings.gravity, gravity, sizeof plan->settings.gravity);
 }
 
-void dynamics_plan_pushed(DynamicsPlan *plan) {
+void dynamics_plan_velocity_changed(DynamicsPlan *plan) {
     if (plan->collision) collision_plan_forget(plan->collision); // its boxes are for the velocities of before
 }
 

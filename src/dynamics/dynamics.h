@@ -52,7 +52,7 @@ void dynamics_plan_torn(DynamicsPlan *plan, uint32_t vertex, uint32_t spare);
 void dynamics_plan_set_gravity(DynamicsPlan *plan, const float gravity[3]);
 
 /// Must be called when velocities were changed from outside a step.
-void dynamics_plan_pushed(DynamicsPlan *plan);
+void dynamics_plan_velocity_changed(DynamicsPlan *plan);
 
 /// Makes room for that many colliders before they are added; false when out of memory.
 bool dynamics_plan_reserve(Memory *memory, DynamicsPlan *plan, uint32_t collider_capacity);

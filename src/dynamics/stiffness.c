@@ -24,7 +24,7 @@
 /// a above, of red springs.
 static const float COUPLING = 2.5f;
 
-/// Mass of an unburnt particle in the middle of a sheet, kg.
+/// Mass of an unburnt particle in the centre of a sheet, kg.
 static float particle_mass(const Shell *shell, const Sheet *sheet) {
     double mass = 0, area = 0;
     for (uint32_t c = sheet->cell_first; c < sheet->cell_first + sheet->cell_count; c++) {

@@ -16,7 +16,7 @@
 // D mixes: hot air does by itself, and eddies that the cells do not show do by the shear of those that they show
 // (Smagorinsky 1963): D = D_0 + (C cell)^2 |grad u|.
 //
-// The way of a step is cut so that along no axis more than a cell is passed at once.
+// The displacement of a step is divided so that along no axis more than a cell is passed at once.
 #include "common/check.h"
 #include "gas/sweep.h"
 
@@ -51,7 +51,7 @@ static void advect_frame(const GasGrid *grid, const GasBox *box, const float *fr
         }
 }
 
-/// Carries one field all the way of a step. Outside of the box it stays as it is.
+/// Carries one field over the displacement of a step. Outside of the box it stays as it is.
 static void advect_field(GasPass *pass, int f, const GasBox *box, int parts) {
     GasPlan *plan = pass->plan;
     const float *start = f < GAS_VELOCITY ? pass->from->field[f] : plan->spare[2];
@@ -134,7 +134,7 @@ static void advect_look(void *context, int begin, int end) {
 }
 
 /// The boxes outside of which nothing is carried: for heat and fuel, for smoke, and for momentum, which still air has
-/// little of. In a part of the way nothing gets farther than a cell.
+/// little of. In a part of the displacement nothing gets farther than a cell.
 static void advect_boxes(GasPass *pass, int parts) {
     GasPlan *plan = pass->plan;
     for (int b = 0; b < GAS_BOXES; b++) {

@@ -1,4 +1,4 @@
-// What is in the gas's way: cells whose middle is inside a collider have no gas, and a sheet's cell of area A and
+// What blocks the gas: cells whose centroid is inside a collider have no gas, and a sheet's cell of area A and
 // normal n covers A |n_d| of the faces across axis d nearest to it, shared among the four about it.
 #include "common/check.h"
 #include "gas/gas_plan.h"

@@ -88,9 +88,9 @@ void gas_step(GasPlan *plan, const StepContext *context, GasState *gas) {
                     .dt = plan->dt};
     pass.fire = plan->dt * (float)plan->parts * plan->settings.pace;
     if (!gas_fed(&pass) && !gas->awake) return;
-    Float3 middle = float3_load(plan->origin);
-    for (int d = 0; d < 3; d++) (&middle.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
-    float3_store(pass.wind, wind_velocity(context->wind, middle, state->time));
+    Float3 centre = float3_load(plan->origin);
+    for (int d = 0; d < 3; d++) (&centre.x)[d] += 0.5f * plan->cell * (float)plan->grid.n[d];
+    float3_store(pass.wind, wind_velocity(context->wind, centre, state->time));
     gas_normals(&pass);
     gas_blocked(&pass);
     gas->awake = true;

@@ -91,7 +91,7 @@ static bool sheets_position(const GasPass *pass, uint32_t i, float side, Float3 
     return false;
 }
 
-/// Adds to a field, shared among the cells whose middles are about x and where there is gas.
+/// Adds to a field, shared among the cells whose centres are about x and where there is gas.
 static void sheets_add(const GasPlan *plan, float *field, Float3 x, float amount) {
     float position[3];
     if (!gas_position(plan, x, position)) return;

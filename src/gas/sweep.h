@@ -10,7 +10,7 @@ typedef struct Sweep Sweep;
 /// Columns [first, first + count) of the box in the rows of one task, from the first along the axis to the last.
 typedef void SweepFn(const Sweep *sweep, int task, int first, int count);
 
-/// One axis of one field's way.
+/// One axis of one field's displacement.
 struct Sweep {
     const GasPass *pass;
     const GasBox *box;

@@ -17,8 +17,8 @@ static void sweep_faces(const Sweep *sweep, size_t c, int count, float *restrict
         float q0 = lowest[i], q1 = low[i], q2 = q[i], q3 = high[i]; // read before they are chosen from: this vectorises
         float b = q2 - q1, before = q1 - q0, behind = q3 - q2, a = displacement > 0 ? before : behind;
         float up = displacement > 0 ? q1 : q2, side = displacement > 0 ? 1.f : -1.f;
-        float middle = 0.25f * fabsf(a + b), min = fabsf(a) < fabsf(b) ? fabsf(a) : fabsf(b);
-        float slope = a * b > 0 ? middle < min ? middle : min : 0, turn = b > 0 ? side : -side;
+        float centre = 0.25f * fabsf(a + b), min = fabsf(a) < fabsf(b) ? fabsf(a) : fabsf(b);
+        float slope = a * b > 0 ? centre < min ? centre : min : 0, turn = b > 0 ? side : -side;
         flux[i] = displacement * (up + turn * (1 - size) * slope) - (mixing[i] + below[i]) * open[i] * b;
     }
 }

@@ -166,7 +166,7 @@ static void operator_cell(HeatPlan *plan, const Shell *shell, uint32_t cell) {
 }
 
 /// The red springs of a cell: nothing of the diffusivity. A corner's share is half of the two triangles at it
-/// that meet in the cell's middle, or a quarter where a corner is turned inwards.
+/// that meet in the cell's centre, or a quarter where a corner is turned inwards.
 static void operator_exchange(HeatPlan *plan, const Shell *shell, uint32_t cell) {
     SINGE_ASSERT(cell < shell->cell_count);
     uint32_t centre = shell_centre(shell, cell);

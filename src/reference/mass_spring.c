@@ -36,7 +36,7 @@ static void hooke_forces(void *task, int begin, int end) {
         if (both <= 0 || stiffness <= 0) continue;
         for (int i = 0; i < 3; i++) {
             double v = (double)vb[i] - (double)va[i];
-            // positions before the substep: x~ less the way that v~ has made; what is held has v~ all the same
+            // positions before the substep: x~ less the displacement by v~; what is held has v~ all the same
             d[i] = xb[i] - xa[i] - job->h * v;
             square += d[i] * d[i], closing += d[i] * v;
         }

@@ -1,4 +1,4 @@
-// What a simulation tells its host's log. Errors are results, not lines: the log has what no result says.
+// What a simulation reports to its host's log. Errors are results, not lines: the log has what no result says.
 #include "sim/sim_internal.h"
 
 #include "common/format.h"

@@ -82,7 +82,7 @@ SingeResult singe_sim_set_velocity(SingeSim *sim, SingeSheetId id, uint32_t firs
         }
 
     for (uint32_t v = 0; v < count; v++) memcpy(now[begin + v], velocity + 3 * (size_t)v, 3 * sizeof *velocity);
-    dynamics_plan_pushed(sim->dynamics);
+    dynamics_plan_velocity_changed(sim->dynamics);
     return SINGE_OK;
 }
 

@@ -65,7 +65,7 @@ SingeResult sim_fail(SingeSim *sim, SingeResult code, const char *stage, int64_t
 bool sim_read_def(void *def, size_t size, const void *given, size_t given_size);
 
 /// Fills the caller's `size` bytes of a result of ours; 0 where the caller's is longer.
-static inline void sim_give(void *result, size_t size, const void *ours, size_t known) {
+static inline void sim_write_result(void *result, size_t size, const void *ours, size_t known) {
     memset(result, 0, size);
     memcpy(result, ours, size < known ? size : known);
 }

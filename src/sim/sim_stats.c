@@ -63,7 +63,7 @@ static void stats_strain(const SingeSim *sim, SingeStats *stats) {
     stats->strain_p99 = (double)stats_select(sim->sample, n, (size_t)(0.99 * (double)(n - 1)));
 }
 
-/// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its middle.
+/// |grad t|^2, s2/m2, of a time that is bilinear over the rest shape of a cell, at its centre.
 static float stats_slope2(const SingeSim *sim, const uint32_t *corner, const float *time) {
     Float3 p[4];
     for (int i = 0; i < 4; i++) p[i] = float3_load(sim->shell.rest_position[corner[i]]);
@@ -163,5 +163,5 @@ static SingeStats stats_now(const SingeSim *sim) {
 
 void singe_sim_read_stats(const SingeSim *sim, SingeStats *stats, size_t struct_size) {
     const SingeStats ours = stats_now(sim);
-    sim_give(stats, struct_size, &ours, sizeof ours);
+    sim_write_result(stats, struct_size, &ours, sizeof ours);
 }

@@ -38,7 +38,7 @@ void singe_sim_read_view(const SingeSim *sim, SingeView *out, size_t struct_size
         view.spring_rest[colour] = shell->springs[colour].rest;
         view.spring_flags[colour] = state->ablate.spring_flags[colour];
     }
-    sim_give(out, struct_size, &view, sizeof view);
+    sim_write_result(out, struct_size, &view, sizeof view);
 }
 
 void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheetRange *range, size_t struct_size) {
@@ -52,7 +52,7 @@ void singe_sim_read_sheet_range(const SingeSim *sim, SingeSheetId id, SingeSheet
         ours.cell_first = sheet->cell_first, ours.cell_count = sheet->cell_count;
         ours.centre_first = shell_centre(&sim->shell, sheet->cell_first);
     }
-    sim_give(range, struct_size, &ours, sizeof ours);
+    sim_write_result(range, struct_size, &ours, sizeof ours);
 }
 
 const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
@@ -63,11 +63,11 @@ const SingeEvent *singe_sim_events(const SingeSim *sim, size_t *count) {
 
 void singe_sim_read_gas(const SingeSim *sim, SingeGas *gas, size_t struct_size) {
     const SingeGas ours = sim->gas ? gas_view(sim->gas) : (SingeGas){0};
-    sim_give(gas, struct_size, &ours, sizeof ours);
+    sim_write_result(gas, struct_size, &ours, sizeof ours);
 }
 
 void singe_sim_read_timers(const SingeSim *sim, SingeTimers *timers, size_t struct_size) {
-    sim_give(timers, struct_size, &sim->timers, sizeof sim->timers);
+    sim_write_result(timers, struct_size, &sim->timers, sizeof sim->timers);
 }
 
 void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_size) {
@@ -85,7 +85,7 @@ void singe_sim_read_counts(const SingeSim *sim, SingeCounts *out, size_t struct_
     for (uint32_t s = 0; s < shell->sheet_count; s++) size += (double)shell->sheets[s].cell_size / shell->sheet_count;
     counts.cell_size = (float)size;
     for (uint32_t i = 0; i < shell->particle_count; i++) counts.particles += shell->matter.area[i] > 0;
-    sim_give(out, struct_size, &counts, sizeof counts);
+    sim_write_result(out, struct_size, &counts, sizeof counts);
 }
 
 /// Less than half of what contact keeps between surfaces, wherever it does not say that they are near.

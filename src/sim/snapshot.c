@@ -51,7 +51,7 @@ static bool snapshot_array(Stream *stream, Memory *memory, void *array_pointer, 
     return !stream->failed;
 }
 
-/// Fails the stream where something was read that a check refuses, and tells whether it is good still.
+/// Fails the stream where something was read that a check refuses. Returns whether the stream is still good.
 static bool snapshot_held(Stream *stream, bool good) {
     if (stream->mode == STREAM_READ && !good) stream->failed = true;
     return !stream->failed;

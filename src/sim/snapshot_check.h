@@ -5,7 +5,7 @@
 
 #include "sim/sim_internal.h"
 
-/// Points on their way are places, at times that are.
+/// Points in motion have finite positions and finite times.
 bool snapshot_motion_fits(const Motion *motion);
 
 /// Whether an advance can have left such a remainder.

@@ -66,9 +66,7 @@ static float eaten(const Fine *fine, FineLocation location, const FineSheet *she
 }
 
 /// A step of at most half a cell.
-static float half_at_most(float length, float axis) {
-    return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0;
-}
+static float half_max(float length, float axis) { return length < 0.5f * axis ? length / axis : length > 0 ? 0.5f : 0; }
 
 /// S at a position.
 static float smooth_level(const Fine *fine, FineLocation location) {
@@ -84,7 +82,7 @@ FineValue fine_value(const Fine *fine, FineLocation location) {
     float min = smooth_level(fine, location), angle = 0, x, y;
     if (fine->sheets[sheet].reach > 0) {
         float depth = eaten(fine, location, &fine->sheets[sheet], &angle);
-        x = half_at_most(depth, fine->axes[location.cell][0]), y = half_at_most(depth, fine->axes[location.cell][1]);
+        x = half_max(depth, fine->axes[location.cell][0]), y = half_max(depth, fine->axes[location.cell][1]);
         float c = real_cosf(angle), s = real_sinf(angle);
         const float across = 0.8660254f; // of 120 degrees
         const float direction[3][2] = {

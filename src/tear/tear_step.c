@@ -10,7 +10,7 @@
 // A tear is to run along t, across the direction of N_1, but can along sides of cells only, an edge a step. So of the
 // edges e that lead forwards one is drawn by lot,
 //
-//   weight = (e . t) (S_least/S_e)^4
+//   weight = (e . t) (S_min/S_e)^4
 //
 // with S_e the mean strength of an edge's ends: on square cells the mean of many edges so has the direction t whatever
 // the cells', and where the sheet is weaker the tear goes there. The lots are multiples of the golden section, one a
@@ -186,7 +186,7 @@ static TearEdge tear_edge(const TearPlan *plan, const Shell *shell, const State 
     return edge;
 }
 
-/// One of the edges [begin, count) by which a tear goes on in direction `way`; -1 where there is none. `lot` is 0 to 1.
+/// One of the edges [begin, count) by which a tear goes on in the direction `displacement`; -1 where there is none. `lot` is 0 to 1.
 static int pick_edge(const TearEdge *edges, int begin, int count, Float3 displacement, float lot) {
     float weight[SPLIT_FAN], min = INFINITY, sum = 0;
     for (int j = begin; j < count; j++)

@@ -79,9 +79,9 @@ void deform_between(const Deform *deform, double before, double after) {
     deform_make(deform, pose->now, after);
     float farthest = 0;
     for (uint32_t v = 0; v < deform->motion.count; v++) {
-        Float3 way = float3_sub(float3_load(pose->solid[pose->now].vertices[v]),
-                                float3_load(pose->solid[1 - pose->now].vertices[v]));
-        farthest = fmaxf(farthest, float3_dot(way, way));
+        Float3 displacement = float3_sub(float3_load(pose->solid[pose->now].vertices[v]),
+                                         float3_load(pose->solid[1 - pose->now].vertices[v]));
+        farthest = fmaxf(farthest, float3_dot(displacement, displacement));
     }
     pose->farthest = sqrtf(farthest);
 }

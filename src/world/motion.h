@@ -1,4 +1,4 @@
-// Points on their way from where they are at one time to where a caller wants them at another, in straight lines.
+// Points that move in straight lines from their positions at one time to those that a caller sets for another.
 #ifndef WORLD_MOTION_H
 #define WORLD_MOTION_H
 
@@ -19,7 +19,7 @@ void motion_free(Memory *memory, Motion *motion);
 /// Sets out at `now`, from where they are then, to be at `to` at `time`; at once where that is not later.
 void motion_set(Motion *motion, const float *to, double now, double time);
 
-/// Share of the way that is done, 0 to 1.
+/// Share of the displacement that is done, 0 to 1.
 float motion_share(const Motion *motion, double time);
 
 static inline Float3 motion_point(const Motion *motion, uint32_t i, float share) {

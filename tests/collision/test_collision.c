@@ -169,7 +169,7 @@ static double slide(float friction) {
     return after - before;
 }
 
-static void sheets_rub(void **unused) {
+static void friction_slows_sheets(void **unused) {
     (void)unused;
     double slippery = slide(0), rough = slide(0.3f);
     print_message("slid %.4f m without friction, %.4f m with 0.3\n", slippery, rough);
@@ -244,7 +244,7 @@ static void cells_that_one_crosses_are_kept_apart(void **unused) {
     singe_sim_destroy(sim);
 }
 
-static void sheets_at_one_place_are_left_alone(void **unused) {
+static void coincident_sheets_are_left_alone(void **unused) {
     (void)unused;
     SingeSim *sim = new_sim(1, true);
     for (int sheet = 0; sheet < 3; sheet++)
@@ -429,7 +429,7 @@ static void features_are_measured(void **unused) {
                 if (own == &b) apart = -apart;
                 u = weight[1], v = weight[2];
             }
-            Float4 off = apart - n->apart;
+            Float4 off = apart - n->separation;
             assert_true(float4_dot(off, off) < 1e-12f && fabsf(n->distance - at_most(INFINITY, apart)) < 1e-6f);
             assert_true(fabsf(u - n->u) < 1e-3f && fabsf(v - n->v) < 1e-3f);
         }
@@ -542,11 +542,11 @@ int main(void) {
         cmocka_unit_test(a_heap_does_not_cross),
         cmocka_unit_test(thrown_sheets_do_not_cross),
         cmocka_unit_test(layers_keep_their_thickness),
-        cmocka_unit_test(sheets_rub),
+        cmocka_unit_test(friction_slows_sheets),
         cmocka_unit_test(crossing_input_is_left_alone),
         cmocka_unit_test(cells_of_other_crossings_are_kept_apart),
         cmocka_unit_test(cells_that_one_crosses_are_kept_apart),
-        cmocka_unit_test(sheets_at_one_place_are_left_alone),
+        cmocka_unit_test(coincident_sheets_are_left_alone),
         cmocka_unit_test(any_number_of_threads),
         cmocka_unit_test(the_search_finds_all),
         cmocka_unit_test(features_are_measured),

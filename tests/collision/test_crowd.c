@@ -283,5 +283,5 @@ int main(void) {
         cmocka_unit_test(crowds_grow_the_lists),         cmocka_unit_test(what_lists_grow_to_decides_nothing),
         cmocka_unit_test(what_is_dropped_is_counted),    cmocka_unit_test(no_memory_to_grow),
     };
-    return cmocka_run_group_tests_name("touch_crowd", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("collision_crowd", tests, NULL, NULL);
 }

@@ -174,10 +174,10 @@ static void check_lanes(const SpringSet *springs, const StrandSet *set, Density 
         density->slots += (uint64_t)group->rows * group->width, density->rows += group->rows + 1;
         for (uint32_t row = group->row; row <= group->row + group->rows; row++) {
             const uint32_t *node = set->node + row * STRAND_LANES;
-            if (set->beside[row] == STRAND_GATHERED) continue;
+            if (set->contiguous[row] == STRAND_GATHERED) continue;
             density->beside++;
             for (uint32_t c = 0; c < group->width; c++)
-                assert_int_equal(node[strand_lane(group->width, c)], set->beside[row] + 4 * c);
+                assert_int_equal(node[strand_lane(group->width, c)], set->contiguous[row] + 4 * c);
         }
     }
 }

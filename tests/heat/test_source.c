@@ -130,7 +130,7 @@ static void slab(Rig *rig, SingeColliderKind kind, bool below, SingeContactSides
 }
 
 /// Every kind, from either side, hot and cold: the layer that faces it or both, and nothing beside it.
-static void contact_takes_the_sides_it_is_told(void **unused) {
+static void contact_heats_the_given_sides(void **unused) {
     (void)unused;
     static const SingeColliderKind kinds[] = {SINGE_COLLIDER_BOX, SINGE_COLLIDER_HEIGHTFIELD, SINGE_COLLIDER_MESH};
     for (int k = 0; k < 24; k++) {
@@ -350,7 +350,7 @@ int main(void) {
         cmocka_unit_test(never_overshoots),
         cmocka_unit_test(falls_off_smoothly_and_moves),
         cmocka_unit_test(contact_heats_the_near_layer),
-        cmocka_unit_test(contact_takes_the_sides_it_is_told),
+        cmocka_unit_test(contact_heats_the_given_sides),
         cmocka_unit_test(contact_heat_goes_through_the_sheet),
         cmocka_unit_test(picture_and_key_frames),
         cmocka_unit_test(callback_adds_to_the_rest),

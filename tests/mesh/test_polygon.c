@@ -242,7 +242,7 @@ static void random_stars_are_covered(void **state) {
 static const double few[][2] = {{0, 0},  {4, 0}, {4, 4},   {0, 4},  {2, 0}, {6, 6},
                                 {-2, 2}, {2, 2}, {-2, -2}, {4, -2}, {6, 0}, {2, 5}};
 
-static void faces_that_touch_themselves_fall_apart(void **state) {
+static void faces_in_contact_with_themselves_are_split(void **state) {
     (void)state;
     Shape shape = SHAPE(few, 0, 9, 1, 0, 3, 6);
     assert_covers_but(&shape, 8, 0.02, "two triangles that meet in a corner");
@@ -317,7 +317,7 @@ int main(void) {
         cmocka_unit_test(large_rings_keep_their_hole),
         cmocka_unit_test(bays_stay_open),
         cmocka_unit_test(random_stars_are_covered),
-        cmocka_unit_test(faces_that_touch_themselves_fall_apart),
+        cmocka_unit_test(faces_in_contact_with_themselves_are_split),
         cmocka_unit_test(what_crosses_itself_is_refused),
         cmocka_unit_test(bent_polygons_are_covered),
     };

@@ -1,5 +1,5 @@
 // The projection of one group of strands, with one strand per lane. One file per instruction set defines LANES, the
-// vector type Lanes, Quads (a particle of every lane: its position and its inverse mass), Node (the same, with x of all
+// vector type Lanes, Float4s (a particle of every lane: its position and its inverse mass), Node (the same, with x of all
 // lanes contiguous, then y) and the operations on them, and includes this. Every operation rounds according to IEEE 754
 // and lanes never mix, so all instruction sets give the same bytes.
 //
@@ -10,7 +10,7 @@
 //
 // Eq 16 and 19 with masses, w = 1/m: (J M^-1 J^T + S) lambda = W C, x_a += w_a u lambda, x_b -= w_b u lambda, with
 // S = c/h^2 + (r/2 + y max(C/|d| - g, 0)) (w_a + w_b), the compliance c, the regularisation r, y = STRAND_YIELD and
-// g = STRAND_GIVES. The last term is for constraints that cannot be satisfied, of a strand pulled beyond its length
+// g = STRAND_COMPLIANT. The last term is for constraints that cannot be satisfied, of a strand pulled beyond its length
 // between two pins. There lambda would grow to C/r, but a substep can only take a pull w lambda of about |d|; beyond
 // that it throws nodes that are slightly out of line from side to side. With y it stays below |d|/y. Springs within a
 // hundredth of their length are not affected.
@@ -31,7 +31,7 @@
 #include <math.h>
 
 /// g above; y is in strand_lanes.h.
-#define STRAND_GIVES 0.01f
+#define STRAND_COMPLIANT 0.01f
 
 /// A spring of every lane: d, W E, the diagonal.
 typedef struct Row {
@@ -43,35 +43,35 @@ enum { KEEP_RIGHT, KEEP_FACTOR, KEEP_CYCLIC };
 
 typedef struct Group {
     float *position;
-    const uint32_t *node, *beside;
+    const uint32_t *node, *contiguous;
     const float *length, *weight, *compliance; ///< compliance: NULL where it is the same everywhere
     uint32_t rows;
-    size_t stride;              ///< floats from one quadruple to the next where particles are beside each other
-    float *keep, *first_beside; ///< first_beside: `position` seen from this part's first lane
-    float *pull;                ///< sums of mu, or NULL
-    Lanes softness, inverse_h2; ///< 1 + r/2, 1/h^2
-    Lanes stiff;                ///< c/h^2 where c is the same everywhere
+    size_t stride;                  ///< floats from one quadruple to the next where particles are contiguous
+    float *keep, *first_contiguous; ///< first_contiguous: `position` seen from this part's first lane
+    float *pull;                    ///< sums of mu, or NULL
+    Lanes softness, inverse_h2;     ///< 1 + r/2, 1/h^2
+    Lanes stiff;                    ///< c/h^2 where c is the same everywhere
 } Group;
 
 static inline float *keep_at(const Group *group, uint32_t row, int what) {
     return group->keep + ((size_t)row * STRAND_KEEP + (size_t)what) * LANES;
 }
 
-static inline Quads group_quads(const Group *group, uint32_t k) {
-    uint32_t first = group->beside[k];
-    if (first != STRAND_GATHERED) return quads_beside(group->first_beside + first, group->stride);
-    return quads_apart(group->position, group->node + (size_t)k * STRAND_LANES);
+static inline Float4s group_float4s(const Group *group, uint32_t k) {
+    uint32_t first = group->contiguous[k];
+    if (first != STRAND_GATHERED) return float4s_load_contiguous(group->first_contiguous + first, group->stride);
+    return float4s_gather(group->position, group->node + (size_t)k * STRAND_LANES);
 }
 
-static inline void group_put(const Group *group, uint32_t k, const Quads *quads) {
-    uint32_t first = group->beside[k];
-    if (first != STRAND_GATHERED) quads_put_beside(group->first_beside + first, group->stride, quads);
-    else quads_put_apart(group->position, group->node + (size_t)k * STRAND_LANES, quads);
+static inline void group_put(const Group *group, uint32_t k, const Float4s *float4s) {
+    uint32_t first = group->contiguous[k];
+    if (first != STRAND_GATHERED) float4s_store_contiguous(group->first_contiguous + first, group->stride, float4s);
+    else float4s_scatter(group->position, group->node + (size_t)k * STRAND_LANES, float4s);
 }
 
 static inline Node group_node(const Group *group, uint32_t k) {
-    Quads quads = group_quads(group, k);
-    return quads_node(&quads);
+    Float4s float4s = group_float4s(group, k);
+    return quads_node(&float4s);
 }
 
 static inline Row group_row(const Group *restrict group, uint32_t k, const Node *a, const Node *b) {
@@ -84,7 +84,7 @@ static inline Row group_row(const Group *restrict group, uint32_t k, const Node 
     Lanes crushed = target * lanes_all(0.17157288f);
     if (__builtin_expect(lanes_any_less(square, crushed), 0))
         e = lanes_where_less(square, crushed, -l * lanes_sqrt(square), e);
-    Lanes beyond = lanes_max(e - square * lanes_all(STRAND_GIVES), lanes_all(0));
+    Lanes beyond = lanes_max(e - square * lanes_all(STRAND_COMPLIANT), lanes_all(0));
     Lanes pull = group->softness * square + beyond * lanes_all(STRAND_YIELD);
     Lanes stiff = group->stiff;
     if (group->compliance) stiff = lanes_load(group->compliance + slot) * group->inverse_h2;
@@ -126,17 +126,17 @@ static inline void group_pull(const Group *group, uint32_t k, Lanes mu) {
 /// Back: substitutes, and moves each node once both its springs are known.
 static inline void chains_substitute(const Group *group, const bool pulls) {
     Lanes mu = lanes_all(0), factor = mu;
-    Quads b = group_quads(group, group->rows), after = quads_push(&b, &b, mu);
+    Float4s b = group_float4s(group, group->rows), after = float4s_correction(&b, &b, mu);
     for (uint32_t k = group->rows; k-- > 0;) {
         mu = lanes_load(keep_at(group, k, KEEP_RIGHT)) + factor * mu;
         factor = lanes_load(keep_at(group, k, KEEP_FACTOR));
         if (pulls) group_pull(group, k, mu);
-        Quads a = group_quads(group, k), push = quads_push(&a, &b, mu);
+        Float4s a = group_float4s(group, k), push = float4s_correction(&a, &b, mu);
         quads_move(&b, &after, &push);
         group_put(group, k + 1, &b);
         b = a, after = push;
     }
-    Quads none = quads_push(&b, &b, lanes_all(0));
+    Float4s none = float4s_correction(&b, &b, lanes_all(0));
     quads_move(&b, &after, &none);
     group_put(group, 0, &b);
 }
@@ -211,13 +211,13 @@ static inline Lanes ring_mu(const Group *group, uint32_t k, Lanes scale) {
 
 static inline void rings_move(const Group *group, Lanes scale, const bool pulls) {
     uint32_t end = group->rows - 1;
-    Quads start = group_quads(group, 0), a = start, last = group_quads(group, end);
-    Quads before = quads_push(&last, &start, ring_mu(group, end, scale));
+    Float4s start = group_float4s(group, 0), a = start, last = group_float4s(group, end);
+    Float4s before = float4s_correction(&last, &start, ring_mu(group, end, scale));
     for (uint32_t k = 0; k <= end; k++) {
-        Quads b = k == end ? start : group_quads(group, k + 1);
+        Float4s b = k == end ? start : group_float4s(group, k + 1);
         Lanes mu = ring_mu(group, k, scale);
         if (pulls) group_pull(group, k, mu);
-        Quads push = quads_push(&a, &b, mu);
+        Float4s push = float4s_correction(&a, &b, mu);
         quads_move(&a, &push, &before);
         group_put(group, k, &a);
         a = b, before = push;
@@ -250,7 +250,7 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
         size_t slot = (size_t)part->row * STRAND_LANES + lane;
         Group group = {.position = job->position,
                        .node = set->node + slot,
-                       .beside = set->beside + part->row,
+                       .contiguous = set->contiguous + part->row,
                        .length = set->length + slot,
                        .weight = set->weight + slot,
                        .compliance = set->compliance_all < 0 ? set->compliance + slot : NULL,
@@ -258,7 +258,7 @@ void STRAND_SOLVE(const StrandJob *job, uint32_t index, float *keep) {
                        .pull = set->pull ? set->pull + slot : NULL,
                        .stride = part->width,
                        .keep = keep,
-                       .first_beside = job->position + 4 * strand_column(part->width, lane),
+                       .first_contiguous = job->position + 4 * strand_column(part->width, lane),
                        .softness = lanes_all(1 + 0.5f * job->regularisation),
                        .inverse_h2 = lanes_all(job->inverse_h2),
                        .stiff = lanes_all(set->compliance_all * job->inverse_h2)};

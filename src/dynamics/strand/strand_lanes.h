@@ -21,7 +21,7 @@ _Static_assert(STRAND_LANES % 16 == 0, "the widest kernel has 16 lanes");
 /// y of the constraint in strand_kernel.h.
 #define STRAND_YIELD 0.5f
 
-/// In StrandSet.beside: the particles of the row are anywhere.
+/// In StrandSet.contiguous: the particles of the row are anywhere.
 #define STRAND_GATHERED UINT32_MAX
 
 /// A group of lanes that are solved together.
@@ -42,7 +42,7 @@ typedef struct StrandSet {
     uint32_t *family_first;
     uint32_t *strand_slot; ///< [strands] slot of the strand's first spring; spring k lies k rows further
     uint32_t *node;        ///< [row_count STRAND_LANES] four times the particle's number
-    uint32_t *beside;      ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
+    uint32_t *contiguous;  ///< [row_count] node of column 0 where those of the other columns follow, or STRAND_GATHERED
     float *length;         ///< [row_count STRAND_LANES] m, targets
     float *weight;         ///< [row_count STRAND_LANES] W of eq 19, with char; 0 where there is no spring
     float *compliance;     ///< [row_count STRAND_LANES] m/N

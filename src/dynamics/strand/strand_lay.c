@@ -1,7 +1,7 @@
-// Laying strands into lanes so that particles of consecutive numbers lie beside each other, where kernels load them at
+// Laying strands into lanes so that particles of consecutive numbers are contiguous, where kernels load them at
 // once. A run begins with the longest strand that is left, in a lane of its own. The lane to its right takes, row by
-// row, the strands through the next particles, p + 1 beside p, and so on until too little is found. In a mesh that is
-// numbered row by row, a strand across the rows so gets its neighbour beside it; and where a diagonal leaves the mesh
+// row, the strands through the next particles, p + 1 next to p, and so on until too little is found. In a mesh that is
+// numbered row by row, a strand across the rows so gets its neighbour next to it; and where a diagonal leaves the mesh
 // on one side, the row's last particle is followed by the first of the next row, with which a diagonal comes in on the
 // other side: lanes stay full. What no run takes fills the rest of the lanes, then lanes of its own, longest first.
 // Rings keep a lane each, and only rings of one length share a group.
@@ -138,10 +138,10 @@ static void lay_put_right(Lay *lay, uint32_t s, uint32_t column, uint32_t row) {
     lay_put(lay, s, lay->set->group_count - 1, column, row);
 }
 
-/// Fills the lane on the right with what runs beside the lane on the left. Returns how many particles have p + 1 beside
+/// Fills the lane on the right with what runs next to the lane on the left. Returns how many particles have p + 1 beside
 /// them.
 static uint32_t lay_right(Lay *lay, uint32_t column) {
-    uint32_t beside = 0;
+    uint32_t contiguous = 0;
     lay->lane_serial++;
     for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
     for (uint32_t k = 0; k < lay->frame; k++) {
@@ -151,8 +151,9 @@ static uint32_t lay_right(Lay *lay, uint32_t column) {
         lay->tried[s] = lay->lane_serial;
         lay_put_right(lay, s, column, k - lay->index[p]);
     }
-    for (uint32_t k = 0; k < lay->frame; k++) beside += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
-    return beside;
+    for (uint32_t k = 0; k < lay->frame; k++)
+        contiguous += lay->left[k] != SHELL_NONE && lay->right[k] == lay->left[k] + 1;
+    return contiguous;
 }
 
 /// From `s` to the left as long as strands are as long.
@@ -174,13 +175,13 @@ static void lay_take_back(Lay *lay, uint32_t count) {
 
 /// Lays the run that begins with `s`, and takes it back when it has few lanes.
 static bool lay_run(Lay *lay, uint32_t s) {
-    uint32_t length = strand_length(lay->springs, s), margin = LAY_MARGIN + length / 32, beside = length, lanes = 0;
+    uint32_t length = strand_length(lay->springs, s), margin = LAY_MARGIN + length / 32, contiguous = length, lanes = 0;
     uint32_t groups = lay->set->group_count, start = lay->laid_count, first = start, before = start;
     StrandGroup *group = lay_open_group(lay, false);
     lay->frame = length + 1 + 2 * margin;
     for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
     lay_put_right(lay, s, 0, margin);
-    for (; 2 * beside > length; lanes++) {
+    for (; 2 * contiguous > length; lanes++) {
         group->columns++;
         uint32_t *lane = lay->left;
         lay->left = lay->right, lay->right = lane;
@@ -190,7 +191,7 @@ static bool lay_run(Lay *lay, uint32_t s) {
             first = lay->laid_count;
         }
         before = lay->laid_count;
-        beside = lay_right(lay, group->columns);
+        contiguous = lay_right(lay, group->columns);
     }
     lay_take_back(lay, lanes < LAY_RUN_MIN ? start : before);
     if (first < lay->laid_count) lay_close_group(lay, first);

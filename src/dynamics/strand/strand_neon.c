@@ -12,9 +12,9 @@ typedef struct Node {
     Lanes x, y, z, w;
 } Node;
 /// Quadruples of a particle each, a lane each.
-typedef struct Quads {
+typedef struct Float4s {
     Float4 at[4];
-} Quads;
+} Float4s;
 
 static inline Lanes lanes_all(float a) { return float4_all(a); }
 static inline Lanes lanes_load(const float *p) { return float4_load(p); }
@@ -24,49 +24,51 @@ static inline Lanes lanes_max(Lanes a, Lanes b) { return float4_max(a, b); }
 static inline bool lanes_any_less(Lanes a, Lanes b) { return float4_any(a < b); }
 static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) { return float4_select(a < b, yes, no); }
 
-static inline Quads quads_beside(const float *x, size_t stride) {
-    return (Quads){{float4_load(x), float4_load(x + stride), float4_load(x + 2 * stride), float4_load(x + 3 * stride)}};
+static inline Float4s float4s_load_contiguous(const float *x, size_t stride) {
+    return (Float4s){
+        {float4_load(x), float4_load(x + stride), float4_load(x + 2 * stride), float4_load(x + 3 * stride)}};
 }
 
-static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
-    for (size_t e = 0; e < 4; e++) float4_store(x + e * stride, quads->at[e]);
+static inline void float4s_store_contiguous(float *x, size_t stride, const Float4s *float4s) {
+    for (size_t e = 0; e < 4; e++) float4_store(x + e * stride, float4s->at[e]);
 }
 
-static inline Quads quads_apart(const float *position, const uint32_t *node) {
-    return (Quads){{float4_load(position + node[0]), float4_load(position + node[1]), float4_load(position + node[2]),
-                    float4_load(position + node[3])}};
+static inline Float4s float4s_gather(const float *position, const uint32_t *node) {
+    return (Float4s){{float4_load(position + node[0]), float4_load(position + node[1]), float4_load(position + node[2]),
+                      float4_load(position + node[3])}};
 }
 
-static inline void quads_put_apart(float *position, const uint32_t *node, const Quads *quads) {
-    for (int e = 0; e < 4; e++) float4_store(position + node[e], quads->at[e]);
+static inline void float4s_scatter(float *position, const uint32_t *node, const Float4s *float4s) {
+    for (int e = 0; e < 4; e++) float4_store(position + node[e], float4s->at[e]);
 }
 
-static inline Node quads_node(const Quads *quads) {
-    Float4 q[4] = {quads->at[0], quads->at[1], quads->at[2], quads->at[3]};
+static inline Node quads_node(const Float4s *float4s) {
+    Float4 q[4] = {float4s->at[0], float4s->at[1], float4s->at[2], float4s->at[3]};
     float4_transpose(q);
     return (Node){q[0], q[1], q[2], q[3]};
 }
 
-static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
-    Quads push;
+static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
+    Float4s push;
     for (int e = 0; e < 4; e++) push.at[e] = (b->at[e] - a->at[e]) * float4_all(factor[e]);
     return push;
 }
 
 /// Adds to the first three numbers; the fourth stays.
-static inline Float4 quad_add(Float4 x, Float4 displacement) {
+static inline Float4 float4_add_position(Float4 x, Float4 displacement) {
     return float4_select((Float4Mask){-1, -1, -1, 0}, x + displacement, x);
 }
 
-static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
-    for (int e = 0; e < 4; e++) x->at[e] = quad_add(x->at[e], float4_all(x->at[e][3]) * (forth->at[e] - back->at[e]));
+static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
+    for (int e = 0; e < 4; e++)
+        x->at[e] = float4_add_position(x->at[e], float4_all(x->at[e][3]) * (forth->at[e] - back->at[e]));
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
     Float4 a = {anchor[0], anchor[1], anchor[2], 0};
-    Quads from = {{a, a, a, a}}, displacement = quads_push(&from, x, factor);
-    for (int e = 0; e < 4; e++) x->at[e] = quad_add(x->at[e], displacement.at[e]);
+    Float4s from = {{a, a, a, a}}, displacement = float4s_correction(&from, x, factor);
+    for (int e = 0; e < 4; e++) x->at[e] = float4_add_position(x->at[e], displacement.at[e]);
 }
 
 #define ATTACH_HOLD attach_hold_neon

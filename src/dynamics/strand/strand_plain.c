@@ -9,7 +9,7 @@ typedef float Lanes;
 typedef struct Node {
     Lanes x, y, z, w;
 } Node;
-typedef Node Quads;
+typedef Node Float4s;
 
 static inline Lanes lanes_all(float a) { return a; }
 static inline Lanes lanes_load(const float *p) { return *p; }
@@ -19,38 +19,38 @@ static inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 static inline bool lanes_any_less(Lanes a, Lanes b) { return a < b; }
 static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) { return a < b ? yes : no; }
 
-static inline Quads quads_beside(const float *x, size_t stride) {
+static inline Float4s float4s_load_contiguous(const float *x, size_t stride) {
     (void)stride;
-    return (Quads){x[0], x[1], x[2], x[3]};
+    return (Float4s){x[0], x[1], x[2], x[3]};
 }
 
-static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
+static inline void float4s_store_contiguous(float *x, size_t stride, const Float4s *float4s) {
     (void)stride;
-    x[0] = quads->x, x[1] = quads->y, x[2] = quads->z;
+    x[0] = float4s->x, x[1] = float4s->y, x[2] = float4s->z;
 }
 
-static inline Quads quads_apart(const float *position, const uint32_t *node) {
-    return quads_beside(position + *node, 0);
+static inline Float4s float4s_gather(const float *position, const uint32_t *node) {
+    return float4s_load_contiguous(position + *node, 0);
 }
 
-static inline void quads_put_apart(float *position, const uint32_t *node, const Quads *quads) {
-    quads_put_beside(position + *node, 0, quads);
+static inline void float4s_scatter(float *position, const uint32_t *node, const Float4s *float4s) {
+    float4s_store_contiguous(position + *node, 0, float4s);
 }
 
-static inline Node quads_node(const Quads *quads) { return *quads; }
+static inline Node quads_node(const Float4s *float4s) { return *float4s; }
 
-static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
-    return (Quads){(b->x - a->x) * factor, (b->y - a->y) * factor, (b->z - a->z) * factor, 0};
+static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
+    return (Float4s){(b->x - a->x) * factor, (b->y - a->y) * factor, (b->z - a->z) * factor, 0};
 }
 
-static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
+static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     x->x += x->w * (forth->x - back->x);
     x->y += x->w * (forth->y - back->y);
     x->z += x->w * (forth->z - back->z);
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
     x->x += (x->x - anchor[0]) * factor;
     x->y += (x->y - anchor[1]) * factor;
     x->z += (x->z - anchor[2]) * factor;

@@ -21,12 +21,12 @@ static void set_write_nodes(StrandSet *set, const SpringSet *springs, uint32_t n
 }
 
 /// Notes the rows whose particles have consecutive numbers.
-static void set_write_beside(StrandSet *set, const StrandGroup *group) {
+static void set_write_contiguous(StrandSet *set, const StrandGroup *group) {
     for (uint32_t row = group->row; row <= group->row + group->rows; row++) {
         const uint32_t *node = set->node + (size_t)row * STRAND_LANES;
-        set->beside[row] = node[0];
+        set->contiguous[row] = node[0];
         for (uint32_t c = 0; c < group->width; c++)
-            if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->beside[row] = STRAND_GATHERED;
+            if (node[strand_lane(group->width, c)] != node[0] + 4 * c) set->contiguous[row] = STRAND_GATHERED;
     }
 }
 
@@ -43,7 +43,7 @@ static bool set_take_block(Memory *memory, StrandSet *set) {
     words += (64 - (uintptr_t)words % 64) % 64 / sizeof *words;
     set->length = words, set->weight = words + slots, set->compliance = words + 2 * slots;
     set->node = (uint32_t *)(void *)(words + 3 * slots);
-    set->beside = set->node + slots;
+    set->contiguous = set->node + slots;
     return true;
 }
 
@@ -62,7 +62,7 @@ bool strand_set_create(Memory *memory, const SpringSet *springs, uint32_t nowher
     set_write_nodes(set, springs, nowhere);
     for (uint32_t g = 0; g < set->group_count; g++) {
         if (set->longest < set->groups[g].rows) set->longest = set->groups[g].rows;
-        set_write_beside(set, &set->groups[g]);
+        set_write_contiguous(set, &set->groups[g]);
     }
     return true;
 }

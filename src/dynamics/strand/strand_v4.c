@@ -11,9 +11,9 @@ typedef struct Node {
     Lanes x, y, z, w;
 } Node;
 /// Quadruples of a particle each: [e] those of lanes e, e + 4, e + 8 and e + 12.
-typedef struct Quads {
+typedef struct Float4s {
     __m512 at[4];
-} Quads;
+} Float4s;
 
 static inline Lanes lanes_all(float a) { return (Lanes)_mm512_set1_ps(a); }
 static inline Lanes lanes_load(const float *p) { return (Lanes)_mm512_loadu_ps(p); }
@@ -28,49 +28,50 @@ static inline Lanes lanes_where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
     return (Lanes)_mm512_mask_blend_ps(less, (__m512)no, (__m512)yes);
 }
 
-static inline Quads quads_beside(const float *x, size_t stride) {
-    return (Quads){{_mm512_loadu_ps(x), _mm512_loadu_ps(x + stride), _mm512_loadu_ps(x + 2 * stride),
-                    _mm512_loadu_ps(x + 3 * stride)}};
+static inline Float4s float4s_load_contiguous(const float *x, size_t stride) {
+    return (Float4s){{_mm512_loadu_ps(x), _mm512_loadu_ps(x + stride), _mm512_loadu_ps(x + 2 * stride),
+                      _mm512_loadu_ps(x + 3 * stride)}};
 }
 
-static inline void quads_put_beside(float *x, size_t stride, const Quads *quads) {
-    for (size_t e = 0; e < 4; e++) _mm512_storeu_ps(x + e * stride, quads->at[e]);
+static inline void float4s_store_contiguous(float *x, size_t stride, const Float4s *float4s) {
+    for (size_t e = 0; e < 4; e++) _mm512_storeu_ps(x + e * stride, float4s->at[e]);
 }
 
-static inline Quads quads_apart(const float *position, const uint32_t *node) {
-    Quads quads;
+static inline Float4s float4s_gather(const float *position, const uint32_t *node) {
+    Float4s float4s;
     for (int e = 0; e < 4; e++) {
         __m512 q = _mm512_castps128_ps512(_mm_loadu_ps(position + node[e]));
         q = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 4]), 1);
         q = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 8]), 2);
-        quads.at[e] = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 12]), 3);
+        float4s.at[e] = _mm512_insertf32x4(q, _mm_loadu_ps(position + node[e + 12]), 3);
     }
-    return quads;
+    return float4s;
 }
 
-static inline void quads_put_apart(float *position, const uint32_t *node, const Quads *quads) {
+static inline void float4s_scatter(float *position, const uint32_t *node, const Float4s *float4s) {
     for (int e = 0; e < 4; e++) {
-        _mm_storeu_ps(position + node[e], _mm512_castps512_ps128(quads->at[e]));
-        _mm_storeu_ps(position + node[e + 4], _mm512_extractf32x4_ps(quads->at[e], 1));
-        _mm_storeu_ps(position + node[e + 8], _mm512_extractf32x4_ps(quads->at[e], 2));
-        _mm_storeu_ps(position + node[e + 12], _mm512_extractf32x4_ps(quads->at[e], 3));
+        _mm_storeu_ps(position + node[e], _mm512_castps512_ps128(float4s->at[e]));
+        _mm_storeu_ps(position + node[e + 4], _mm512_extractf32x4_ps(float4s->at[e], 1));
+        _mm_storeu_ps(position + node[e + 8], _mm512_extractf32x4_ps(float4s->at[e], 2));
+        _mm_storeu_ps(position + node[e + 12], _mm512_extractf32x4_ps(float4s->at[e], 3));
     }
 }
 
-static inline Node quads_node(const Quads *quads) {
-    const __m512 *q = quads->at;
+static inline Node quads_node(const Float4s *float4s) {
+    const __m512 *q = float4s->at;
     __m512 xy01 = _mm512_unpacklo_ps(q[0], q[1]), zw01 = _mm512_unpackhi_ps(q[0], q[1]);
     __m512 xy23 = _mm512_unpacklo_ps(q[2], q[3]), zw23 = _mm512_unpackhi_ps(q[2], q[3]);
     return (Node){(Lanes)_mm512_shuffle_ps(xy01, xy23, 0x44), (Lanes)_mm512_shuffle_ps(xy01, xy23, 0xEE),
                   (Lanes)_mm512_shuffle_ps(zw01, zw23, 0x44), (Lanes)_mm512_shuffle_ps(zw01, zw23, 0xEE)};
 }
 
-#define QUAD_PUSH(e) _mm512_mul_ps(_mm512_sub_ps(b->at[e], a->at[e]), _mm512_permute_ps((__m512)factor, (e)*0x55))
-static inline Quads quads_push(const Quads *a, const Quads *b, Lanes factor) {
-    return (Quads){{QUAD_PUSH(0), QUAD_PUSH(1), QUAD_PUSH(2), QUAD_PUSH(3)}};
+#define FLOAT4_CORRECTION(e) \
+    _mm512_mul_ps(_mm512_sub_ps(b->at[e], a->at[e]), _mm512_permute_ps((__m512)factor, (e)*0x55))
+static inline Float4s float4s_correction(const Float4s *a, const Float4s *b, Lanes factor) {
+    return (Float4s){{FLOAT4_CORRECTION(0), FLOAT4_CORRECTION(1), FLOAT4_CORRECTION(2), FLOAT4_CORRECTION(3)}};
 }
 
-static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
+static inline void quads_move(Float4s *x, const Float4s *forth, const Float4s *back) {
     for (int e = 0; e < 4; e++) {
         __m512 w = _mm512_permute_ps(x->at[e], 0xFF), push = _mm512_sub_ps(forth->at[e], back->at[e]);
         x->at[e] = _mm512_add_ps(x->at[e], _mm512_maskz_mul_ps(0x7777, w, push));
@@ -78,9 +79,9 @@ static inline void quads_move(Quads *x, const Quads *forth, const Quads *back) {
 }
 
 /// x += (x - anchor) factor.
-static inline void quads_pull(Quads *x, const float *anchor, Lanes factor) {
+static inline void quads_pull(Float4s *x, const float *anchor, Lanes factor) {
     __m512 a = _mm512_broadcast_f32x4(_mm_setr_ps(anchor[0], anchor[1], anchor[2], 0));
-    Quads from = {{a, a, a, a}}, displacement = quads_push(&from, x, factor);
+    Float4s from = {{a, a, a, a}}, displacement = float4s_correction(&from, x, factor);
     for (int e = 0; e < 4; e++) x->at[e] = _mm512_mask_add_ps(x->at[e], 0x7777, x->at[e], displacement.at[e]);
 }
 
