@@ -209,6 +209,8 @@ static void close_trajectories(const Ccd *ccd, float h) {
     SINGE_ASSERT(h > 0);
     CollisionPlan *plan = ccd->plan;
     DynamicsState *dynamics = ccd->dynamics;
+
+    // centres follow the mean shift of their corners
     for (uint32_t c = 0; c < plan->cell_count; c++) {
         uint32_t centre = shell_centre(ccd->shell, c);
         Float4 shift = {0}, displacement = {0}, position = float4_load(dynamics->position[centre]);
@@ -224,6 +226,8 @@ static void close_trajectories(const Ccd *ccd, float h) {
         float4_store(dynamics->velocity[centre],
                      shifted_velocity(float4_load(dynamics->velocity[centre]), shift, displacement, h));
     }
+
+    // velocities of the corners
     for (uint32_t v = 0; v < plan->vertex_count; v++) {
         Float4 corner = float4_load(dynamics->position[v]), shift = corner - float4_load(plan->want[v]);
         Float4 displacement = corner - float4_load(plan->start[v]);
@@ -245,6 +249,8 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
     Ccd ccd = {plan, shell, dynamics, state->ablate->cell_flags, h * (float)(state->step - plan->step + 1), 0};
     bool stopped = false;
     if (plan->closed) mark_moved(&ccd);
+
+    // stop what meets until nothing does: impacts one by one, then zones
     for (int impacts = 0, zones = 0;;) {
         uint32_t hits;
         TRY(ccd_look(&ccd, state, pool, h, stopped || plan->closed, &hits));
@@ -260,6 +266,8 @@ static SingeResult close_step(CollisionPlan *plan, const Shell *shell, const Sta
         if (zones > 0 || impacts == IMPACT_ROUNDS || crowd) ccd_zones(&ccd, zones++);
         else ccd_impacts(&ccd), impacts++;
     }
+
+    // note where the step has ended, for the next one
     plan->counters.looks += ccd.looked;
     if (stopped) close_trajectories(&ccd, h);
     memcpy(plan->end, dynamics->position, plan->vertex_count * sizeof *plan->end);

@@ -32,10 +32,14 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
     const Swept *one = pair->kind == COLLISION_NODE_OF_B ? q : p, *two = pair->kind == COLLISION_NODE_OF_B ? p : q;
     float *w1 = pair->kind == COLLISION_NODE_OF_B ? wb : wa, *w2 = pair->kind == COLLISION_NODE_OF_B ? wa : wb;
     Float4 x[5], y[5], separation;
+
+    // nodes at the time of impact
     for (int i = 0; i < 5; i++) {
         x[i] = one->position[i] + pair->hit * one->displacement[i];
         y[i] = two->position[i] + pair->hit * two->displacement[i];
     }
+
+    // two edges
     if (pair->kind == COLLISION_EDGES) {
         const uint8_t *k = collision_edge[pair->first[0]], *l = collision_edge[pair->first[1]];
         float s, t;
@@ -44,6 +48,8 @@ static Float4 impact_points(const CollisionPair *pair, const Swept *p, const Swe
         zones_spread(w2, l[0], 1 - t), zones_spread(w2, l[1], t);
         return separation;
     }
+
+    // a node and a triangle
     const uint8_t *k = collision_triangle[pair->first[1]];
     float weight[3];
     separation = feature_from_triangle(x[pair->first[0]], y[k[0]], y[k[1]], y[k[2]], weight);

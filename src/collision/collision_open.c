@@ -209,14 +209,20 @@ static void look_at_four(const Opening *job, uint32_t first, uint32_t count, Blo
     uint32_t number[4];
     for (uint32_t i = 0; i < 4; i++) number[i] = first + (i < count ? i : 0);
     CollisionFourPairs four = collision_four_pairs(plan, number);
+
+    // connected cells whose normals lie within a cone cannot collide
     unsigned joined = four.bridged;
     if (joined) joined &= float4_bits(collision_four_within(&four, four.a, four.b, FEATURE_CONE));
+
+    // bounds of the distances, and where contact is possible
     Float4 due = 1.25f * plan->thickness + 1.5f * plan->time_step * collision_four_differ(&four, COLLISION_VELOCITY);
     Float4 left = four.distance;
     if (!job->again)
         left = float4_max(left - collision_four_differ(&four, COLLISION_DISPLACEMENT) - plan->noise, float4_all(0));
     unsigned near = float4_bits(left <= due) & ~joined;
     for (uint32_t i = 0; i < count && i < 4; i++) plan->pairs[first + i].distance = joined >> i & 1 ? 0 : left[i];
+
+    // measure the pairs that may be in contact
     for (near &= (1u << (count < 4 ? count : 4)) - 1; near; near &= near - 1) {
         int i = __builtin_ctz(near);
         const CollisionPair *pair = &plan->pairs[first + (uint32_t)i];
@@ -319,6 +325,8 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         if (pair->a == pair->b ||
             !(state->ablate->cell_flags[pair->a] & state->ablate->cell_flags[pair->b] & SINGE_ALIVE))
             continue;
+
+        // measure the pair, unless it is connected and cannot collide
         narrow_cell_set(plan, shell, pair->a, x, float4_load(x[a[0]]), &p);
         narrow_cell_set(plan, shell, pair->b, x, float4_load(x[a[0]]), &q);
         if (pair->bridge != SHELL_NONE &&
@@ -327,6 +335,8 @@ void collision_clearance(const CollisionPlan *plan, const Shell *shell, const St
         float nearest;
         if (narrow_slabs_distance(&p, &q) > looks || !narrow_features(shell, pair, &p, &q, &far, found, &nearest))
             continue;
+
+        // the distance is the room of all corners
         for (int i = 0; i < 16; i++)
             if (a[i / 4] == b[i % 4]) nearest = 0; // towards what they share
         for (int i = 0; i < 4; i++) room[a[i]] = fminf(room[a[i]], nearest), room[b[i]] = fminf(room[b[i]], nearest);

@@ -59,6 +59,8 @@ static void against_boxes(const OutsideSearch *job, uint32_t a, const OutsideBox
             if (plan->alive[b]) against_box(job, a, box, b, writer);
         return;
     }
+
+    // entries of the search's grid
     for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
@@ -110,6 +112,8 @@ static void against_outside(const OutsideSearch *job, uint32_t k, BlockWriter *w
     const OutsideBox *box = &plan->outside_boxes[k];
     float inverse = 1 / plan->edge;
     Cube first = collision_cube(box->low, inverse), last = collision_cube(box->high, inverse), at = first;
+
+    // entries of the grid of cells out of bounds
     for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
         for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
             for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {

@@ -41,6 +41,8 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
     float(*x)[4] = dynamics->position;
     for (uint32_t k = 0; k < plan->repulsion_count; k++) {
         const Repulsion *repulsion = &plan->repulsions[k];
+
+        // how far the two points are too near
         Float4 separation = {0};
         for (uint32_t i = 0; i < repulsion->count; i++)
             separation += repulsion->weight[i] * float4_load(x[repulsion->node[i]]);
@@ -49,11 +51,15 @@ void repulsion_apply(CollisionPlan *plan, const float (*predicted)[4], float h, 
         for (uint32_t i = 0; i < repulsion->count; i++)
             weight += repulsion->weight[i] * repulsion->weight[i] * x[repulsion->node[i]][3];
         if (weight <= 0) continue;
+
+        // move them apart along the normal
         Float4 away = -height / weight * repulsion->normal;
         for (uint32_t i = 0; i < repulsion->count; i++) {
             Float4 position = float4_load(x[repulsion->node[i]]);
             float4_store(x[repulsion->node[i]], position + position[3] * repulsion->weight[i] * away);
         }
+
+        // friction across it
         if (plan->def.friction > 0)
             repulsion_friction(repulsion, predicted, h, -plan->def.friction * height, weight, dynamics);
         plan->counters.repulsions++;

@@ -41,6 +41,8 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         deform_between(&collider->deform, before, after);
         moving.drift = collider->deform.pose->farthest;
     }
+
+    // radius about the collider's origin, for its rotation
     collider_bounds(collider, &low, &high);
     const float ends[3][2] = {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}};
     float size = 0;
@@ -48,6 +50,8 @@ MovingCollider contact_collider(const Collider *collider, double before, double 
         float far = fmaxf(fabsf(ends[i][0]), fabsf(ends[i][1]));
         if (isfinite(far)) size += far * far; // what has no end along an axis is taken not to turn about another
     }
+
+    // box in its own frame, widened by what moves in the substep
     float margin = collider->def.offset + CONTACT_SPEED * (float)(after - before) +
                    contact_motion(&moving.before, &moving.after, sqrtf(size));
     for (int i = 0; i < 3; i++) {
@@ -157,6 +161,7 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
     uint64_t contacts = 0;
     float(*position)[4] = dynamics->position;
     for (int first = begin; first < end && collider_count > 0; first += 4) {
+        // four particles at once, against boxes
         int count = end - first < 4 ? end - first : 4;
         Float4 x[4];
         for (int i = 0; i < 4; i++) x[i] = float4_load(position[first + (i < count ? i : 0)]);
@@ -164,6 +169,8 @@ uint64_t contact_range(const DynamicsPlan *plan, uint32_t collider_count, float 
         for (uint32_t c = 0; c < collider_count; c++) {
             const MovingCollider *collider = &plan->colliders[c];
             if (!contact_any_near(collider, x)) continue;
+
+            // each of them, along its displacement
             float offset = collider->collider->def.offset;
             for (int i = first; i < first + count; i++) {
                 if (position[i][3] == 0) continue;

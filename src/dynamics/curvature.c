@@ -63,6 +63,7 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
     const float side = colour == SINGE_YELLOW ? 0.70710678f : 1; // of a cell, over the spring
     size_t slot = set->strand_slot[strand];
     for (uint32_t k = first; k < end; k++, slot += STRAND_LANES) {
+        // the spring before, which is the last one at the start of a ring
         const uint32_t b = springs->ends[k][0], c = springs->ends[k][1];
         uint32_t before = k - 1;
         size_t slot_before = slot - STRAND_LANES;
@@ -70,6 +71,8 @@ void curvature_prepare(const Shell *shell, const StateInput *state, SingeColour 
             before = end - 1, slot_before = slot + (size_t)(end - 1 - first) * STRAND_LANES;
             if (springs->ends[before][1] != b || end - first < 3) continue;
         }
+
+        // only unburnt mesh has a limit
         const uint32_t a = springs->ends[before][0];
         bool fresh = mass[a] > BEND_FRESH && mass[b] > BEND_FRESH && mass[c] > BEND_FRESH;
         bool whole = set->weight[slot] > 0 && set->weight[slot_before] > 0; // neither burnt nor torn

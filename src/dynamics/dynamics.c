@@ -41,6 +41,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     *out = NULL;
     DynamicsPlan *plan = memory_new(memory, 1, sizeof *plan);
     if (!plan) return SINGE_ERROR_MEMORY;
+
+    // settings, and sizes that follow from the shell
     plan->settings = *settings;
     SingeSolverDef *solver = &plan->settings.solver;
     if (solver->substeps == 0)
@@ -50,6 +52,8 @@ SingeResult dynamics_plan_create(Memory *memory, const Shell *shell, const Dynam
     plan->cell_count = shell->cell_count;
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         plan->spring_count[colour] = shell_strand_springs(shell, colour);
+
+    // the solver's parts
     plan->kernels = kernels_choose(settings->instructions);
     if (!plan_allocate(plan, shell, memory) ||
         !strands_create(memory, shell, solver, h_sub, settings->thread_count, plan->kernels->solve, &plan->strands) ||

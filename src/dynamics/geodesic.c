@@ -98,6 +98,8 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
         int j = (i + turn) & 3;
         uint32_t u = corner[j];
         if (search->position[u] == GEODESIC_DONE) continue;
+
+        // along the side or diagonal, or through the segment to another corner
         float vu = cell_length(shell, state, cell, i, j), d = dv + vu;
         for (int other = 1; other < 4; other++) {
             int k = (i + other) & 3;
@@ -105,6 +107,8 @@ static void geodesic_cross_cell(Geodesic *search, const Shell *shell, const Stat
             d = fminf(d, geodesic_through(dv, distance[corner[k]], cell_length(shell, state, cell, i, k), vu,
                                           cell_length(shell, state, cell, k, j)));
         }
+
+        // keep the shorter distance
         if (d >= distance[u]) continue;
         distance[u] = d;
         if (search->position[u] == GEODESIC_FAR) heap_put(search, search->waiting++, u);

@@ -44,7 +44,11 @@ static inline void move_particles(const Move *job, int begin, int end, bool clos
     for (int i = begin; i < end; i++) {
         Float4 point = float4_load(position[i]), velocity = float4_load(velocities[i]);
         if (point[3] == 0) continue; // pinned or gone
+
+        // eq 13: velocity of the substep that ends
         if (closes) velocity += (point - float4_load(predicted[i])) * inverse_h;
+
+        // eq 8 and 9: forces and prediction of the next one
         if (opens) {
             if (!plain) keep = 1 / (1 + h * field_at(damping, (uint32_t)i));
             velocity = (velocity + fall) * keep;

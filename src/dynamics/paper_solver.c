@@ -252,12 +252,16 @@ SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateSt
     const SingeSolverDef *solver = &paper->solver;
     int particles = (int)shell->particle_count;
     Exchange exchange = {paper, plan, dynamics, (double)h};
+
+    // to double precision
     paper->network.rules = (ProjectionRules){.literal = solver->method == SINGE_SOLVER_PAPER_LITERAL,
                                              .early_exit = solver->early_exit,
                                              .tolerance = (double)solver->tolerance,
                                              .iterations = PAPER_ITERATIONS,
                                              .inverse_h2 = 1 / ((double)h * (double)h)};
     pool_for(pool, particles, POOL_BLOCK, paper_begin, &exchange);
+
+    // projections, each followed by contact
     bool solved = true;
     int max = solver->method == SINGE_SOLVER_MASS_SPRING ? 1 : solver->projections; // forces act once a substep
     for (int projection = 0; projection < max && (solved || !solver->early_exit); projection++) {
@@ -270,6 +274,8 @@ SingeResult paper_project(DynamicsPlan *plan, const Shell *shell, const AblateSt
         counters->contacts += contact_project(plan, collider_count, pool, h, dynamics);
         pool_for(pool, particles, POOL_BLOCK, paper_take, &exchange);
     }
+
+    // heights of centres, and back to single precision
     if (solver->height_min > 0) {
         pool_for(pool, particles, POOL_BLOCK, paper_put, &exchange);
         height_project(plan, shell, ablate, pool, dynamics);

@@ -54,6 +54,7 @@ static void prepare_particles(void *task, int begin, int end) {
     const StateInput *state = job->state;
     const Matter *matter = &job->shell->matter;
     for (int i = begin; i < end; i++) {
+        // inverse mass; weight, which falls with char
         bool alive = state->ablate->particle_flags[i] & SINGE_ALIVE;
         float left = state->burn->mass[i];
         float mass = matter->mass[i] * (left > PREPARE_MASS_MIN ? left : PREPARE_MASS_MIN);
@@ -62,6 +63,8 @@ static void prepare_particles(void *task, int begin, int end) {
         float progress = shell_burn_progress(state->burn->mass[i], field_at(matter->mass_min, (uint32_t)i));
         plan->soft[i] = 1 + (field_at(matter->char_weight, (uint32_t)i) - 1) * progress;
         if (!alive) continue;
+
+        // drag, and what it needs: normal and air
         float drag = plan->settings.air_density * field_at(matter->drag, (uint32_t)i);
         plan->drag[i] = 0.25f * drag * matter->area[i] / mass;
         if (drag == 0) continue;
@@ -84,6 +87,7 @@ static void prepare_strands(void *task, int begin, int end) {
     const float *crease = job->dynamics->crease, *bend = job->dynamics->bend;
     const bool torn = job->shell->split_count > 0;
     for (int s = begin; s < end; s++) {
+        // weights and lengths into the lanes; a crease changes lengths of green springs
         size_t slot = set->strand_slot[s];
         for (uint32_t k = springs->strand_first[s]; k < springs->strand_first[s + 1]; k++, slot += STRAND_LANES) {
             uint32_t a = springs->ends[k][0], b = springs->ends[k][1];

@@ -90,6 +90,8 @@ void dynamics_smooth(DynamicsPlan *plan, const Shell *shell, const AblateState *
                       (const float(*)[4])dynamics->position,
                       0,
                       1 - real_expf(-plan->settings.solver.smoothing * h)};
+
+        // families in turn, their strands in parallel
         for (uint32_t f = 0; f < set->family_count; f++) {
             job.first_strand = set->family_first[f];
             uint32_t strands = set->family_first[f + 1] - job.first_strand;

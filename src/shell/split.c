@@ -93,11 +93,15 @@ static TornEdge tear_edge(Shell *shell, uint32_t cell, int side, uint32_t vertex
     uint32_t edge = goer->blue[side], spare = blue->count - shell->edge_spare_count + shell->edge_spare_used;
     const uint32_t *ends = blue->ends[edge];
     TornEdge torn = {edge, spare, goer->green[side], ends[0] == vertex ? ends[1] : ends[0]};
+
+    // a second blue spring for the cell that goes
     memcpy(blue->ends[spare], ends, sizeof blue->ends[spare]);
     blue->rest[spare] = blue->rest[edge];
     if (blue->grain) blue->grain[spare] = blue->grain[edge];
     uint32_t origin = edge, ordinary = blue->count - shell->edge_spare_count;
     shell->edge_origin[shell->edge_spare_used++] = origin < ordinary ? origin : shell->edge_origin[origin - ordinary];
+
+    // the two cells are no longer neighbours
     for (int i = 0; i < 4; i++)
         if (stayer->green[i] == torn.green) stayer->green[i] = SHELL_NONE;
     goer->green[side] = SHELL_NONE;
@@ -134,10 +138,14 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
     uint32_t first_spare = sheet->vertex_first + sheet->vertex_count - sheet->spare_count;
     uint32_t v = split->vertex, to = first_spare + sheet->spare_used++;
     SplitResult result = {.spare = to};
+
+    // the new vertex is as the old one
     memcpy(shell->rest_position[to], shell->rest_position[v], sizeof shell->rest_position[to]);
     memcpy(shell->uv[to], shell->uv[v], sizeof shell->uv[to]);
     shell->source_vertex[to] = shell->source_vertex[v];
     matter_split(shell, v, to, area_that_goes(shell, fan, split));
+
+    // cells that go take their edges and springs along
     for (int k = 0; k < fan->count; k++) {
         if (!goes(split, k)) continue;
         uint32_t cell = fan->cell[k];
@@ -153,6 +161,8 @@ SplitResult split_vertex(Shell *shell, const Fan *fan, const ShellSplit *split) 
         move_end(shell, SINGE_BLUE, springs->blue[before], v, to);
         shell->cells[cell][corner] = to;
     }
+
+    // fans and counts
     for (int colour = 0; colour < SINGE_COLOUR_COUNT; colour++)
         shell->moved[colour] += (uint32_t)__builtin_popcount(split->cells) + 3;
     move_fan(shell, fan, split, to);

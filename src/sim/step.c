@@ -141,12 +141,18 @@ static void step_validate(const SingeSim *sim) {
 SingeResult sim_step(SingeSim *sim) {
     if (!sim->committed)
         return sim_fail(sim, SINGE_ERROR_STATE, "step", -1, "singe_sim_commit comes before the first step");
+
+    // colliders where the step begins
     for (uint32_t i = 0; i < sim->colliders.count; i++)
         if (sim->colliders.items[i].generation) collider_at(&sim->colliders.items[i], sim->state.time);
     if (sim->state.step == 0) sim_find_buried(sim);
+
+    // a copy for rollback
     State before = sim->state;
     SingeTimers timers = sim->timers;
     memcpy(sim->backup, sim->state.arena, sim->state.basic_size);
+
+    // the stages; if one fails, everything is as before
     SingeResult result = step_stages(sim);
     if (result) {
         sim->state = before;
@@ -156,6 +162,8 @@ SingeResult sim_step(SingeSim *sim) {
         sim->events.count = 0;
         return result;
     }
+
+    // the time of the next step
     sim->state.step++;
     sim->state.time = (double)sim->state.step * (double)sim->def.time_step;
     sim->timers.steps++;

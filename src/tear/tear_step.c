@@ -74,6 +74,8 @@ SingeResult tear_plan_create(Memory *memory, const Shell *shell, float h, TearPl
         tear_plan_free(memory, plan);
         return SINGE_ERROR_MEMORY;
     }
+
+    // strengths: no tear begins below `safe`
     plan->safe = INFINITY;
     for (uint32_t s = 0; s < shell->sheet_count; s++) {
         float strength = weakest(&shell->sheets[s], shell->matter.strength);
@@ -261,9 +263,13 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
                             uint32_t vertex, const Fan *fan) {
     SINGE_ASSERT(vertex < shell->vertex_count);
     Turn turn = turn_order(fan);
+
+    // cells that only the vertex connects
     if (turn.count < fan->count) return smaller_part(fan, &turn, 0, turn.count); // joined at the vertex alone
     const uint32_t hinge = hinge_part(state, fan, &turn);
     if (hinge) return hinge;
+
+    // edges along which it may tear
     const Float3 normal = fan_normal(shell, fan);
     TearEdge edges[SPLIT_FAN];
     Float3 forward = {0, 0, 0};
@@ -273,9 +279,13 @@ static uint32_t choose_part(const TearPlan *plan, const Shell *shell, const Stat
         edges[j].solid = is_left(state, fan, turn.at[j]) && is_left(state, fan, turn.at[j > 0 ? j - 1 : count - 1]);
         if (edges[j].solid) forward = float3_add(forward, edges[j].along);
     }
+
+    // across the pull, forwards
     Float3 displacement = float3_cross(normal, pull->across);
     if (float3_dot(displacement, forward) < 0) displacement = float3_scale(displacement, -1);
     const float lot = random_unit(state->tear.split_count * 2654435769u); // multiples of the golden section
+
+    // one edge where the sheet is open, else two
     int first = pick_edge(edges, begin, count, displacement, lot);
     if (first < 0) return 0;
     if (!turn.closed) return smaller_part(fan, &turn, first, count);

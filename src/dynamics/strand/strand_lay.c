@@ -178,9 +178,13 @@ static bool lay_run(Lay *lay, uint32_t s) {
     uint32_t length = strand_length(lay->springs, s), margin = LAY_MARGIN + length / 32, contiguous = length, lanes = 0;
     uint32_t groups = lay->set->group_count, start = lay->laid_count, first = start, before = start;
     StrandGroup *group = lay_open_group(lay, false);
+
+    // the first lane
     lay->frame = length + 1 + 2 * margin;
     for (uint32_t k = 0; k < lay->frame; k++) lay->right[k] = SHELL_NONE;
     lay_put_right(lay, s, 0, margin);
+
+    // lanes to the right while most particles are contiguous
     for (; 2 * contiguous > length; lanes++) {
         group->columns++;
         uint32_t *lane = lay->left;
@@ -193,6 +197,8 @@ static bool lay_run(Lay *lay, uint32_t s) {
         before = lay->laid_count;
         contiguous = lay_right(lay, group->columns);
     }
+
+    // keep the run if it is long enough
     lay_take_back(lay, lanes < LAY_RUN_MIN ? start : before);
     if (first < lay->laid_count) lay_close_group(lay, first);
     else lay->set->group_count = lanes < LAY_RUN_MIN ? groups : lay->set->group_count - 1;
