@@ -11,6 +11,7 @@
 // shifts pairs along a way of triangles until two that are alone meet, or one comes to the border. A pair that would be
 // no good quad (an angle above 175 degrees, a sharp fold, a seam of the uv) shares its side with a new vertex in the
 // centre, by which both triangles are quads of their own; so does a triangle at the border.
+#include "mesh/pair_heap.h"
 #include "mesh/polygon.h"
 
 #include <math.h>
@@ -18,11 +19,6 @@
 
 #define DEGREES (180 / 3.14159265358979323846)
 static const double angle_max = 175, fold_max = 60, straight_gain = 0.5, straight_within = 60;
-
-typedef struct HeapItem {
-    double cost;
-    uint32_t half;
-} HeapItem;
 
 typedef struct Pairs {
     Work *work;
@@ -35,8 +31,7 @@ typedef struct Pairs {
     Faces before;     ///< the faces that the triangles come from
     uint32_t *before_face, *before_twin; ///< [their corners]
     uint32_t *from;                      ///< [half-edges] the corner in `before` that it leaves
-    HeapItem *heap;
-    uint32_t heap_count, heap_capacity;
+    PairHeap heap;
 } Pairs;
 
 // ---- into triangles
@@ -224,36 +219,6 @@ static void cost_all(Pairs *pairs) {
 
 // ---- the cheapest first
 
-static bool before(const HeapItem *a, const HeapItem *b) {
-    return a->cost < b->cost || (a->cost == b->cost && a->half < b->half);
-}
-
-static void heap_push(Pairs *pairs, HeapItem item) {
-    if (pairs->heap_count == pairs->heap_capacity) {
-        uint32_t capacity = 2 * pairs->heap_capacity + 64;
-        HeapItem *heap = work_new(pairs->work, capacity, sizeof *heap);
-        if (!heap) return;
-        if (pairs->heap_count) memcpy(heap, pairs->heap, pairs->heap_count * sizeof *heap);
-        pairs->heap = heap, pairs->heap_capacity = capacity;
-    }
-    uint32_t i = pairs->heap_count++;
-    for (; i > 0 && before(&item, &pairs->heap[(i - 1) / 2]); i = (i - 1) / 2)
-        pairs->heap[i] = pairs->heap[(i - 1) / 2];
-    pairs->heap[i] = item;
-}
-
-static HeapItem heap_pop(Pairs *pairs) {
-    HeapItem top = pairs->heap[0], item = pairs->heap[--pairs->heap_count];
-    uint32_t i = 0, count = pairs->heap_count;
-    for (uint32_t child; (child = 2 * i + 1) < count; i = child) {
-        if (child + 1 < count && before(&pairs->heap[child + 1], &pairs->heap[child])) child++;
-        if (!before(&pairs->heap[child], &item)) break;
-        pairs->heap[i] = pairs->heap[child];
-    }
-    pairs->heap[i] = item;
-    return top;
-}
-
 /// The angle of the quad made of a triangle and its mate at the corner that `corner_half` leaves. `half` is the
 /// triangle's side that both share, `twin` the mate's.
 static double quad_angle(const Pairs *pairs, uint32_t corner_half, uint32_t half, uint32_t twin) {
@@ -297,7 +262,8 @@ static void offer(Pairs *pairs, uint32_t triangle) {
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; h++) {
         if (work->twin[h] == MESH_NONE || pairs->mate[work->twin[h] / 3] != MESH_NONE) continue;
         uint32_t name = pair_name(pairs, h);
-        if (pairs->good[name]) heap_push(pairs, (HeapItem){pairs->cost[name] - pair_gain(pairs, name), name});
+        if (pairs->good[name])
+            pair_heap_push(pairs->work, &pairs->heap, (PairItem){pairs->cost[name] - pair_gain(pairs, name), name});
     }
 }
 
@@ -312,8 +278,8 @@ static void join_cheapest(Pairs *pairs) {
     const Work *work = pairs->work;
     for (uint32_t t = 0; t < work->faces.count; t++)
         if (pairs->mate[t] == MESH_NONE) offer(pairs, t);
-    while (pairs->heap_count && !work->no_memory) {
-        uint32_t half = heap_pop(pairs).half, a = half / 3, b = work->twin[half] / 3;
+    while (pairs->heap.count && !work->no_memory) {
+        uint32_t half = pair_heap_pop(&pairs->heap).half, a = half / 3, b = work->twin[half] / 3;
         if (pairs->mate[a] != MESH_NONE || pairs->mate[b] != MESH_NONE) continue;
         pairs->mate[a] = b, pairs->mate[b] = a;
         offer_around(pairs, a);
