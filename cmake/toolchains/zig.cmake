@@ -1,0 +1,27 @@
+# Any system by Zig's compiler (PyPI's ziglang), which brings the headers and libraries of all. In the environment:
+# SINGE_ZIG, Zig's program (python3 -m ziglang otherwise), and SINGE_ZIG_TARGET, such as x86_64-linux-gnu.2.28,
+# aarch64-linux-gnu.2.28, x86_64-windows-gnu, aarch64-macos.
+set(target $ENV{SINGE_ZIG_TARGET})
+if(NOT target MATCHES "^([a-z0-9_]+)-(linux|windows|macos)")
+  message(FATAL_ERROR "SINGE_ZIG_TARGET must be such as x86_64-linux-gnu.2.28, not \"${target}\"")
+endif()
+set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})
+set(CMAKE_SYSTEM_NAME ${CMAKE_MATCH_2})
+if(CMAKE_SYSTEM_NAME STREQUAL linux)
+  set(CMAKE_SYSTEM_NAME Linux)
+elseif(CMAKE_SYSTEM_NAME STREQUAL windows)
+  set(CMAKE_SYSTEM_NAME Windows)
+  set(CMAKE_RC_COMPILER "" CACHE STRING "")
+else()
+  set(CMAKE_SYSTEM_NAME Darwin)
+  set(CMAKE_OSX_SYSROOT "" CACHE STRING "")
+  set(CMAKE_OSX_DEPLOYMENT_TARGET "" CACHE STRING "")
+endif()
+set(CMAKE_C_COMPILER ${CMAKE_CURRENT_LIST_DIR}/zig-cc)
+set(CMAKE_C_COMPILER_TARGET ${target})
+set(CMAKE_AR ${CMAKE_CURRENT_LIST_DIR}/zig-ar CACHE FILEPATH "")
+set(CMAKE_RANLIB ${CMAKE_CURRENT_LIST_DIR}/zig-ranlib CACHE FILEPATH "")
+set(CMAKE_STRIP "" CACHE STRING "") # the linker does it: no other program knows all of the systems
+set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
+set(CMAKE_EXE_LINKER_FLAGS_INIT -s)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
