@@ -34,7 +34,7 @@ class Vary:
     noise: Any = None
 
 
-def default(struct: type, init: str) -> Any:
+def default(struct: Any, init: str) -> Any:
     """A Def with the library's defaults."""
     made = struct()
     for name, kind in struct._fields_:

@@ -7,6 +7,7 @@ import logging
 import os
 import pathlib
 import sys
+from typing import Any
 
 from . import _abi, errors
 
@@ -51,4 +52,5 @@ def _log_line(_context: object, level: int, line: bytes) -> None:
 
 
 # lives as long as the process, as simulations do at most
-log_callback = dict(_abi.SingeLog._fields_)["write"](_log_line)
+_fields: Any = _abi.SingeLog._fields_
+log_callback = dict(_fields)["write"](_log_line)

@@ -46,6 +46,8 @@ class Sim(Views):
     time; a second thread waits. The library's messages go to the logger "singe".
     """
 
+    _handle: Optional[_Handle]
+
     def __init__(self, **options: Any):
         self._setup(None)
         if "threads" in options:
@@ -156,7 +158,7 @@ class Sim(Views):
             set_texture(made.texture, texture, "texture", keep)
         if strength is not None:
             rows = np.asarray(strength, np.float64).reshape(-1, 2)
-            made.strength = (_abi.SingeValueKey * len(rows))(*((t, v) for t, v in rows))
+            made.strength = (_abi.SingeValueKey * len(rows))(*(_abi.SingeValueKey(t, v) for t, v in rows))
             made.strength_count = len(rows)
         id_ = _abi.SingeSourceId()
         self._call("singe_sim_add_source", ctypes.byref(made), ctypes.byref(id_))

@@ -186,7 +186,8 @@ class Surface:
     def __init__(self, owner: "OwnedSurface", time: float):
         made = owner.struct
         self.time = time
-        for name, kind in made._fields_:
+        fields: Any = made._fields_
+        for name, kind in fields:
             if name == "allocator" or not hasattr(kind, "contents"):
                 continue
             one, width = kind._type_, 0
