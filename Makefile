@@ -11,10 +11,10 @@ DEMO_DIR ?= out/letter
 # tests that measure, for a minute or more under a sanitizer, on code that others go through there
 MEASURING = bending|cli_paper|cli_paper_parts|cli_materials|cli_bench|heat_front
 # check-examples has them: together they would take longer than all the rest
-LONG = platforms|presets|isotropy|fold|spread|cli_paper_all|cli_validate|cli_materials|example_(SameBytes|HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall)
+LONG = platforms|presets|isotropy|fold|spread|cli_validate|cli_materials|example_(SameBytes|HotSphere|Stack|LetterHanging|PageHot|HotIron|Tear|Shirt|BurningTorus|StackEdge|Newspaper|Curtain|CrumpledBall)
 
 # tests of what stands outside those folders, or of how fast it is
-NO_COVERAGE = mesh_zoo|mesh_gate|cli_wrinkles|cli_rim|cli_crossings|cli_validate|cli_paper_.*|step_cost|step_instructions|front|spread|install
+NO_COVERAGE = torture|mesh_zoo|mesh_gate|cli_wrinkles|cli_rim|cli_crossings|cli_validate|cli_paper_.*|step_cost|step_instructions|front|spread|install
 
 # of make fuzz-long and of make soak
 HOURS ?= 1
@@ -75,7 +75,7 @@ check:
 	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
 	ctest --preset release -j2 -E '^($(LONG))$$'
 
-# every example, run whole and verified, all of the paper, and what takes long to measure: 40 minutes
+# every example, run whole and verified, and what takes long to measure: 40 minutes
 check-examples: build
 	ctest --preset release -j2 -R '^($(LONG)|example_Letter)$$'
 

@@ -159,15 +159,15 @@ static uint64_t crate_field(const CrateFile *file, const char *path, const char 
     return 0;
 }
 
-static const char *crate_text(const CrateFile *file, const char *path, const char *name) {
+static inline const char *crate_text(const CrateFile *file, const char *path, const char *name) {
     const uint64_t value = crate_field(file, path, name);
     assert_int_equal(value >> 48, 0x4000 | 11);
     return file->tokens[value & 0xffffffff];
 }
 
 /// The only sample of an attribute, of `width` values of 4 bytes an entry; from malloc. `type`: 3 int, 8 float, ...
-static uint32_t *crate_samples(const CrateFile *file, const char *path, int type, int width, double *time,
-                               size_t *count) {
+static inline uint32_t *crate_samples(const CrateFile *file, const char *path, int type, int width, double *time,
+                                      size_t *count) {
     uint64_t value = crate_field(file, path, "timeSamples");
     assert_int_equal(value >> 48, 46);
     size_t at = (size_t)(value & 0xffffffffffff);

@@ -153,6 +153,8 @@ static void bad_files_are_refused(void **state) {
         {SCENE NODE MESH("{\"attributes\":{\"POSITION\":0},\"mode\":7}"), SINGE_ERROR_FORMAT, "mode is not known"},
         {SCENE NODE MESH("{\"attributes\":{\"POSITION\":0},\"mode\":0}"), SINGE_ERROR_MESH, "no faces"},
         {SCENE NODE MESH("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":0}}"), SINGE_ERROR_FORMAT, "not VEC2"},
+        {SCENE ",\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}}]" MESH(PRIMITIVE),
+         SINGE_ERROR_FORMAT, "nodes[0]: EXT_mesh_gpu_instancing is not read"},
     };
     Data d = data();
     Polygons mesh;
@@ -170,6 +172,81 @@ static void bad_files_are_refused(void **state) {
     d = data(), d.positions[5] = NAN;
     assert_int_equal(parse(SCENE NODE MESH(PRIMITIVE), &d, (SingeAllocator){0}, &mesh, &error), SINGE_ERROR_MESH);
     assert_message(&error, "vertex 1 (from 0) has a position that is not finite");
+}
+
+/// A file of text with one triangle in `buffer`, and an accessor of its positions with `accessor`.
+#define TEXT(buffer, view, accessor)                                                                       \
+    "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"              \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"buffers\":[{\"byteLength\":36,"   \
+    "\"uri\":\"" buffer "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36" view "}],\"accessors\":[{" \
+    "\"bufferView\":0" accessor "}]}"
+#define ZEROS "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+#define POSITIONS ",\"componentType\":5126,\"count\":3,\"type\":\"VEC3\""
+#define SPARSE(count, index, indices) \
+    POSITIONS ",\"sparse\":{\"count\":" count ",\"indices\":{" index "},\"values\":{" indices "}}"
+
+static void bad_buffers_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *json, *part; // NULL: it is read
+    } cases[] = {
+        {TEXT(ZEROS, "", POSITIONS), NULL},
+        {TEXT("data:,abc", "", POSITIONS), "buffers[0]: its data are not base64"},
+        {TEXT("data:;base64,A*AA", "", POSITIONS), "buffers[0]: its data are not base64"},
+        {TEXT("none%2Ebin", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
+        {TEXT("none%2ebin", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
+        {TEXT("%2e%2e/none", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
+        {TEXT("a%00b", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
+        {TEXT("a\\u0041", "", POSITIONS), "buffers[0]: what it refers to is no file in the folder or below"},
+        {TEXT(ZEROS, ",\"extensions\":{\"EXT_meshopt_compression\":{}}", POSITIONS), "compressed data are not read"},
+        {TEXT(ZEROS, ",\"byteStride\":4", POSITIONS), "accessors[0]: its elements overlap"},
+        {TEXT(ZEROS, ",\"byteStride\":999", POSITIONS), "bufferViews[0]"},
+        {TEXT(ZEROS, "", POSITIONS ",\"byteOffset\":-1"), "accessors[0]: its byteOffset is no count"},
+        {TEXT(ZEROS, "", ",\"componentType\":5126,\"count\":3,\"type\":\"VEC9\""), "accessors[0]: it has no type"},
+        {TEXT(ZEROS, "", ",\"componentType\":5124,\"count\":3,\"type\":\"VEC3\""), "accessors[0]: it has no type"},
+        {TEXT(ZEROS, "", ",\"componentType\":5126,\"count\":-3,\"type\":\"VEC3\""), "accessors[0]: it has no type"},
+        {TEXT(ZEROS, "", SPARSE("9", "\"bufferView\":0,\"componentType\":5121", "\"bufferView\":0")),
+         "its sparse elements have no count or type"},
+        {TEXT(ZEROS, "", SPARSE("1", "\"bufferView\":0,\"componentType\":5126", "\"bufferView\":0")),
+         "its sparse elements have no count or type"},
+        {TEXT(ZEROS, ",\"byteStride\":12", SPARSE("1", "\"bufferView\":0,\"componentType\":5121", "\"bufferView\":0")),
+         "sparse indices with gaps"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Polygons mesh;
+        SingeError error = {0};
+        const SingeResult result = polygons_read("/tmp/a.gltf", (const uint8_t *)cases[i].json, strlen(cases[i].json),
+                                                 (SingeAllocator){0}, &mesh, &error);
+        if (!cases[i].part != !result) fail_msg("%s: %s", cases[i].json, error.message);
+        if (result) assert_message(&error, cases[i].part);
+        else polygons_free(&mesh);
+    }
+}
+
+/// Normalized and plain numbers of every width are what the format says.
+static void widths_of_numbers_are_read(void **state) {
+    (void)state;
+    static const struct {
+        const char *accessor;
+        float x; // of the second vertex: the bytes at 12, or behind the width
+    } cases[] = {
+        {",\"componentType\":5120,\"count\":3,\"type\":\"VEC3\"", 0},
+        {",\"componentType\":5121,\"count\":3,\"type\":\"VEC3\",\"normalized\":true", 0},
+        {",\"componentType\":5122,\"count\":3,\"type\":\"VEC3\"", 0},
+        {",\"componentType\":5125,\"count\":3,\"type\":\"VEC3\"", 1065353216},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char json[2000];
+        snprintf(json, sizeof json, "%s%s}]}", TEXT(ZEROS, "", "") "", "");
+        char *end = strstr(json, "\"accessors\":[{\"bufferView\":0");
+        sprintf(end, "\"accessors\":[{\"bufferView\":0%s}]}", cases[i].accessor);
+        Polygons mesh;
+        SingeError error = {0};
+        if (polygons_read("a.gltf", (const uint8_t *)json, strlen(json), (SingeAllocator){0}, &mesh, &error))
+            fail_msg("%s: %s", json, error.message);
+        assert_true(mesh.positions[3] == cases[i].x);
+        polygons_free(&mesh);
+    }
 }
 
 /// A small file of many nodes, or primitives, that use one mesh comes to much more than its size.
@@ -233,6 +310,8 @@ int main(void) {
         cmocka_unit_test(kinds_of_numbers_are_read),
         cmocka_unit_test(transforms_are_applied),
         cmocka_unit_test(bad_files_are_refused),
+        cmocka_unit_test(bad_buffers_are_refused),
+        cmocka_unit_test(widths_of_numbers_are_read),
         cmocka_unit_test(copies_are_limited),
         cmocka_unit_test(every_cut_and_failure_of_memory_is_clean),
     };
