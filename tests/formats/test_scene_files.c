@@ -193,7 +193,7 @@ static void a_bad_frame_leaves_no_file(void **state) {
     Leaf leaf;
     make_leaf(&leaf);
     OutputScene scene = scene_of(&plain);
-    scene.frames = 3;
+    scene.frames = 3, scene.shape_count = 0;
     const OutputCache cache = {.frames = 3, .read = fail_frame, .context = &leaf.surface};
     OutputWriteSingle *const writers[] = {usd_write_single, usdz_write, glb_write_single};
     for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) {
