@@ -160,7 +160,8 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     memcpy(trailer.magic, checkpoint_magic, sizeof trailer.magic);
     trailer.checksum = hash_bytes(hash_bytes(hash_start, grown, size), &trailer, offsetof(Trailer, checksum));
     memcpy(grown + size, &trailer, sizeof trailer);
-    SingeResult result = file_write(folder->checkpoint, grown, size + sizeof trailer, error);
+    SingeResult result =
+        file_write_backup(folder->checkpoint, folder->previous_checkpoint, grown, size + sizeof trailer, error);
     // given back as it came: the library counts what it lent
     uint8_t *shrunk = allocator.resize(allocator.context, grown, size + sizeof trailer, size);
     taken->bytes = shrunk ? shrunk : grown;
@@ -168,50 +169,71 @@ SingeResult checkpoint_write(const Folder *folder, SingeSim *sim, SingeAllocator
     return result;
 }
 
-static SingeResult checkpoint_refuse(const Folder *folder, SingeResult code, const char *why, SingeError *error) {
+static SingeResult checkpoint_refuse(const char *path, SingeResult code, const char *why, SingeError *error) {
     *error = (SingeError){.code = code, .stage = "resume", .element = -1};
-    snprintf(error->message, sizeof error->message, "%.150s: %.180s; run without --resume to start over",
-             folder->checkpoint, why);
+    snprintf(error->message, sizeof error->message, "%.150s: %.180s", path, why);
     return code;
 }
 
-static SingeResult read_trailer(const Folder *folder, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,
+static SingeResult read_trailer(const char *path, const Bytes *bytes, SceneHash hash, const SceneAssets *assets,
                                 Trailer *trailer, SingeError *error) {
     if (bytes->size < sizeof *trailer)
-        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
+        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is cut short", error);
     size_t size = bytes->size - sizeof *trailer;
     memcpy(trailer, bytes->data + size, sizeof *trailer);
     if (memcmp(trailer->magic, checkpoint_magic, sizeof trailer->magic) != 0 || trailer->snapshot_size != size)
-        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
+        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "not a checkpoint of this version, or cut short", error);
     uint64_t checksum = hash_bytes(hash_bytes(hash_start, bytes->data, size), trailer, offsetof(Trailer, checksum));
     if (checksum != trailer->checksum || trailer->frame < 1 || trailer->frame > INT_MAX || trailer->step > INT_MAX)
-        return checkpoint_refuse(folder, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
+        return checkpoint_refuse(path, SINGE_ERROR_FORMAT, "the checkpoint is damaged (its checksum differs)", error);
     const Progress progress = {(int)trailer->frame, (int)trailer->step};
     if (trailer->hash.result != hash_so_far(hash.result, assets, progress))
         return checkpoint_refuse(
-            folder, SINGE_ERROR_STATE,
+            path, SINGE_ERROR_STATE,
             "the checkpoint is of another scene (the scene, its --set or a file it names has changed)", error);
     return SINGE_OK;
 }
 
-SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
-                            Checkpoint *checkpoint, SingeError *error) {
-    *checkpoint = (Checkpoint){0};
-    if (access(folder->checkpoint, F_OK) != 0 && errno == ENOENT) return SINGE_OK;
+static SingeResult read_file(const char *path, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
+                             Checkpoint *checkpoint, SingeError *error) {
     Bytes bytes = {0};
-    SingeResult result = file_read(folder->checkpoint, (SingeAllocator){0}, &bytes, error);
+    SingeResult result = file_read(path, (SingeAllocator){0}, &bytes, error);
     if (result) return result;
     Trailer trailer;
-    result = read_trailer(folder, &bytes, hash, assets, &trailer, error);
+    result = read_trailer(path, &bytes, hash, assets, &trailer, error);
     if (!result) {
         SingeError inner = {0};
         result = singe_sim_load(hooks, bytes.data, (size_t)trailer.snapshot_size, &checkpoint->sim, &inner);
         if (result)
-            checkpoint_refuse(folder, result, inner.message[0] ? inner.message : singe_result_name(result), error);
+            checkpoint_refuse(path, result, inner.message[0] ? inner.message : singe_result_name(result), error);
         else checkpoint->progress = (Progress){(int)trailer.frame, (int)trailer.step};
         checkpoint->totals = trailer.totals;
         checkpoint->other_looks = trailer.hash.looks != hash.looks;
     }
     bytes_free(&bytes);
     return result;
+}
+
+static bool is_there(const char *path) { return access(path, F_OK) == 0 || errno != ENOENT; }
+
+SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash, const SceneAssets *assets,
+                            Checkpoint *checkpoint, SingeError *error) {
+    const bool last = is_there(folder->checkpoint), before = is_there(folder->previous_checkpoint);
+    *checkpoint = (Checkpoint){0};
+    if (!last && !before) return SINGE_OK;
+    if (last) {
+        SingeResult result = read_file(folder->checkpoint, hooks, hash, assets, checkpoint, error);
+        // the one before it would be of another scene, too, or need the same memory
+        if (!result || !before || result == SINGE_ERROR_STATE || result == SINGE_ERROR_MEMORY) return result;
+    }
+    const SingeError refused = last ? *error : (SingeError){0};
+    *checkpoint = (Checkpoint){.previous = true, .refused = refused};
+    SingeResult result = read_file(folder->previous_checkpoint, hooks, hash, assets, checkpoint, error);
+    if (result && last) *error = refused;
+    return result && last ? refused.code : result;
+}
+
+SingeResult checkpoint_promote(const Folder *folder, SingeError *error) {
+    if (rename(folder->previous_checkpoint, folder->checkpoint) == 0) return SINGE_OK;
+    return folder_fail(folder->checkpoint, "replace", errno, error);
 }

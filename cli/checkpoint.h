@@ -1,4 +1,4 @@
-// DIR/checkpoint.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps
+// DIR/checkpoint.singe, and the one before it in DIR/checkpoint.previous.singe: a snapshot of the simulation, then a trailer with the frame that it comes after, the steps
 // since, the hash of the scene and a checksum. Written whole or not at all, after everything of its frame.
 #ifndef CLI_CHECKPOINT_H
 #define CLI_CHECKPOINT_H
@@ -43,13 +43,20 @@ void checkpoint_drop(SingeSim *sim, CheckpointBytes *taken);
 typedef struct Checkpoint {
     Progress progress; ///< frame 0: there is no checkpoint
     Totals totals;
-    bool other_looks; ///< the preview was another
+    bool other_looks;   ///< the preview was another
+    bool previous;      ///< it is the one before the last, which is missing or was refused
+    SingeError refused; ///< why; all zero where it is missing
     SingeSim *sim;
 } Checkpoint;
 
-/// Reads a checkpoint and makes its simulation. Errors: SINGE_ERROR_FORMAT and others for one that is damaged or of
-/// another version, SINGE_ERROR_STATE for one of another scene. No file: success with frame 0.
+/// Reads the last checkpoint that can be used, of two, and makes its simulation. Errors, where neither can be used, are
+/// those of the last: SINGE_ERROR_FORMAT and others for one that is damaged or of another version, SINGE_ERROR_STATE
+/// for one of another scene (which is not passed over). No file: success with frame 0.
 SINGE_NODISCARD SingeResult checkpoint_read(const Folder *folder, const SingeSimDef *hooks, SceneHash hash,
                                             const SceneAssets *assets, Checkpoint *checkpoint, SingeError *error);
+
+/// Puts the checkpoint before the last in the place of the last, which cannot be used: so the next one written does not
+/// replace the only good one.
+SINGE_NODISCARD SingeResult checkpoint_promote(const Folder *folder, SingeError *error);
 
 #endif

@@ -21,6 +21,7 @@ Folder folder_name(const char *path, const char *name) {
     folder.probes = text_format("%s/probes.csv", folder.path);
     folder.record = text_format("%s/run.json", folder.path);
     folder.checkpoint = text_format("%s/checkpoint.singe", folder.path);
+    folder.previous_checkpoint = text_format("%s/checkpoint.previous.singe", folder.path);
     folder.video = text_format("%s/preview.mp4", folder.path);
     folder.sheet = text_format("%s/sheet.png", folder.path);
     folder.gif = text_format("%s/preview.gif", folder.path);
@@ -37,6 +38,7 @@ void folder_free(Folder *folder) {
     free(folder->probes);
     free(folder->record);
     free(folder->checkpoint);
+    free(folder->previous_checkpoint);
     free(folder->video);
     free(folder->sheet);
     free(folder->gif);
@@ -221,7 +223,8 @@ static bool is_half_root(const Folder *folder, const char *file) {
 
 /// The half-written ones of the files that exist once.
 static SingeResult clean_top(const Folder *folder, int *removed, SingeError *error) {
-    static const char *const names[] = {"run.json", "checkpoint.singe", "sheet.png", "preview.mp4", "preview.gif"};
+    static const char *const names[] = {"run.json",  "checkpoint.singe", "checkpoint.previous.singe",
+                                        "sheet.png", "preview.mp4",      "preview.gif"};
     DIR *dir = opendir(folder->path);
     SingeResult result = dir ? SINGE_OK : folder_fail(folder->path, "list", errno, error);
     for (struct dirent *entry; !result && (entry = next_entry(dir, folder->path, &result, error));) {
@@ -250,7 +253,9 @@ static SingeResult remove_file(const char *path, int *removed, SingeError *error
 }
 
 SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error) {
-    return remove_file(folder->checkpoint, removed, error);
+    // the older one first: what is left after a failure is the newer one
+    SingeResult result = remove_file(folder->previous_checkpoint, removed, error);
+    return result ? result : remove_file(folder->checkpoint, removed, error);
 }
 
 SingeResult folder_clean(const Folder *folder, FolderParts parts, int *removed, SingeError *error) {

@@ -18,6 +18,7 @@ typedef struct Folder {
     char *events, *probes;            ///< DIR/events.csv, DIR/probes.csv
     char *record;                     ///< DIR/run.json
     char *checkpoint;                 ///< DIR/checkpoint.singe
+    char *previous_checkpoint;        ///< DIR/checkpoint.previous.singe: the one before it
     char *video;                      ///< DIR/preview.mp4
     char *sheet;                      ///< DIR/sheet.png
     char *gif;                        ///< DIR/preview.gif
@@ -52,7 +53,7 @@ char *folder_single(const Folder *folder, int single);
 /// Path of a format's root, from malloc.
 char *folder_root(const Folder *folder, int format);
 
-/// Removes the checkpoint of an earlier run: without its frames it must not be gone on from. Adds to *removed.
+/// Removes the checkpoints of an earlier run: without its frames no run may resume from them. Adds to *removed.
 SINGE_NODISCARD SingeResult folder_forget(const Folder *folder, int *removed, SingeError *error);
 
 /// Removes what else an earlier run of the same name left (its frames, video, GIF, and tables that are not asked for),

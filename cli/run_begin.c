@@ -70,10 +70,17 @@ static SingeResult open_tables(Run *run, SingeError *error) {
 /// Goes on from a checkpoint. run->sim stays NULL when there is none.
 static ExitCode resume(Run *run) {
     Checkpoint checkpoint;
+    ExitCode code;
     SingeError error = {0};
     SingeResult result =
         checkpoint_read(&run->folder, &run->job.hooks, run->hash, &run->job.assets, &checkpoint, &error);
-    if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
+    if (result) {
+        code = run_begin_fail(run, &error, result == SINGE_ERROR_FILE ? EXIT_FAILED : job_exit(result));
+        console_note(run->console, "without --resume the run starts over");
+        return code;
+    }
+    if (checkpoint.refused.code)
+        console_warn(run->console, "%s; the checkpoint before it is used", checkpoint.refused.message);
     const int frame = checkpoint.progress.frame;
     if (frame == 0) return EXIT_GOOD;
     run->sim = checkpoint.sim;
@@ -82,11 +89,11 @@ static ExitCode resume(Run *run) {
                       run->job.scene->frames);
         return EXIT_INPUT;
     }
-    ExitCode code = expect_frames(run, frame);
-    if (code) return code;
+    if ((code = expect_frames(run, frame))) return code;
     result = open_tables(run, &error);
     if (!result) result = stats_cut(&run->stats, frame, &error);
     if (!result) result = tables_cut(&run->tables, frame, &checkpoint.totals, &error);
+    if (!result && checkpoint.previous) result = checkpoint_promote(&run->folder, &error);
     if (result) return run_begin_fail(run, &error, result == SINGE_ERROR_FORMAT ? EXIT_INPUT : EXIT_FAILED);
     *run->totals = checkpoint.totals;
     run->wall_before = checkpoint.totals.wall_seconds;

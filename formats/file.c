@@ -155,19 +155,30 @@ static int put_in_place(const char *temporary, const char *target) {
     return 0;
 }
 
-SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error) {
+/// What the target holds becomes the backup; a target that is not there leaves the earlier backup.
+static int put_aside(const char *target, const char *backup) {
+    return backup && rename(target, backup) && errno != ENOENT ? errno : 0;
+}
+
+SingeResult file_write_backup(const char *path, const char *backup, const void *data, size_t size, SingeError *error) {
     char temporary[PATH_MAX + 64];
     int file = -1;
     SingeResult result = check_target(path, error);
+    if (!result && backup) result = check_target(backup, error);
     if (result) return result;
     int reason = temporary_open(path, temporary, sizeof temporary, &file);
     if (!reason) {
         reason = write_bytes(file, data, size);
         if (close(file) && !reason) reason = errno;
+        if (!reason) reason = put_aside(path, backup);
         if (!reason) reason = put_in_place(temporary, path);
         if (reason) unlink(temporary);
     }
     return reason ? refuse_system(error, "write", path, reason) : SINGE_OK;
+}
+
+SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error) {
+    return file_write_backup(path, NULL, data, size, error);
 }
 
 SingeResult file_draft(const char *path, char **draft, SingeError *error) {

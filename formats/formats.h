@@ -27,6 +27,11 @@ void bytes_free(Bytes *bytes);
 /// followed. Errors name the path and the system's reason (full disk, no permission) and remove the temporary file.
 SINGE_NODISCARD SingeResult file_write(const char *path, const void *data, size_t size, SingeError *error);
 
+/// As file_write; what `path` held before takes the name `backup`, in place of an earlier one. At no time is there
+/// neither of them.
+SINGE_NODISCARD SingeResult file_write_backup(const char *path, const char *backup, const void *data, size_t size,
+                                              SingeError *error);
+
 /// Makes an empty file beside `path`, under a temporary name that nobody else has, for what is written by others or
 /// shall take its place later. *draft is its name, for file_publish or file_discard; NULL on failure. Errors as above.
 SINGE_NODISCARD SingeResult file_draft(const char *path, char **draft, SingeError *error);

@@ -14,7 +14,7 @@ class Output(Case):
         names = ["tiny.%04d" % i for i in range(1, 7)]
         self.assertEqual(list(self.plys("o")), [n + ".ply" for n in names])
         self.assertIn("frame 6/6", err)
-        top = {"checkpoint.singe", "gas", "ply", "run.json", "stats.csv"}
+        top = {"checkpoint.singe", "checkpoint.previous.singe", "gas", "ply", "run.json", "stats.csv"}
         if HAS_PREVIEW:
             top.add("frames")
             self.assertEqual(sorted(os.listdir(self.path("o", "frames"))), [n + ".png" for n in names])
@@ -136,7 +136,8 @@ class Output(Case):
                 self.assertIn("error: no video: " + why, err)
                 self.assertIn("\n  ffmpeg ", err)
                 self.assertEqual(set(os.listdir(self.path(out))),
-                                 {"checkpoint.singe", "frames", "gas", "ply", "run.json", "stats.csv"})
+                                 {"checkpoint.singe", "checkpoint.previous.singe", "frames", "gas", "ply", "run.json",
+                                  "stats.csv"})
                 self.assertEqual((self.record(out)["result"], self.record(out)["video"]), ("complete", False))
                 shown, err = self.singe("render", self.path(out), expect=1, env=env)
                 self.assertIn("error: no video: " + why, err)
@@ -145,7 +146,8 @@ class Output(Case):
 
     def test_no_preview_leaves_no_frames(self):
         self.run_scene("o", "--frames", "2")
-        self.assertEqual(set(os.listdir(self.path("o"))), {"checkpoint.singe", "gas", "ply", "run.json", "stats.csv"})
+        self.assertEqual(set(os.listdir(self.path("o"))),
+                         {"checkpoint.singe", "checkpoint.previous.singe", "gas", "ply", "run.json", "stats.csv"})
         self.run_scene("o", "--frames", "3", "--resume")
         self.assertFalse(os.path.exists(self.path("o", "frames")))
         self.run_scene("o", "--frames", "2", preview=True)

@@ -2,6 +2,8 @@
 
 import os
 import random
+import re
+import resource
 import shutil
 import signal
 import struct
@@ -298,22 +300,73 @@ class Resume(Case):
         self.run_scene("o", "--frames", "5", "--quiet")
         self.assertIn("at frame 5", self.run_scene("o", "--resume", "--frames", "4", expect=2)[1])
 
+    def damage(self, good):
+        """Bytes of checkpoints that must be refused, by name. Offsets: the magic is at the trailer's start."""
+        flipped = bytearray(good)
+        flipped[len(good) // 2] ^= 1
+        start = good.rindex(b"SINGECP")
+        older = good[:start] + b"SINGECP1" + good[start + 8:]
+        return {"flipped": bytes(flipped), "cut": good[:-7], "short": good[:20], "empty": b"", "longer": good + b"x",
+                "text": b"not a checkpoint" * 100, "older": older}
+
     def test_damaged_checkpoint(self):
         self.run_scene("o", "--frames", "3", "--quiet")
         path = self.path("o", "checkpoint.singe")
         with open(path, "rb") as file:
             good = file.read()
-        flipped = bytearray(good)
-        flipped[len(good) // 2] ^= 1
-        for name, data in (("flipped", bytes(flipped)), ("cut", good[:-7]), ("short", good[:20]), ("empty", b""),
-                           ("longer", good + b"x"), ("text", b"not a checkpoint" * 100)):
+        for name, data in self.damage(good).items():
             with self.subTest(name):
-                with open(path, "wb") as file:
-                    file.write(data)
+                for file_name in "checkpoint.singe", "checkpoint.previous.singe":
+                    with open(self.path("o", file_name), "wb") as file:
+                        file.write(data)
                 _, err = self.run_scene("o", "--resume", expect=2)
                 self.assertIn("checkpoint", err)
                 self.assertIn("without --resume", err)
         self.run_scene("o", "--frames", "3")
+
+    def test_the_checkpoint_before_a_damaged_one(self):
+        """It is used, with the reason; the cache has the same bytes, and a good checkpoint is there all the time."""
+        self.run_scene("whole", "--quiet")
+        self.run_scene("a", "--frames", "5", "--quiet")
+        self.run_scene("a", "--frames", "9", "--resume", "--quiet")
+        with open(self.path("a", "checkpoint.singe"), "rb") as file:
+            good = file.read()
+        for name, data in {**self.damage(good), "missing": None}.items():
+            with self.subTest(name):
+                shutil.rmtree(self.path("o"), ignore_errors=True)
+                shutil.copytree(self.path("a"), self.path("o"))
+                os.remove(self.path("o", "checkpoint.singe"))
+                if data is not None:
+                    with open(self.path("o", "checkpoint.singe"), "wb") as file:
+                        file.write(data)
+                _, err = self.run_scene("o", "--resume")
+                frame = int(re.search(r"continuing from frame (\d+)", err).group(1))
+                self.assertLess(frame, 9)
+                self.assertEqual("the checkpoint before it is used" in err, data is not None, err)
+                self.same_as_whole("o")
+                # the damaged one never took the place of the good one before it
+                os.remove(self.path("o", "checkpoint.singe"))
+                self.assertIn("continuing from frame", self.run_scene("o", "--resume", "--frames", "30")[1])
+
+    def test_the_checkpoint_before_does_not_hide_a_changed_scene(self):
+        self.run_scene("o", "--frames", "5", "--quiet")
+        self.assertTrue(os.path.exists(self.path("o", "checkpoint.previous.singe")))
+        self.assertIn("another scene", self.run_scene("o", "--resume", "--set", "pace=3", expect=2)[1])
+
+    def test_a_failed_write_leaves_both_checkpoints(self):
+        self.run_scene("o", "--frames", "5", "--quiet")
+        size = os.path.getsize(self.path("o", "checkpoint.singe"))
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size // 2, size // 2))
+
+        before = [self.bytes_of("o", n) for n in ("checkpoint.singe", "checkpoint.previous.singe")]
+        self.run_scene("o", "--resume", expect=1, preexec_fn=limit)
+        self.assertEqual(before, [self.bytes_of("o", n) for n in ("checkpoint.singe", "checkpoint.previous.singe")])
+
+    def bytes_of(self, *parts):
+        with open(self.path(*parts), "rb") as file:
+            return file.read()
 
     def test_stats_lost(self):
         self.run_scene("o", "--frames", "3", "--quiet")
