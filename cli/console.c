@@ -1,5 +1,6 @@
 #include "cli/console.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -123,4 +124,14 @@ void console_picture(Console *console, int frame, int frames, double frame_secon
     console_duration(frame_seconds * (frames - frame), left);
     snprintf(line, sizeof line, "frame %d/%d  %.0f ms/frame  %s left", frame, frames, 1e3 * frame_seconds, left);
     show(console, frame, frames, line);
+}
+
+void console_sweep(Console *console, const ConsoleSweep *p) {
+    char left[32] = "?", line[200];
+    if (p->seconds_left > 0) console_duration(p->seconds_left, left);
+    snprintf(line, sizeof line,
+             "rows %" PRIu32 "/%" PRIu32 "  %" PRIu32 " running  %" PRIu32 " failed  frame %" PRIu64 "/%" PRIu64
+             "  %s left",
+             p->complete, p->rows, p->running, p->failed, p->frames, p->frames_all, left);
+    show(console, (int)(p->frames_all ? 1000 * p->frames / p->frames_all : 1000), 1000, line);
 }

@@ -38,6 +38,14 @@ void console_progress(Console *console, const ConsoleProgress *progress);
 /// The same while pictures are drawn again.
 void console_picture(Console *console, int frame, int frames, double frame_seconds);
 
+/// Rows of a sweep, and the frames of all of them.
+typedef struct ConsoleSweep {
+    uint32_t complete, running, failed, rows;
+    uint64_t frames, frames_all;
+    double seconds_left; ///< 0: not known
+} ConsoleSweep;
+void console_sweep(Console *console, const ConsoleSweep *progress);
+
 /// Takes the progress line off the screen, so that other text can follow.
 void console_clear(Console *console);
 

@@ -21,6 +21,7 @@ static const struct {
     {"convert", command_convert, "writes a cache in another format, such as USD"},
     {"measure", command_measure, "measures the shape of a cache: creases, wrinkles, jitter"},
     {"verify", command_verify, "looks for faults in a cache: crossings, inverted cells, bad edges and values"},
+    {"sweep", command_sweep, "burns a scene many times with other parameters, here or on a farm"},
     {"bench", command_bench, "measures speed, strain and stability of the solver on this machine"},
     {"paper", command_paper, "runs the paper's experiments and writes a page about them"},
     {"validate", command_validate, "holds the physics against sources outside the project, on a page"},
@@ -50,9 +51,10 @@ int main(int argc, char **argv) {
     keep_memory();
     if (streams_open()) return EXIT_FAILED;
     if (argc < 2) {
-        fputs("singe: error: needs a command: run, check, render, convert, measure, verify, bench, paper or validate\n"
-              "see: singe --help\n",
-              stderr);
+        fputs(
+            "singe: error: needs a command: run, check, render, convert, measure, verify, sweep, bench, paper or validate\n"
+            "see: singe --help\n",
+            stderr);
         return EXIT_INPUT;
     }
     const char *word = argv[1];

@@ -175,3 +175,26 @@ char *text_json_unquote(const char *value, size_t size) {
     *out = 0;
     return text;
 }
+
+char *text_shell_quote(const char *text) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,";
+    if (*text && text[strspn(text, plain)] == 0) return text_format("%s", text);
+    char *quoted = text_format("''");
+    for (const char *c = text; *c; c++) {
+        size_t length = strlen(quoted) - 1;
+        char *longer = text_format(*c == '\'' ? "%.*s'\\%c''" : "%.*s%c'", (int)length, quoted, *c);
+        free(quoted);
+        quoted = longer;
+    }
+    return quoted;
+}
+
+void text_csv_cell(FILE *file, const char *text) {
+    if (!text[strcspn(text, ",\"\n")]) {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text; text++) fprintf(file, *text == '"' ? "\"\"" : "%c", *text);
+    fputc('"', file);
+}

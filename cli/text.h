@@ -10,6 +10,9 @@
 /// A formatted string from malloc. Without memory for it the program ends with EXIT_FAILED.
 char *text_format(const char *format, ...) SINGE_PRINTF(1, 2);
 
+/// An argument quoted for a shell where it must be, from malloc.
+char *text_shell_quote(const char *text);
+
 /// Ends a stream of open_memstream, or NULL where it could not be opened. Whether *text has all that was written; the
 /// caller frees it either way.
 SINGE_NODISCARD bool text_stream_end(FILE *stream, char **text);
@@ -18,6 +21,9 @@ SINGE_NODISCARD bool text_stream_end(FILE *stream, char **text);
 /// \udcff: what is written is UTF-8 whatever the text is, and text_json_unquote gives the same bytes back (and so do
 /// the file names of Python).
 void text_json_string(FILE *file, const char *text);
+
+/// Writes a cell of a CSV table, quoted where it must be.
+void text_csv_cell(FILE *file, const char *text);
 
 /// Writes a number that reads back exactly, or null where it is not finite.
 void text_json_number(FILE *file, double number);

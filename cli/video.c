@@ -29,25 +29,11 @@ static char *pattern_escape(const char *text) {
     return copy;
 }
 
-/// Quotes an argument for a shell.
-static char *shell_quote(const char *text) {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,";
-    if (*text && text[strspn(text, plain)] == 0) return text_format("%s", text);
-    char *quoted = text_format("''");
-    for (const char *c = text; *c; c++) {
-        size_t length = strlen(quoted) - 1;
-        char *longer = text_format(*c == '\'' ? "%.*s'\\%c''" : "%.*s%c'", (int)length, quoted, *c);
-        free(quoted);
-        quoted = longer;
-    }
-    return quoted;
-}
-
 static void tell_command(Console *console, const char *what, VideoResult result, const char *why,
                          char *const *arguments) {
     char *line = text_format("ffmpeg");
     for (char *const *a = arguments + 1; *a; a++) {
-        char *quoted = shell_quote(*a), *longer = text_format("%s %s", line, quoted);
+        char *quoted = text_shell_quote(*a), *longer = text_format("%s %s", line, quoted);
         free(quoted);
         free(line);
         line = longer;

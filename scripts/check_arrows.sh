@@ -19,6 +19,7 @@
 #   bench           mesh/mesh.h
 #   cli             analysis, bench, scene, formats, mesh/mesh.h, preview/preview.h, common/allocator.h
 #   experiments     cli, and what it may include
+#   sweep           the same
 #
 # and everyone the own folder and the public headers. Only src and tests see src. include/singe sees itself alone. No
 # header includes itself, directly or through others.
@@ -67,6 +68,7 @@ check analysis "$public|(formats|analysis)/.*|mesh/mesh\.h"
 check bench "$public|mesh/mesh\.h|bench/.*"
 check cli "$public|$outside|(scene|analysis|bench|cli)/.*|common/allocator\.h"
 check experiments "$public|$outside|(scene|analysis|bench|cli|experiments)/.*"
+check sweep "$public|$outside|(scene|analysis|bench|cli|sweep)/.*"
 check examples "$public"
 
 # libsinge needs libc, libm and threads only
@@ -78,7 +80,7 @@ if grep -rnHE '#[[:space:]]*include[[:space:]]*<(libfyaml|png|jpeglib|embree|ope
 fi
 
 # no circles: tsort names those that there are
-circles=$(find "${library[@]}" formats mesh scene preview analysis bench cli experiments -name '*.h' 2>/dev/null |
+circles=$(find "${library[@]}" formats mesh scene preview analysis bench cli experiments sweep -name '*.h' 2>/dev/null |
     xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' |
     sed -E 's,^(include|src)/,,; s,^([^:]*)/([^/:]*):[^"]*"([^"/]*)".*,\1/\2 \1/\3,; s,:[^"]*"([^"]*)".*, \1,' |
     tsort 2>&1 >/dev/null || true)

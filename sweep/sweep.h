@@ -1,0 +1,72 @@
+// singe sweep: many runs of a scene with other parameters. A sweep's folder:
+//
+//   plan.csv                a line a row: its number and its parameters
+//   sweep.json              the scene's hash: a changed plan or scene is noticed
+//   rows/0001/              a whole row: what `singe run` leaves there, measure.csv and log.txt
+//   unfinished/0001/        a row that is running, was stopped, or failed (then with failed.txt)
+//   report.csv, index.html, sheet.svg   of the whole rows (sweep_report.c)
+//   slurm/                  scripts and logs of jobs (slurm_jobs.c)
+//
+// A row's folder moves from unfinished/ to rows/ as the last step: it is complete there, or absent.
+#ifndef SWEEP_SWEEP_H
+#define SWEEP_SWEEP_H
+
+#include "cli/job.h"
+#include "cli/lock.h"
+#include "sweep/sweep_plan.h"
+
+typedef enum RowState {
+    ROW_ABSENT, ///< or stopped: it starts or resumes
+    ROW_COMPLETE,
+    ROW_FAILED,    ///< the next sweep leaves it out unless --retry is given
+    ROW_ELSEWHERE, ///< another process is running it
+} RowState;
+
+typedef struct SweepOptions {
+    const char *plan, *output;
+    int jobs, threads; ///< rows at a time, threads of each
+    int row;           ///< this row alone, from 1; 0: all
+    int max_running;   ///< Slurm: rows at a time; 0: no limit
+    int frames;        ///< Slurm: a job of rendering draws so many
+    SetList slurm;     ///< further options of sbatch
+    bool retry, print, submit, report, no_preview, quiet;
+} SweepOptions;
+
+typedef struct Sweep {
+    Console *console;
+    const SweepOptions *options;
+    Plan plan;
+    char *folder;     ///< without a slash at its end
+    char *plan_path;  ///< absolute
+    char *program;    ///< this one
+    uint32_t *frames; ///< [row_count] of each row's scene
+    char *name;       ///< of a row's files
+    Lock lock;
+} Sweep;
+
+/// Paths from malloc; rows are numbered from 0 here and from 1 in names.
+char *sweep_row_folder(const Sweep *sweep, uint32_t row, bool complete);
+RowState sweep_row_state(const Sweep *sweep, uint32_t row);
+
+/// Checks the scene of every row, or of one. Messages have been printed unless the result is EXIT_GOOD.
+ExitCode sweep_check_rows(Sweep *sweep);
+
+/// Makes the folder and notes the plan there, or compares it with what is noted.
+ExitCode sweep_open_folder(Sweep *sweep);
+
+/// The command of a row's run, NULL-terminated: the array and its texts come from malloc.
+char **sweep_run_command(const Sweep *sweep, uint32_t row);
+/// That of a row as a whole, `singe sweep PLAN --row N`, quoted for a shell.
+char *sweep_row_line(const Sweep *sweep, const char *number);
+void sweep_free_command(char **command);
+
+/// Runs the rows that are due (row_pool.c). EXIT_FAILED where one failed or the sweep was interrupted.
+ExitCode sweep_run_rows(Sweep *sweep);
+
+/// Writes the jobs' scripts, and submits them (slurm_jobs.c).
+ExitCode sweep_submit(Sweep *sweep);
+
+/// report.csv, index.html and sheet.svg of the rows that are complete (sweep_report.c).
+ExitCode sweep_report(Sweep *sweep);
+
+#endif

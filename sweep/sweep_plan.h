@@ -1,0 +1,59 @@
+// The plan of a sweep: a scene, and the parameters that its rows set (docs/sweep.md). A row is one run.
+#ifndef SWEEP_PLAN_H
+#define SWEEP_PLAN_H
+
+#include "cli/cli.h"
+#include "cli/console.h"
+#include "scene/arena.h"
+#include "scene/tree.h"
+
+typedef enum PlanMethod {
+    PLAN_GRID,            ///< every combination of the values; the last parameter varies fastest
+    PLAN_LIST,            ///< the first values of all, the second, ...
+    PLAN_RANDOM,          ///< each value on its own
+    PLAN_LATIN_HYPERCUBE, ///< each parameter's range in as many parts as there are rows, each part once
+    PLAN_METHODS
+} PlanMethod;
+
+/// What a parameter may be: one of `values`, or a number between `from` and `to`, both included.
+typedef struct PlanParameter {
+    char *key;       ///< PATH of --set
+    uint32_t count;  ///< of values; 0: a range
+    char **values;   ///< as --set takes them
+    double from, to; ///< in `unit`
+    char *unit;      ///< as written; "" for none
+    uint32_t steps;  ///< of a range, for a grid or a list; 0: not given
+    bool logarithmic, whole;
+    SceneLocation location;
+} PlanParameter;
+
+enum { PLAN_ROWS_MAX = 10000, PLAN_PARAMETERS_MAX = 64 };
+
+typedef struct Plan {
+    SceneArena *arena; ///< owns all of the below
+    char *name;        ///< the file's, without its ending
+    char *scene;       ///< path of the scene
+    PlanMethod method;
+    uint32_t samples, seed;
+    uint32_t set_count, parameter_count, row_count;
+    char **sets; ///< [set_count] PATH=VALUE for all rows
+    PlanParameter *parameters;
+    char **values; ///< [row_count * parameter_count], row by row
+} Plan;
+
+/// Reads a plan and makes its rows. All errors have been printed, with their lines, unless the result is EXIT_GOOD.
+ExitCode plan_read(const char *path, Console *console, Plan *plan);
+void plan_free(Plan *plan);
+
+/// A row's value of a parameter.
+static inline const char *plan_value(const Plan *plan, uint32_t row, uint32_t parameter) {
+    return plan->values[(size_t)row * plan->parameter_count + parameter];
+}
+
+/// A parameter's short name for people: the part behind the last dot, longer where others end alike.
+const char *plan_label(const Plan *plan, uint32_t parameter);
+
+/// Makes the rows of a plan whose parameters are read (plan_rows.c). False: `message` says why not, about `parameter`.
+bool plan_make_rows(Plan *plan, uint32_t *parameter, char *message, size_t size);
+
+#endif
